@@ -22,7 +22,7 @@ Result<std::string, std::string> parse_name(WordReader& reader) {
 }
 
 void release_name(const CommandCall& call, const std::string& name) {
-  const auto released = call.world().release_name(name);
+  const auto released = call.world().people().names().release(name);
   if (!released) return call.refuse("names release: " + released.error());
   call.answer("\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
               "; the next player who joins under it owns it");
@@ -46,7 +46,7 @@ void add_materials(const CommandCall& call, const std::string& file) {
       [call, file](const std::vector<MaterialFileRow>& read) {
         std::vector<MaterialRow> rows;
         for (const MaterialFileRow& each : read) rows.push_back(each.row);
-        const auto added = call.world().add_materials(rows, call.now);
+        const auto added = call.world().changes().add_materials(rows, call.now);
         if (added) return call.answer(added_text(*added, rows));
         TextError wrong{file, 0, "", added.error().what};
         if (const auto row = added.error().row) {
@@ -73,7 +73,7 @@ Result<std::string, std::string> parse_say(WordReader& reader) {
 
 void say(const CommandCall& call, const std::string& text) {
   const std::size_t sessions =
-      call.world().say(text, call.caller.actor.key.value_or(PublicKey{}), call.now);
+      call.world().people().chat().say(text, call.caller.actor.key.value_or(PublicKey{}), call.now);
   call.answer("sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"));
 }
 
@@ -99,7 +99,7 @@ void reload_at_follower(const FollowerCall& call) {
 }
 
 void list_servers(const CommandCall& call) {
-  call.answer(server_list(call.world().known_servers()));
+  call.answer(server_list(call.world().cluster().known_servers()));
 }
 
 /// Parses the number of a server. Without one the server with the most players is meant.
@@ -113,7 +113,7 @@ Result<std::optional<SessionId>, std::string> parse_server(WordReader& reader) {
 }
 
 void hand_over(const CommandCall& call, const std::optional<SessionId>& successor) {
-  if (const auto why = call.world().handover_refusal(successor))
+  if (const auto why = call.world().cluster().handover_refusal(successor))
     return call.refuse("handover: " + *why);
   const auto& action = call.services.actions.hand_over;
   if (!action) return call.refuse(kCannot);

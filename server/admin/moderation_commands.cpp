@@ -28,13 +28,14 @@ void show_status(const CommandCall& call) {
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
   call.answer("sessions " + std::to_string(world.session_count()) + ", edits " +
-              std::to_string(world.order().head()) + " (on disk " + std::to_string(world.order().durable()) +
-              "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
-              std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
-              std::to_string(world.order().chunks().resident_count()) + " (" + memory_text(memory.voxels) +
-              "), waiting edits " + memory_text(memory.stacked + memory.queued) +
-              ", damaged chunks " + std::to_string(c.chunks_failed) +
-              ", rollbacks and undos under way " +
+              std::to_string(world.order().head()) + " (on disk " +
+              std::to_string(world.order().durable()) + "), since the start " +
+              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+              " rejected\nchunks in memory " +
+              std::to_string(world.order().chunks().resident_count()) + " (" +
+              memory_text(memory.voxels) + "), waiting edits " +
+              memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
+              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
               std::to_string(call.services.rollback.running()));
 }
 

@@ -28,14 +28,14 @@ Result<std::string, std::string> parse_materials(WordReader& reader) {
 }
 
 void list_materials(const CommandCall& call, const std::string& part) {
-  call.answer(material_list(call.world().materials(), part));
+  call.answer(material_list(call.world().order().materials(), part));
 }
 
 void list_players(const CommandCall& call) {
   call.on_worker(
       "players: ", [](WorldReader& reader) { return reader.players(); },
-      [call, present = call.world().online_players(),
-       visitors = call.world().visitors()](const std::vector<PlayerRow>& rows) {
+      [call, present = call.world().people().online(),
+       visitors = call.world().order().players().visitors()](const std::vector<PlayerRow>& rows) {
         call.answer(player_list(rows, present, visitors));
       });
 }

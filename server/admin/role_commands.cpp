@@ -78,9 +78,11 @@ Result<CreateInviteCommand, std::string> parse_invite(WordReader& reader) {
 }
 
 void create_invite(const CommandCall& call, const CreateInviteCommand& command) {
-  const Invite invite{call.world().new_invite_id(), command.role, command.uses, command.until_us};
+  const Invite invite{call.world().people().new_invite_id(), command.role, command.uses,
+                      command.until_us};
   call.change_rights(CreateInvite{invite},
-                     call.world().invite_link(invite.id) + "\ninvite " + invite_text(invite) +
+                     call.world().people().invite_link(invite.id) + "\ninvite " +
+                         invite_text(invite) +
                          ". Whoever has the link can use it: pass it on in private");
 }
 
@@ -235,8 +237,8 @@ void undo_record(const CommandCall& call, Sequence seq, const std::vector<Rights
 
 void undo_rights(const CommandCall& call, const Sequence& seq) {
   // The inverse depends on the records after this one, so all of them must be on disk.
-  const Sequence newest = call.world().newest_rights();
-  if (call.world().durable() < newest) {
+  const Sequence newest = call.world().rights().newest();
+  if (call.world().order().durable() < newest) {
     call.services.waiting.push_back(
         {newest, [call, seq] { undo_rights(call, seq); },
          [call] { call.refuse("rights undo: the log cannot be written any more"); }});
@@ -244,7 +246,7 @@ void undo_rights(const CommandCall& call, const Sequence& seq) {
   }
   call.on_worker("rights undo: ", read_rights_records,
                  [call, seq, newest](const std::vector<RightsRecord>& records) {
-                   if (newest != call.world().newest_rights()) return undo_rights(call, seq);
+                   if (newest != call.world().rights().newest()) return undo_rights(call, seq);
                    undo_record(call, seq, records);
                  });
 }

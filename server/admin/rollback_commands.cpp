@@ -146,7 +146,7 @@ void list_log(const CommandCall& call, const LogCommand& command) {
   call.world().commit(call.now);
   with_selection(
       call, command.filter, "log", [call, limit = command.limit](SelectionFilter filter) {
-        filter.last = call.world().durable();
+        filter.last = call.world().order().durable();
         call.on_worker(
             "log: ",
             [filter, limit](WorldReader& reader) { return read_log_lines(reader, filter, limit); },

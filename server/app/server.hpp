@@ -62,7 +62,7 @@ class Server {
   /// the database. Requires that it follows.
   Result<void, OwnershipError> take_over();
   /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
-  /// `successor` is as for WorldServer::hand_over(). Blocks on the database. Call connect_to()
+  /// `successor` is as for Cluster::hand_over(). Blocks on the database. Call connect_to()
   /// afterwards as long as it follows.
   Result<void, OwnershipError> hand_over(std::optional<SessionId> successor);
   /// Returns the part that this server plays in its world. Thread: any.

@@ -32,7 +32,7 @@ struct RestoreOrder {
   AuthorId author = 0;  // of the edits that the job writes; 0: the server
   ClientInstance instance = 0;
   ClientSequence first_seq = 1;  // of the first edit; later ones count up
-  AuthorId payer = 0;            // as for WorldServer::order_server_edits()
+  AuthorId payer = 0;            // as for Changes::order_edits()
   Cause cause = Cause::rollback;
   Sequence subject = 0;  // of each edit; 0: the newest selected edit of its chunk
   std::shared_ptr<const Selection> selection;

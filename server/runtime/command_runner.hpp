@@ -31,7 +31,7 @@ class CommandRunner final : private RollbackService::Workers {
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand.
   void run(const std::string& line, CommandReply reply);
-  /// Carries out a client's command. WorldServer::answer_command() gets the replies, in a later
+  /// Carries out a client's command. Commands::answer() gets the replies, in a later
   /// task.
   void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
 

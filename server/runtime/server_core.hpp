@@ -80,7 +80,7 @@ class ServerCore final : public NetEvents {
   Result<void, std::string> take_over(Store& store, const std::string& address);
   /// Makes the owner a server that follows: begin_handover(), then end_handover(), then the caller
   /// gives the lease up. Sessions go on. take_over() may follow. `successor` is as for
-  /// WorldServer::hand_over(). Returns the server that is to take the world over, or why nothing
+  /// Cluster::hand_over(). Returns the server that is to take the world over, or why nothing
   /// has changed. Requires start(). Blocks. Thread: any but those of `threads`.
   Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
   /// Writes the log and ends the log writer. After an error the server must be stopped. Requires the

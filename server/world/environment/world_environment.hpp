@@ -127,11 +127,11 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// WorldServer::tiles_made() or tile_stopped(). Without tiles (WorldConfig::tile_levels_max is
+  /// Tiles::made() or stopped(). Without tiles (WorldConfig::tile_levels_max is
   /// 0), neither this nor the next five calls are made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
-  /// WorldServer::past_tile_made() or past_tile_stopped().
+  /// Tiles::past_made() or past_stopped().
   virtual void make_past_tile(SessionId /*session*/, TileRequest /*request*/) {}
   /// Records that the newest edit of these chunks is `seq`, before any later make_tile(). Keys of
   /// level of detail 0, ascending.
@@ -145,14 +145,14 @@ class WorldEnvironment {
   virtual void save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> /*tiles*/) {}
   /// Finds the view of the past that a session requests, on a worker. Requires that request.to is
   /// not live. Called at most once for a session until it is answered. Answer:
-  /// WorldServer::history_opened().
+  /// Ground::history_opened().
   virtual void open_history(SessionId /*session*/, const HistoryRequest& /*request*/) {}
   /// Makes a chunk as it was after edit `at`, on a worker. The answer repeats `history`. Answer:
-  /// WorldServer::history_chunk_loaded().
+  /// Ground::history_chunk_loaded().
   virtual void load_history_chunk(SessionId /*session*/, HistoryNumber /*history*/, Sequence /*at*/,
                                   const ChunkKey& /*key*/) {}
   /// Reads marks of the log, on a reader. Called at most once for a session until it is answered.
-  /// Answer: WorldServer::log_marks_read().
+  /// Answer: Ground::log_marks_read().
   virtual void read_log_marks(SessionId /*session*/, const LogMarksRequest& /*request*/) {}
   /// Writes immutable chunks as snapshots, then moves the checkpoint: every edit up to it is
   /// contained in snapshots. Requires that each chunk's version is durable. Answer:
@@ -163,14 +163,14 @@ class WorldEnvironment {
   /// Queues a message for the owner of the world, which this server follows. Returns false if there
   /// is no room, or no connection.
   virtual bool send_to_owner(const EncodedMessage& /*message*/) { return false; }
-  /// Ends the connection with the owner. Answer: WorldServer::owner_disconnected().
+  /// Ends the connection with the owner. Answer: Cluster::owner_disconnected().
   virtual void leave_owner(const std::string& /*why*/) {}
   /// Reads durable records from `first` on, on a reader. Called at most once until it is answered.
-  /// Answer: WorldServer::log_read().
+  /// Answer: Cluster::log_read().
   virtual void read_log(Sequence /*first*/) {}
 
   /// Carries out a client's command. The key of the player decides its permissions. Called at most
-  /// once for a session until it is answered. Answers: WorldServer::answer_command(), the last one
+  /// once for a session until it is answered. Answers: Commands::answer(), the last one
   /// with is_done.
   virtual void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
                        const std::string& /*text*/) {}
