@@ -18,6 +18,12 @@
 
 namespace runstone::test {
 
+struct ServersOptions {
+  std::optional<Protection> without = std::nullopt;
+  unsigned faults_per_1000 = 25;  // of the steps
+  bool tells = false;  // what happens to the servers is written to standard output, a line each
+};
+
 class ServersSimulation {
  public:
   /// How often each fault was made, and how many edits and chunks the final checks compared.
@@ -29,11 +35,9 @@ class ServersSimulation {
     std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
   };
 
-  /// Adds to `counts` what it does. `tells`: what happens to the servers is written to standard
-  /// output, a line each.
-  ServersSimulation(std::uint64_t seed, Counts& counts,
-                    std::optional<Protection> without = std::nullopt, bool tells = false)
-      : tells_(tells), counts_(counts), rng_(seed), database_(time_, without) {
+  /// Adds to `counts` what it does.
+  ServersSimulation(std::uint64_t seed, Counts& counts, const ServersOptions& options = {})
+      : options_(options), counts_(counts), rng_(seed), database_(time_, options.without) {
     meta_.chunk_edge = kSimEdge;
     for (unsigned i = 0; i < kServers; ++i) {
       const std::string address = "server" + std::to_string(i) + ":4747";
@@ -104,7 +108,7 @@ class ServersSimulation {
   }
 
   void tell(const std::string& what) const {
-    if (!tells_) return;
+    if (!options_.tells) return;
     std::cout << std::fixed << std::setprecision(3) << static_cast<double>(time_.now()) / 1e6 << ' '
               << what << std::endl;
   }
@@ -165,7 +169,7 @@ class ServersSimulation {
                           static_cast<std::uint8_t>(1 + rng_.below(2)),
                           static_cast<std::uint8_t>(rng_.below(2))});
     }
-    if (what < 45) return harm(any_server());
+    if (what < 20 + options_.faults_per_1000) return harm(any_server());
     client.edit(random_edit_near(rng_, {-8, -8, -8}, Extent::cube(kSimEdge)));
   }
   void harm(SimProcess& server) {
@@ -264,7 +268,7 @@ class ServersSimulation {
     return text;
   }
 
-  const bool tells_;
+  const ServersOptions options_;
   Counts& counts_;
   VirtualTime time_;
   SplitMix64 rng_;
