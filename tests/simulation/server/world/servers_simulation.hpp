@@ -20,7 +20,7 @@ namespace runstone::test {
 
 struct ServersOptions {
   std::optional<Protection> without = std::nullopt;
-  unsigned faults_per_1000 = 25;  // of the steps
+  bool owner_pauses = false;  // half of the faults: the owner stands still
   bool tells = false;  // what happens to the servers is written to standard output, a line each
 };
 
@@ -158,6 +158,11 @@ class ServersSimulation {
     return server.listens() ? server.accept(player_faults_, std::move(client)) : nullptr;
   }
   SimProcess& any_server() { return *servers_[rng_.below(kServers)]; }
+  /// Returns any server if nobody owns the world.
+  SimProcess& owner() {
+    const auto found = std::ranges::find_if(servers_, [](const auto& s) { return s->is_owner(); });
+    return found == servers_.end() ? any_server() : **found;
+  }
 
   void act() {
     const std::uint64_t what = rng_.below(1000);
@@ -169,23 +174,27 @@ class ServersSimulation {
                           static_cast<std::uint8_t>(1 + rng_.below(2)),
                           static_cast<std::uint8_t>(rng_.below(2))});
     }
-    if (what < 20 + options_.faults_per_1000) return harm(any_server());
+    if (what < 45)
+      return options_.owner_pauses && rng_.below(2) == 0 ? pause(owner()) : harm(any_server());
     client.edit(random_edit_near(rng_, {-8, -8, -8}, Extent::cube(kSimEdge)));
   }
+  void heal_later(TimeUs longest_us, std::function<void()> heal) {
+    time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
+  }
+  void pause(SimProcess& server) {
+    if (server.is_paused()) return;
+    ++counts_.pauses;
+    server.pause();
+    heal_later(12'000'000, [&server] { server.resume(); });
+  }
   void harm(SimProcess& server) {
-    const auto heal_later = [this](TimeUs longest_us, std::function<void()> heal) {
-      time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
-    };
     switch (rng_.below(10)) {
       case 0:
         if (!server.running()) return;
         ++counts_.kills;
         return server.kill();
       case 1:
-        if (server.is_paused()) return;
-        ++counts_.pauses;
-        server.pause();
-        return heal_later(12'000'000, [&server] { server.resume(); });
+        return pause(server);
       case 2:
         ++counts_.stops;
         return server.stop();
