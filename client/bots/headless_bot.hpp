@@ -14,6 +14,7 @@ class HeadlessBot final : public Bot {
   HeadlessSession& session() { return session_; }
   const HeadlessSession& session() const { return session_; }
   bool loaded() const override { return session_.loaded(); }
+  Sequence durable() const override { return session_.durable(); }
   BotCounts counts() const override;
 
  private:

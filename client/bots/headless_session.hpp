@@ -70,6 +70,7 @@ class HeadlessSession {
   /// Returns when tick() has something to do next.
   TimeUs tick_due_us() const { return connection_.tick_due_us(kPingEveryUs); }
 
+  Sequence durable() const { return durable_; }
   const LocalEdits& local_edits() const { return local_edits_; }
   const VersionTracker& versions() const { return versions_; }
   const HeadlessCounts& counts() const { return counts_; }

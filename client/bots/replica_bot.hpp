@@ -17,6 +17,7 @@ class ReplicaBot final : public Bot {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
   bool loaded() const override { return session_.loaded(); }
+  Sequence durable() const override { return session_.replica().durable(); }
   BotCounts counts() const override;
   PlacedVoxels::Standing standing() const override { return placed_.compare(session_.replica()); }
 

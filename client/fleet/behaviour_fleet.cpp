@@ -158,7 +158,8 @@ struct BehaviourFleet::Parts {
   }
 
   /// Plays until all edits were made or the duration is over, and adds the measurements to the
-  /// report. Then waits until every edit was answered and is on disk.
+  /// report. Then waits until every edit was answered, is on disk, and has arrived at every bot that
+  /// sees its place.
   void play(FleetReport& report, const volatile std::sig_atomic_t& stop);
   /// Blocks for two seconds at most.
   void leave() {
@@ -200,8 +201,16 @@ void BehaviourFleet::Parts::play(FleetReport& report, const volatile std::sig_at
     report.class_bytes[i] = after.class_bytes[i] - before.class_bytes[i];
   }
   report.lag_us = lag_us;
-  if (!play_until([&] { return all(is_done); }, options.load_seconds, stop, 2))
+  if (!play_until([&] { return all(is_done); }, options.load_seconds, stop, 2)) {
     report.failure = explain("has edits without an answer", is_done);
+    return;
+  }
+  // The author of the newest edit knows that it is on disk.
+  Sequence newest = 0;
+  for (const auto& bot : bots) newest = std::max(newest, bot->bot().durable());
+  const auto has_all = [newest](FleetBot& bot) { return bot.bot().durable() >= newest; };
+  if (!play_until([&] { return all(has_all); }, options.load_seconds, stop, 2))
+    report.failure = explain("has not received every edit", has_all);
 }
 
 BehaviourFleet::BehaviourFleet(const BotOptions& options)

@@ -2,7 +2,8 @@
 // A run has these parts:
 //   1. the bots join, one after another, until each of them sees everything around it;
 //   2. edits fall due;
-//   3. the fleet waits until every edit was answered and is on disk;
+//   3. the fleet waits until every edit was answered, is on disk, and has arrived at every bot that
+//      sees its place;
 //   4. all bots leave.
 #pragma once
 #include <csignal>

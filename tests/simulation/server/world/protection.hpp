@@ -1,7 +1,6 @@
 // Protection: what keeps the servers of one world from harming it. A simulation can do without one of
 // them, to show that it would notice.
 #pragma once
-#include <array>
 
 namespace runstone::test {
 
@@ -18,37 +17,5 @@ enum class Protection {
   resumed,     // edits that a client sent before it knew of the next owner are ignored
   head_epoch,  // a server that reads the log compares the epoch of its last record
 };
-
-inline constexpr std::array kProtections = {Protection::fence,        Protection::locked_row,
-                                            Protection::expiry,       Protection::renewal,
-                                            Protection::owner_clock,  Protection::epoch,
-                                            Protection::durable_last, Protection::watermarks,
-                                            Protection::resumed,      Protection::head_epoch};
-
-constexpr const char* name_of(Protection protection) {
-  switch (protection) {
-    case Protection::fence:
-      return "fence";
-    case Protection::locked_row:
-      return "locked row";
-    case Protection::expiry:
-      return "expiry";
-    case Protection::renewal:
-      return "renewal";
-    case Protection::owner_clock:
-      return "owner's clock";
-    case Protection::epoch:
-      return "epoch";
-    case Protection::durable_last:
-      return "durable last";
-    case Protection::watermarks:
-      return "watermarks";
-    case Protection::resumed:
-      return "resumed";
-    case Protection::head_epoch:
-      return "head epoch";
-  }
-  return "";
-}
 
 }  // namespace runstone::test

@@ -18,6 +18,12 @@
 
 namespace runstone::test {
 
+struct ServersOptions {
+  std::optional<Protection> without = std::nullopt;
+  bool owner_pauses = false;  // half of the faults: the owner stands still
+  bool tells = false;  // what happens to the servers is written to standard output, a line each
+};
+
 class ServersSimulation {
  public:
   /// How often each fault was made, and how many edits and chunks the final checks compared.
@@ -29,11 +35,9 @@ class ServersSimulation {
     std::uint64_t edits = 0, chunks = 0, rejected = 0, unexplained = 0;
   };
 
-  /// Adds to `counts` what it does. `tells`: what happens to the servers is written to standard
-  /// output, a line each.
-  ServersSimulation(std::uint64_t seed, Counts& counts,
-                    std::optional<Protection> without = std::nullopt, bool tells = false)
-      : tells_(tells), counts_(counts), rng_(seed), database_(time_, without) {
+  /// Adds to `counts` what it does.
+  ServersSimulation(std::uint64_t seed, Counts& counts, const ServersOptions& options = {})
+      : options_(options), counts_(counts), rng_(seed), database_(time_, options.without) {
     meta_.chunk_edge = kSimEdge;
     for (unsigned i = 0; i < kServers; ++i) {
       const std::string address = "server" + std::to_string(i) + ":4747";
@@ -104,7 +108,7 @@ class ServersSimulation {
   }
 
   void tell(const std::string& what) const {
-    if (!tells_) return;
+    if (!options_.tells) return;
     std::cout << std::fixed << std::setprecision(3) << static_cast<double>(time_.now()) / 1e6 << ' '
               << what << std::endl;
   }
@@ -154,6 +158,11 @@ class ServersSimulation {
     return server.listens() ? server.accept(player_faults_, std::move(client)) : nullptr;
   }
   SimProcess& any_server() { return *servers_[rng_.below(kServers)]; }
+  /// Returns any server if nobody owns the world.
+  SimProcess& owner() {
+    const auto found = std::ranges::find_if(servers_, [](const auto& s) { return s->is_owner(); });
+    return found == servers_.end() ? any_server() : **found;
+  }
 
   void act() {
     const std::uint64_t what = rng_.below(1000);
@@ -165,23 +174,27 @@ class ServersSimulation {
                           static_cast<std::uint8_t>(1 + rng_.below(2)),
                           static_cast<std::uint8_t>(rng_.below(2))});
     }
-    if (what < 45) return harm(any_server());
+    if (what < 45)
+      return options_.owner_pauses && rng_.below(2) == 0 ? pause(owner()) : harm(any_server());
     client.edit(random_edit_near(rng_, {-8, -8, -8}, Extent::cube(kSimEdge)));
   }
+  void heal_later(TimeUs longest_us, std::function<void()> heal) {
+    time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
+  }
+  void pause(SimProcess& server) {
+    if (server.is_paused()) return;
+    ++counts_.pauses;
+    server.pause();
+    heal_later(12'000'000, [&server] { server.resume(); });
+  }
   void harm(SimProcess& server) {
-    const auto heal_later = [this](TimeUs longest_us, std::function<void()> heal) {
-      time_.after(rng_.between(100'000, static_cast<std::int32_t>(longest_us)), std::move(heal));
-    };
     switch (rng_.below(10)) {
       case 0:
         if (!server.running()) return;
         ++counts_.kills;
         return server.kill();
       case 1:
-        if (server.is_paused()) return;
-        ++counts_.pauses;
-        server.pause();
-        return heal_later(12'000'000, [&server] { server.resume(); });
+        return pause(server);
       case 2:
         ++counts_.stops;
         return server.stop();
@@ -264,7 +277,7 @@ class ServersSimulation {
     return text;
   }
 
-  const bool tells_;
+  const ServersOptions options_;
   Counts& counts_;
   VirtualTime time_;
   SplitMix64 rng_;
