@@ -49,7 +49,7 @@ KeyMap keys_of(const ClientSettings& settings) {
   return out;
 }
 
-PlayConfig config_of(const ClientOptions& options, const Script* script, bool is_watched) {
+PlayConfig play_config(const ClientOptions& options, const Script* script, bool is_watched) {
   PlayConfig out;
   out.wishes = {options.memory_mib != 0 ? options.memory_mib : automatic_memory_mib(),
                 {options.view_radius, options.view_radius_v},
@@ -73,7 +73,7 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       window_(display.window.get()),
       menu_(menu),
       play_(session_, display.tools, display.draw_thread.get(), log_,
-            config_of(options_, script, window_ != nullptr), [this] { wake_.notify(); }),
+            play_config(options_, script, window_ != nullptr), [this] { wake_.notify(); }),
       pipeline_(play_.pipeline()),
       chat_(play_.chat(), terminal_of(script)),
       hud_(play_, options_.name, options_.settings.interface_scale),

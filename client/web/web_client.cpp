@@ -35,7 +35,7 @@ KeyMap browser_keys() {
   return keys;
 }
 
-PlayConfig config_of(const JoinOptions& options) {
+PlayConfig play_config(const JoinOptions& options) {
   PlayConfig out;
   out.wishes = {
       options.memory_mib, {options.view_radius, options.view_radius_v}, options.far_levels};
@@ -50,7 +50,7 @@ WebClient::WebClient(const JoinOptions& options, Screen& screen)
     : screen_(screen),
       network_(options),
       session_(network_.session()),
-      play_(session_, tools_, &queue_, log_, config_of(options)),
+      play_(session_, tools_, &queue_, log_, play_config(options)),
       pipeline_(play_.pipeline()),
       windows_(play_.input().keys()),
       hud_(play_),
