@@ -56,9 +56,9 @@ void list_grants(const CommandCall& call) {
 Result<CreateInviteCommand, std::string> parse_invite(WordReader& reader) {
   constexpr const char* kOptions = "role ROLE, uses N, days N, for DURATION or cancel ID";
   constexpr std::int64_t kDaysMax = 3650;
-  constexpr TimeUs kDayUs = TimeUs{24} * 3600 * 1'000'000;
+  constexpr TimeUs kOneDayUs = TimeUs{24} * 3600 * 1'000'000;
   CreateInviteCommand command;
-  command.until_us = reader.now_us() + 7 * kDayUs;
+  command.until_us = reader.now_us() + 7 * kOneDayUs;
   while (!reader.at_end()) {
     std::string option = reader.take("invite", kOptions);
     if (option.starts_with("--")) option.erase(0, 2);
@@ -67,7 +67,7 @@ Result<CreateInviteCommand, std::string> parse_invite(WordReader& reader) {
     } else if (option == "uses") {
       command.uses = static_cast<std::uint32_t>(reader.number("invite uses", 1, kInviteUsesMax));
     } else if (option == "days") {
-      command.until_us = reader.now_us() + reader.number("invite days", 1, kDaysMax) * kDayUs;
+      command.until_us = reader.now_us() + reader.number("invite days", 1, kDaysMax) * kOneDayUs;
     } else if (option == "for") {
       command.until_us = reader.end_of_duration("invite for");
     } else {

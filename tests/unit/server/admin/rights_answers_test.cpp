@@ -51,8 +51,10 @@ struct RightsBench : RollbackBench {
     const std::string number = std::to_string(who);
     return "player" + number + " #" + number + " " + key_fingerprint(key_of(who));
   }
-  std::string role_of(std::uint8_t who) { return bench.server.rights().role_of(key_of(who)).name; }
-  Sequence head() { return bench.server.head(); }
+  std::string role_of(std::uint8_t who) {
+    return bench.server.rights().state().role_of(key_of(who)).name;
+  }
+  Sequence head() { return bench.server.order().head(); }
   static std::string record(Sequence seq) { return " (record " + std::to_string(seq) + ")"; }
 
   TimeUs set_back_us = 0;  // of the system's clock, after the world was started
@@ -111,14 +113,14 @@ TEST_CASE("control sets a password that the console and players cannot type", "[
         "players without a granted role join with the password and get the role visitor; others "
         "still join as builder (role default nobody keeps them out)" +
             bench.record(2));
-  CHECK(bench.bench.server.rights().password().value == password);
+  CHECK(bench.bench.server.rights().state().password().value == password);
   bench.done("role default nobody");
   CHECK(bench.done(line) ==
         "players without a granted role join with the password and get the role visitor" +
             bench.record(4));
   CHECK(has(bench.done("password"), "gets the role visitor; record 4, "));
   CHECK(has(bench.player(1, "password clear").text, "the world has no password"));
-  CHECK_FALSE(bench.bench.server.rights().password().value.has_value());
+  CHECK_FALSE(bench.bench.server.rights().state().password().value.has_value());
   CHECK(bench.console("password clear").text == "The world has no password.");
 }
 
@@ -237,7 +239,7 @@ TEST_CASE("taking a record back waits until later ones are on disk", "[admin][ri
   bench.done("role set mason see");
   give_command({bench.services, {}, now, bench.reply()},
                "role set mason see,build");  // not on disk yet
-  REQUIRE(bench.bench.server.durable() < bench.head());
+  REQUIRE(bench.bench.server.order().durable() < bench.head());
   bench.answers.clear();
   give_command({bench.services, {}, now, bench.reply()}, "rights undo " + first);
   CHECK(bench.works.empty());
@@ -246,7 +248,7 @@ TEST_CASE("taking a record back waits until later ones are on disk", "[admin][ri
   bench.services.tick();
   bench.run_all();
   CHECK(bench.answer().is_ok);
-  CHECK(bench.bench.server.rights().grants().empty());
+  CHECK(bench.bench.server.rights().state().grants().empty());
 }
 
 }  // namespace runstone::test

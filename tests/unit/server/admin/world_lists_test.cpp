@@ -40,8 +40,8 @@ TEST_CASE("materials lists 1000 names and counts the others", "[admin]") {
 
 TEST_CASE("players lists builders, visitors and those who are here", "[admin]") {
   const std::vector<PlayerRow> stored = {{1, key_of(1), "ana"}, {2, key_of(2), "ben"}};
-  const std::vector<OnlinePlayer> present = {
-      {9, 2, "ben", key_of(2), {1.5, 64.0, -0.5}}, {10, 4, "dan", key_of(4), {0, 0, 0}}};
+  const std::vector<OnlinePlayer> present = {{9, 2, "ben", key_of(2), {1.5, 64.0, -0.5}},
+                                             {10, 4, "dan", key_of(4), {0, 0, 0}}};
   const std::vector<PlayerRow> visitors = {{3, key_of(3), "cleo"}};
   CHECK(player_list(stored, present, visitors) ==
         "ana #1 " + shown(key_of(1)) + "\nben #2 " + shown(key_of(2)) +

@@ -413,6 +413,7 @@ TEST_CASE("an edit that one owner refused and the next one ordered counts as ord
   CHECK(bench.world(0).order().resolved(author, 1) == 2);
   bench.world(0).cluster().hand_over({}, bench.now());
   bench.run();
+  bench.world(0).cluster().handover_written(bench.now());
   bench.cut(1);  // the answer is lost
   bench.servers[1].holds_from_owner = false;
   end_handover(bench, 1);
