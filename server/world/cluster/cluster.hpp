@@ -26,7 +26,7 @@ class Cluster {
     Joining& joining;
     EditRequests& edits;
     Presence& presence;
-    Chat& chat;
+    ChatRoom& chat;
   };
   Cluster(const World& world, const RandomBytes& random);
 

@@ -32,7 +32,8 @@ struct KnownServer {
 class Handover {
  public:
   Handover(const WorldConfig& config, WorldEnvironment& environment, Sessions& sessions,
-           Order& order, Commits& commits, Chat& chat, Followers& followers, Following& following)
+           Order& order, Commits& commits, ChatRoom& chat, Followers& followers,
+           Following& following)
       : config_(config),
         environment_(environment),
         sessions_(sessions),
@@ -74,7 +75,7 @@ class Handover {
   Sessions& sessions_;
   Order& order_;
   Commits& commits_;
-  Chat& chat_;
+  ChatRoom& chat_;
   Followers& followers_;
   Following& following_;
   std::uint64_t edits_here_ = 0;  // of players here, accepted since this server owns the world

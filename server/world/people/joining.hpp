@@ -7,7 +7,7 @@
 #include <string>
 
 #include "server/world/order/receipts.hpp"
-#include "server/world/people/chat.hpp"
+#include "server/world/people/chat_room.hpp"
 #include "server/world/people/credentials.hpp"
 #include "server/world/people/names.hpp"
 #include "server/world/people/presence.hpp"
@@ -34,7 +34,7 @@ class Joining {
     Changes& changes;
     Names& names;
     Presence& presence;
-    Chat& chat;
+    ChatRoom& chat;
   };
   Joining(const World& world, RandomBytes random);
 

@@ -40,7 +40,7 @@ class People {
   Joining& joining() { return joining_; }
   Names& names() { return names_; }
   Presence& presence() { return presence_; }
-  Chat& chat() { return chat_; }
+  ChatRoom& chat() { return chat_; }
   Commands& commands() { return commands_; }
   const Commands& commands() const { return commands_; }
   Previews& previews() { return previews_; }
@@ -67,7 +67,7 @@ class People {
   RandomBytes random_;
   Names names_;
   Presence presence_;
-  Chat chat_;
+  ChatRoom chat_;
   Commands commands_;
   Previews previews_;
   EditRequests edits_;

@@ -1,4 +1,4 @@
-// Chat: what players and the host write to everybody. The lines of a tick are one message,
+// ChatRoom: what players and the host write to everybody. The lines of a tick are one message,
 // which is encoded once. A session whose queue is full misses the message.
 // Thread: the world strand.
 #pragma once
@@ -18,10 +18,10 @@ inline constexpr TimeUs kChatRepeatUs = 10'000'000;
 /// A session gets so many lines that say why its own lines are not passed on.
 inline constexpr std::uint64_t kChatAnswersPerSecond = 1, kChatAnswerBurst = 3;
 
-class Chat {
+class ChatRoom {
  public:
-  Chat(const WorldConfig& config, const WorldStart& start, WorldEnvironment& environment,
-       Sessions& sessions, Order& order, Rights& rights);
+  ChatRoom(const WorldConfig& config, const WorldStart& start, WorldEnvironment& environment,
+           Sessions& sessions, Order& order, Rights& rights);
 
   /// Queues the line for everybody, or answers with the reason why it is not passed on. A session
   /// gets few such answers a second. Each refused line counts as more bytes read than it has.

@@ -1,5 +1,5 @@
 // Chat on the world strand: who may write, how much, who reads, and what a flood costs.
-#include "server/world/people/chat.hpp"
+#include "server/world/people/chat_room.hpp"
 
 #include "tests/unit/server/world/world_bench.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/core/hash.hpp"
-#include "server/world/people/chat.hpp"
+#include "server/world/people/chat_room.hpp"
 #include "tests/unit/server/world/world_bench.hpp"
 
 namespace runstone::test::chat_property_test {

@@ -1,4 +1,4 @@
-#include "server/world/people/chat.hpp"
+#include "server/world/people/chat_room.hpp"
 
 #include <fmt/format.h>
 
@@ -24,8 +24,8 @@ bool reads_chat(const Session& session) { return session.is_open() && session.ha
 
 }  // namespace
 
-Chat::Chat(const WorldConfig& config, const WorldStart& start, WorldEnvironment& environment,
-           Sessions& sessions, Order& order, Rights& rights)
+ChatRoom::ChatRoom(const WorldConfig& config, const WorldStart& start,
+                   WorldEnvironment& environment, Sessions& sessions, Order& order, Rights& rights)
     : config_(config),
       environment_(environment),
       sessions_(sessions),
@@ -40,7 +40,7 @@ Chat::Chat(const WorldConfig& config, const WorldStart& start, WorldEnvironment&
 }
 
 /// Returns the time of a line: that of the log, which a wrong clock does not set back.
-TimeUs Chat::time_of_line(const Clocks& now) {
+TimeUs ChatRoom::time_of_line(const Clocks& now) {
   LogClock& clock = order_.authority().log_clock();
   clock.advance(now);  // commits do it too, but the first one may come later
   return clock.time();
@@ -48,7 +48,7 @@ TimeUs Chat::time_of_line(const Clocks& now) {
 
 /// Returns how long the author must wait until the same line may come again: 0 if it may come now.
 /// Cost: O(kChatRecentMax + kChatLinesMax).
-TimeUs Chat::repeat_wait_us(AuthorId author, const std::string& text, TimeUs now_us) const {
+TimeUs ChatRoom::repeat_wait_us(AuthorId author, const std::string& text, TimeUs now_us) const {
   TimeUs wait_us = 0;
   const auto look_at = [&](const ChatLine& line) {
     const TimeUs age_us = now_us - line.utc_us;
@@ -62,7 +62,7 @@ TimeUs Chat::repeat_wait_us(AuthorId author, const std::string& text, TimeUs now
 
 /// Takes the price of a line from the budgets of the player, the address and the server. Returns
 /// the refusal, and takes nothing, if one of them is used up.
-std::optional<Chat::Refusal> Chat::pay(const Session& session, TimeUs now_us) {
+std::optional<ChatRoom::Refusal> ChatRoom::pay(const Session& session, TimeUs now_us) {
   if (const TimeUs wait_us = state_.all.wait_us(1, now_us); wait_us > 0)
     return Refusal{"too many players write at once" + again_in(wait_us), "too many at once"};
   const auto unpaid =
@@ -77,7 +77,7 @@ std::optional<Chat::Refusal> Chat::pay(const Session& session, TimeUs now_us) {
                  is_of_key ? "too fast" : "too fast from one address"};
 }
 
-void Chat::refuse(Session& session, const Refusal& refusal, const Clocks& now) {
+void ChatRoom::refuse(Session& session, const Refusal& refusal, const Clocks& now) {
   sessions_.charge_reading(session, kRefusedLineBytes);
   rights_.note_refusal(session.key, "chat: " + refusal.what, now.utc_us);
   TokenBucket& answers =
@@ -90,13 +90,13 @@ void Chat::refuse(Session& session, const Refusal& refusal, const Clocks& now) {
   sessions_.send_or_skip(session, encode_message(ChatLines{{std::move(line)}}));
 }
 
-void Chat::add(ChatLine line, const PublicKey& by) {
+void ChatRoom::add(ChatLine line, const PublicKey& by) {
   if (!order_.is_disk_full()) environment_.log_chat({line, by});  // the rest is for edits
   state_.waiting.push_back(std::move(line));
   if (state_.waiting.size() == kChatLinesMax) broadcast();
 }
 
-void Chat::on_line(Session& session, const ChatRequest& request, const Clocks& now) {
+void ChatRoom::on_line(Session& session, const ChatRequest& request, const Clocks& now) {
   auto text = chat_text(request.text);
   if (!text) return refuse(session, {text.error(), text.error()}, now);
   if (const auto why = rights_.chat_refusal(session.key)) return refuse(session, {*why, *why}, now);
@@ -108,19 +108,19 @@ void Chat::on_line(Session& session, const ChatRequest& request, const Clocks& n
   add({ChatLineKind::player, session.author, session.name, *std::move(text), utc_us}, session.key);
 }
 
-std::size_t Chat::say(const std::string& text, const PublicKey& by, const Clocks& now) {
+std::size_t ChatRoom::say(const std::string& text, const PublicKey& by, const Clocks& now) {
   add({ChatLineKind::server, 0, "", text, time_of_line(now)}, by);
   return static_cast<std::size_t>(std::ranges::count_if(
       sessions_.open(), [](const Session* session) { return reads_chat(*session); }));
 }
 
-void Chat::tell(const Session& session, const std::string& text, const Clocks& now) {
+void ChatRoom::tell(const Session& session, const std::string& text, const Clocks& now) {
   if (!reads_chat(session)) return;
   const ChatLine line{ChatLineKind::server, 0, "", text, time_of_line(now)};
   sessions_.send_or_skip(session, encode_message(ChatLines{{line}}));
 }
 
-void Chat::send_recent(const Session& session, const Clocks& now) {
+void ChatRoom::send_recent(const Session& session, const Clocks& now) {
   if (!reads_chat(session)) return;
   ChatLines recent{{state_.recent.begin(), state_.recent.end()}};
   const std::string& today = config_.message_of_the_day;
@@ -129,7 +129,7 @@ void Chat::send_recent(const Session& session, const Clocks& now) {
   if (!recent.lines.empty()) sessions_.send_or_skip(session, encode_message(recent));
 }
 
-void Chat::broadcast() {
+void ChatRoom::broadcast() {
   if (state_.waiting.empty()) return;
   const ChatLines lines{std::exchange(state_.waiting, {})};
   std::vector<SessionId> readers;
