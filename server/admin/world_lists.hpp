@@ -7,8 +7,8 @@
 
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/world/environment/chat_entry.hpp"
 #include "server/world/cluster/handover.hpp"
+#include "server/world/environment/chat_entry.hpp"
 #include "server/world/environment/player_rows.hpp"
 #include "server/world/world_server.hpp"
 

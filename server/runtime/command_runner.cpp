@@ -105,15 +105,18 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
                         const std::string& text) {
   // A command may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, author, key, text] {
-    if (world_.cluster().is_following()) return world_.people().commands().answer(session, {kGiveThere}, true, false);
-    const CommandCaller caller{
-        author, {key, operators_.contains(key)}, world_.people().commands().restore_preview_view(session)};
+    if (world_.cluster().is_following())
+      return world_.people().commands().answer(session, {kGiveThere}, true, false);
+    const CommandCaller caller{author,
+                               {key, operators_.contains(key)},
+                               world_.people().commands().restore_preview_view(session)};
     if (caller.actor.is_operator || has_power(world_.rights().state().role_of(key).rights))
       logger("app").info("command author={} key={} command=\"{}\"", author, key_fingerprint(key),
                          logged_command(text));
     const auto reply = [this, session](const CommandAnswer& answer) {
       if (answer.restore) world_.people().commands().show_restore(session, *answer.restore);
-      world_.people().commands().answer(session, answer_lines(answer.text), answer.is_done, answer.is_ok);
+      world_.people().commands().answer(session, answer_lines(answer.text), answer.is_done,
+                                        answer.is_ok);
     };
     give_command({services_, caller, read_clocks(), reply}, text);
     tick(read_clocks());

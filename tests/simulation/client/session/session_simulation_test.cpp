@@ -194,7 +194,8 @@ class Simulation {
 
   bool at_rest() {
     server_.log_full = false;
-    if (!server_.running() || server_.world().order().durable() != server_.world().order().head()) return false;
+    if (!server_.running() || server_.world().order().durable() != server_.world().order().head())
+      return false;
     return std::all_of(clients_.begin(), clients_.end(),
                        [](const auto& c) { return c->is_idle(); });
   }

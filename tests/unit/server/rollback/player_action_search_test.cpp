@@ -37,8 +37,9 @@ TEST_CASE("an undo skips sixteen edits with nothing left, and reports if there a
 TEST_CASE("an undo reads the log once for all edits that it considers", "[rollback][undo]") {
   BuiltOver bench(16);
   std::size_t calls = 0;
-  const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                                        bench.bench.server.order().durable(), [&] { return ++calls > 0; });
+  const auto found =
+      next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
+                         bench.bench.server.order().durable(), [&] { return ++calls > 0; });
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
@@ -51,9 +52,9 @@ TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
   BuiltOver bench(16);
   for (std::size_t allowed = 0; allowed < 16 + 31 + 16; ++allowed) {
     std::size_t calls = 0;
-    const auto found =
-        next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                           bench.bench.server.order().durable(), [&] { return ++calls <= allowed; });
+    const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
+                                          bench.bench.server.order().durable(),
+                                          [&] { return ++calls <= allowed; });
     REQUIRE_FALSE(found.has_value());
     CHECK(found.error().kind == StoreError::Kind::cancelled);
     CHECK(calls == allowed + 1);
