@@ -11,7 +11,7 @@
 // while it owns the world, hands it over, or takes it over. The lease alone keeps two servers from
 // writing. A server whose lease may have run out still owns the world here, and orders nothing
 // meanwhile (WorldEnvironment::owns_world()). How a server is connected with the owner is no part
-// of this state (Following::Link), and neither is whether the server stops.
+// of this state (OwnerLink), and neither is whether the server stops.
 // Threads: state() any.
 // Transitions are made one at a time: on the world strand, or by the caller of a takeover or
 // handover while the strand makes none.
