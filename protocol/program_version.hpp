@@ -1,4 +1,4 @@
-// What the programs that speak the protocol print for --version.
+// Program version: the text that the programs that speak the protocol print for --version.
 #pragma once
 #include <string>
 #include <string_view>

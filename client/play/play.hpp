@@ -62,7 +62,7 @@ struct PlaySettings {
   bool shares_previews = true;  // others see what this player is about to do
 };
 
-/// What a frame shows, and its size in pixels.
+/// The contents of a frame, and its size in pixels.
 struct FrameChoice {
   std::optional<double> field_of_view;             // as FrameScene::camera()
   bool outlines_aim = true, shows_ground = false;  // as FrameScene::contents()

@@ -72,9 +72,10 @@ class ClientSession {
   /// Queues a goodbye. wants_close() returns true afterwards.
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
-  /// Shows an edit and offers it to the server. `submitted_us`: the click or the scheduled time; latency is measured
-  /// from there. `action` is as in LocalEdits::add(): the edits of an action are undone as one.
-  /// Fails as Replica::predict() does, and with limit_exceeded if edit_wait_us() is not 0.
+  /// Shows an edit and offers it to the server. `submitted_us`: the click or the scheduled time;
+  /// latency is measured from there. `action` is as in LocalEdits::add(): the edits of an action
+  /// are undone as one. Fails as Replica::predict() does, and with limit_exceeded if edit_wait_us()
+  /// is not 0.
   Result<ClientSequence> offer(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
                                ClientSequence action = 0);
   /// Returns why offer() has refused this edit with this error, for the player. If the player may

@@ -35,7 +35,7 @@ KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std
   return sources;
 }
 
-/// What a worker finds out about the players that a command means.
+/// The facts that a worker finds out about the players that a command means.
 struct PlayerLookUp {
   KnownPlayers players;
   std::vector<PublicKey> keys;

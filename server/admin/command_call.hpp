@@ -36,7 +36,7 @@ bool has_right(const CommandCaller& caller, const RightsState& state, Right righ
 std::optional<std::string> why_not(const CommandCaller& caller, const RightsState& state,
                                    const CommandRule& rule, TimeUs now_us);
 
-/// What commands work on. The references must outlive the object.
+/// The services on which commands work. The references must outlive the object.
 struct CommandServices {
   WorldServer& world;
   RollbackService& rollback;

@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-/// What `why` asks: whether a player has a right, and which record decides it.
+/// The question of `why`: has a player a right, and which record decides it?
 struct WhyCommand {
   std::string player;
   Right right{};

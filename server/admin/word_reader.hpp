@@ -100,7 +100,7 @@ class WordReader {
   std::string error_;
 };
 
-/// What a word for a player may be.
+/// The forms of a word for a player.
 inline constexpr const char* kPlayerWord = "a name, # and a number, a key or a fingerprint";
 /// Returns the names of all rights: "see, build, ...".
 std::string all_right_names();

@@ -25,16 +25,16 @@ namespace {
 constexpr std::size_t kReadBytes = 4 * 1024;
 // Counted for each message that waits, in addition to its bytes.
 constexpr std::size_t kMessageBytes = 64;
-// Counted as read for each message of the world strand, in addition to its bytes: decoding a byte of
-// a large paste takes 13 ns, and a message takes at least 7 us.
+// Counted as read for each message of the world strand, in addition to its bytes: decoding a byte
+// of a large paste takes 13 ns, and a message takes at least 7 us.
 constexpr std::size_t kMessageReadBytes = 512;
-// Counted as read for a ReceiveAck, which the world strand never sees, in addition to its bytes. On a fast link a regular client
-// sends a thousand of them a second (kReceiveAckUsMin).
+// Counted as read for a ReceiveAck, which the world strand never sees, in addition to its bytes. On
+// a fast link a regular client sends a thousand of them a second (kReceiveAckUsMin).
 constexpr std::size_t kAckReadBytes = 256;
 // A client that has broken a rule, has said goodbye or was refused before it authenticated is being
-// closed. At most so many of its further bytes are read and dropped, because decrypting the rest of a
-// flood would cost more than the flood did. The connection stays open for the linger time, so that the
-// client can read the goodbye.
+// closed. At most so many of its further bytes are read and dropped, because decrypting the rest of
+// a flood would cost more than the flood did. The connection stays open for the linger time, so
+// that the client can read the goodbye.
 constexpr std::size_t kDroppedBytesMax = 64 * 1024;
 // Room for a chunk fragment that must be sent although the socket has none.
 constexpr std::size_t kStarvedRoomBytes = 2 * 1024;

@@ -21,7 +21,8 @@ template <class T>
 struct AnswerType<Result<T, std::string>> {
   using type = Result<T, std::string>;
 };
-/// What the thread that asks gets: an answer of the type T, or a line that says why there is none.
+/// The result for the thread that asks: an answer of the type T, or a line that says why there is
+/// none.
 template <class T>
 using AnswerOf = typename AnswerType<T>::type;
 
@@ -44,8 +45,8 @@ class StrandQuestion {
     answered_.notify_one();
     return true;
   }
-  /// Waits for the answer, and for a run of the question that is under way. Returns nullopt if there is
-  /// no answer within `longest`. The question does not run any more then.
+  /// Waits for the answer, and for a run of the question that is under way. Returns nullopt if
+  /// there is no answer within `longest`. The question does not run any more then.
   Answer wait(std::chrono::milliseconds longest) {
     const auto is_here = [this] { return answer_.has_value(); };
     std::unique_lock lock(mutex_);

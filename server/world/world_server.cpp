@@ -165,6 +165,14 @@ void WorldServer::handle(Session& session, Message&& message, const Clocks& now)
       message);
 }
 
+void WorldServer::authenticate(Session& session, const ClientAuth& auth, const Clocks& now) {
+  Joining& joining = rooms_->people.joining();
+  if (!joining.proves_key(session, auth)) return;
+  if (joining.is_server(session)) return rooms_->cluster.admit_follower(session, now);
+  if (rooms_->cluster.is_following()) return rooms_->cluster.join_at_owner(session, auth);
+  joining.let_in(session, {auth.ticket, auth.password_key}, now);
+}
+
 void WorldServer::received(SessionId from, Message&& message, const Clocks& now) {
   Cluster& cluster = rooms_->cluster;
   Joining& joining = rooms_->people.joining();
@@ -185,15 +193,7 @@ void WorldServer::received(SessionId from, Message&& message, const Clocks& now)
   } else if (const auto* hello = std::get_if<Hello>(&message)) {
     joining.on_hello(*session, *hello);
   } else if (const auto* auth = std::get_if<ClientAuth>(&message)) {
-    if (!joining.proves_key(*session, *auth)) {
-      // It is closed.
-    } else if (joining.is_server(*session)) {
-      cluster.admit_follower(*session, now);
-    } else if (cluster.is_following()) {
-      cluster.join_at_owner(*session, *auth);
-    } else {
-      joining.let_in(*session, {auth->ticket, auth->password_key}, now);
-    }
+    authenticate(*session, *auth, now);
   } else if (const auto* request = std::get_if<KeyRequest>(&message)) {
     joining.on_key_request(*session, *request, now);
   } else if (const auto* deposit = std::get_if<KeyDeposit>(&message)) {

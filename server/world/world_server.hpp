@@ -103,6 +103,7 @@ class WorldServer {
   /// Removes the sessions that were closed.
   void remove_closed();
   void step_checkpointer(const Clocks& now);
+  void authenticate(Session& session, const ClientAuth& auth, const Clocks& now);
   void handle(Session& session, Message&& message, const Clocks& now);
 
   std::unique_ptr<Rooms> rooms_;

@@ -14,7 +14,7 @@ namespace runstone {
 
 class Cluster {
  public:
-  /// What the cluster needs of the world. All must outlive the object.
+  /// The parts of the world that the cluster uses. All must outlive the object.
   struct World {
     const WorldConfig& config;
     WorldEnvironment& environment;
@@ -30,7 +30,7 @@ class Cluster {
   };
   Cluster(const World& world, const RandomBytes& random);
 
-  // What this server is.
+  // The part of this server in its world.
   bool is_following() const { return world_.order.is_following(); }
   /// Returns true if this server is the owner, and no other one can be it.
   bool owns_world() const { return world_.order.owns_world(); }

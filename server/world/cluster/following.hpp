@@ -37,7 +37,7 @@ struct ReadLog {
   Sequence last = 0;                // of the log
 };
 
-/// What a server needs to become the owner of the world that it has followed.
+/// The facts with which a server becomes the owner of the world that it has followed.
 struct Takeover {
   Epoch epoch = 1;  // raised
   ReadLog read;     // from the last record of this server on, to the end of the log
@@ -47,7 +47,7 @@ struct Takeover {
 
 class Following {
  public:
-  /// What following needs of the world. All must outlive the object.
+  /// The parts of the world that following uses. All must outlive the object.
   struct World {
     const WorldConfig& config;
     WorldEnvironment& environment;

@@ -15,7 +15,7 @@
 
 namespace runstone {
 
-/// What becomes of a message of a player at a server that follows.
+/// The fate of a message of a player at a server that follows.
 enum class PassedOn {
   no,    // the message is for this server
   yes,   // it is dealt with: sent, dropped, or answered

@@ -18,7 +18,7 @@ struct SnapshotPolicy {
   std::size_t stack_bytes_max = 64ULL << 20;
 };
 
-/// What WorldMemory may reach (server/world/order/world_memory.hpp).
+/// Bounds of WorldMemory (server/world/order/world_memory.hpp).
 struct MemoryLimits {
   std::size_t idle_bytes_max = 448ULL << 20;
   std::size_t view_bytes_max = 480ULL << 20;

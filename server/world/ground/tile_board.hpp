@@ -49,7 +49,6 @@ class TileBoard {
   const TileResends& resends() const { return resends_; }
   /// Returns the sessions that have a tile, or null if none has it.
   TileReceivers* receivers(const ChunkKey& key) { return receivers_.find(key); }
-  bool has_receivers(const ChunkKey& key) const { return receivers_.contains(key); }
   void add_receiver(const ChunkKey& key, SessionId session);
   /// Forgets tiles that a session does not wait for and does not have any more.
   void leave(SessionId session, std::span<const ChunkKey> keys);

@@ -13,7 +13,7 @@
 
 namespace runstone {
 
-/// What is due to a session (chunk_sending.hpp).
+/// Messages that are due to a session (chunk_sending.hpp).
 struct ChunksDue {
   CacheClaims claims;
   std::vector<UnmodifiedChunk> not_modified;  // subscribed, and not answered yet
@@ -68,7 +68,7 @@ struct ViewDue {
   bool has_skipped_too_many = false;  // there were more
 };
 
-/// What a session knows of rights (ground_rules.hpp).
+/// Rights and protected boxes of which a session knows (ground_rules.hpp).
 struct GroundSent {
   std::optional<Permissions> permissions;  // sent last
   bool are_permissions_due = false;

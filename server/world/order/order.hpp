@@ -57,7 +57,7 @@ class Order {
   /// Returns the materials in force.
   const MaterialTable& materials() const { return materials_; }
 
-  // What is ordered.
+  // Edits.
   Epoch epoch() const { return authority_.epoch(); }
   Sequence head() const { return authority_.head(); }
   /// Returns the last record that this server has.

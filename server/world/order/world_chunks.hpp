@@ -96,7 +96,6 @@ class WorldChunks {
   std::size_t resident_bytes() const { return resident_bytes_; }
   /// Returns the bytes of the edits on all stacks, and of the stacks.
   std::size_t stack_bytes() const { return stack_bytes_; }
-  std::size_t quarantined_count() const { return quarantined_.size(); }
 
  private:
   struct Entry {

@@ -22,7 +22,7 @@ inline constexpr Budget kJoinBudget{1, 60};
 inline constexpr const char* kTooManyGuesses =
     "too many wrong passwords or codes came from your network: wait a minute";
 
-/// What a player may bring to join.
+/// The proofs that a player may bring to join.
 struct JoinCredentials {
   std::string ticket;  // of an invite, or empty
   std::optional<PasswordKey> password_key;

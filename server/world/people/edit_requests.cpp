@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "protocol/rules/edit_check.hpp"
 #include "protocol/rules/edit_price.hpp"
+#include "server/world/people/reach.hpp"
 
 namespace runstone {
 namespace {
@@ -59,11 +59,8 @@ std::optional<EditRequests::Refusal> EditRequests::check_bytes(const Attempt& at
 }
 
 std::optional<EditRequests::Refusal> EditRequests::check_reach(const Attempt& attempt) {
-  if (config_.reach_max == 0) return std::nullopt;
-  Session& session = attempt.session;
-  const WorldPos& from =
-      session.position.follow(session.pose.at, config_.speed_max, attempt.now.steady_us);
-  if (within_reach(attempt.request.edit, from, config_.reach_max)) return std::nullopt;
+  if (is_within_reach(config_, attempt.session, attempt.request.edit, attempt.now))
+    return std::nullopt;
   return Refusal{RejectReason::out_of_reach};
 }
 

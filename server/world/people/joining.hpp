@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kFeaturesOfOwner =
 
 class Joining {
  public:
-  /// What joining needs of the world. All must outlive the object.
+  /// The parts of the world that joining uses. All must outlive the object.
   struct World {
     const WorldConfig& config;
     WorldEnvironment& environment;

@@ -22,7 +22,7 @@ struct OnlinePlayer {
 
 class People {
  public:
-  /// What people need of the world. All must outlive the object.
+  /// The parts of the world that people use. All must outlive the object.
   struct World {
     const WorldConfig& config;
     WorldEnvironment& environment;

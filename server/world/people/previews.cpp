@@ -7,6 +7,7 @@
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/rules/edit_check.hpp"
+#include "server/world/people/reach.hpp"
 
 namespace runstone {
 namespace {
@@ -18,11 +19,8 @@ constexpr std::size_t kDroppedPreviewBytes = 4'096;
 
 /// Returns true if the edit could be ordered as far as its geometry and its materials say.
 bool Previews::is_possible(Session& session, const EditDescriptor& edit, const Clocks& now) const {
-  if (!is_light_preview(edit, config_.chunk_edge)) return false;
-  if (order_.authority().check(edit)) return false;
-  if (config_.reach_max == 0) return true;
-  const WorldPos& from = session.position.follow(session.pose.at, config_.speed_max, now.steady_us);
-  return within_reach(edit, from, config_.reach_max);
+  return is_light_preview(edit, config_.chunk_edge) && !order_.authority().check(edit) &&
+         is_within_reach(config_, session, edit, now);
 }
 
 bool Previews::reads_previews(const Session& other, const Session& sender) const {

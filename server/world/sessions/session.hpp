@@ -17,7 +17,7 @@ namespace runstone {
 struct Session {
   SessionId id = 0;
   SessionStage stage = SessionStage::greeting;
-  /// It gets nothing any more, and is removed at the end of the task (Sessions::close()).
+  /// The session gets nothing any more, and is removed at the end of the task (Sessions::close()).
   bool is_closed = false;
   /// The player has proved the key. The session opens when the claim of its name is on disk, or
   /// when the owner of the world lets the player in.

@@ -1,7 +1,7 @@
-// ModelDatabase: PostgreSQL as the servers of a world use it: the tables of a world, transactions that
-// write them, and the row of the lease (server/store/postgres_lease.hpp). Everything that is committed
-// stays. It throws SimFault when the log becomes one that could never be replayed, or is written by a
-// server that has lost the lease.
+// ModelDatabase: PostgreSQL as the servers of a world use it: the tables of a world, transactions
+// that write them, and the row of the lease (server/store/postgres_lease.hpp). Everything that is
+// committed stays. It throws SimFault when the log becomes one that could never be replayed, or is
+// written by a server that has lost the lease.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -65,8 +65,8 @@ class ModelDatabase {
   /// Returns true if nobody but the owner of this term can write.
   bool holds(LeaseTerm term) const { return term == lease_.term && owner().has_value(); }
 
-  // Transactions. A program has one at a time. It confirms the lease when it has written, just before
-  // it commits.
+  // Transactions. A program has one at a time. It confirms the lease when it has written, just
+  // before it commits.
   using Transaction = std::uint64_t;
   Transaction begin() {
     open_.insert(++transactions_);

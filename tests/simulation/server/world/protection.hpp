@@ -1,5 +1,5 @@
-// Protection: what keeps the servers of one world from harming it. A simulation can do without one of
-// them, to show that it would notice.
+// Protection: what keeps the servers of one world from harming it. A simulation can do without one
+// of them, to show that it would notice.
 #pragma once
 
 namespace runstone::test {

@@ -1,8 +1,8 @@
 // ServersSimulation: three servers of one world, their database and players at each of them, in
 // virtual time. Servers are killed, stand still for longer than their lease, are stopped by their
-// operators, hand the world over, and are cut off from each other and from the database; the database
-// ends all connections, or its disk is full; clocks of machines jump. Afterwards the log must have each
-// durable edit once, and all servers and replicas must agree.
+// operators, hand the world over, and are cut off from each other and from the database; the
+// database ends all connections, or its disk is full; clocks of machines jump. Afterwards the log
+// must have each durable edit once, and all servers and replicas must agree.
 #pragma once
 #include <iomanip>
 #include <iostream>
@@ -54,8 +54,8 @@ class ServersSimulation {
     time_.run_until(time_.now() + 3'000'000);
   }
 
-  /// Performs `steps` random actions, heals everything, and waits until nothing is in flight. Throws
-  /// SimFault if the log is harmed, or if the world does not come to rest.
+  /// Performs `steps` random actions, heals everything, and waits until nothing is in flight.
+  /// Throws SimFault if the log is harmed, or if the world does not come to rest.
   void run(std::uint64_t steps) {
     for (std::uint64_t step = 0; step < steps; ++step) {
       time_.run_until(time_.now() + rng_.between(1'000, 120'000));
@@ -132,8 +132,8 @@ class ServersSimulation {
       throw SimFault("nothing fails any more, and edits of the players are not in the log");
   }
 
-  /// Checks that the log has each edit whose answer its client has missed, or that a server has rejected
-  /// it.
+  /// Checks that the log has each edit whose answer its client has missed, or that a server has
+  /// rejected it.
   void check_unseen(FinalCheck& r) const {
     for (const auto& client : clients_) {
       const AuthorId author = client->session().author();

@@ -1,5 +1,5 @@
-// Several servers of one world, with faults of every kind (servers_simulation.hpp). Each protection is
-// removed once: the simulation must find the harm.
+// Several servers of one world, with faults of every kind (servers_simulation.hpp). Each protection
+// is removed once: the simulation must find the harm.
 #include <catch2/catch.hpp>
 
 #include "tests/simulation/server/world/servers_simulation.hpp"
@@ -19,7 +19,8 @@ std::string violation(ServersSimulation& simulation, std::uint64_t steps = kStep
   }
 }
 
-/// Returns true if a violation is one of the log or of a replica. A world that stands still is none.
+/// Returns true if a violation is one of the log or of a replica. A world that stands still is
+/// none.
 bool is_harm(const std::string& found) {
   return !found.empty() && found.find("does not come to rest") == std::string::npos;
 }
@@ -67,8 +68,9 @@ TEST_CASE("servers of one world agree after a million steps", "[.long]") {
 }
 
 #ifndef RUNSTONE_SANITIZED  // it says something of the simulation, and not of the code under test
-// A case of its own for each protection, so that each has its own time limit. Without the locked row there
-// is harm only if the owner stands still between two moments of a transaction, so it does that more often.
+// A case of its own for each protection, so that each has its own time limit. Without the locked
+// row there is harm only if the owner stands still between two moments of a transaction, so it does
+// that more often.
 TEMPLATE_TEST_CASE_SIG("without a protection, a simulation finds the harm", "[simulation][servers]",
                        ((Protection kWithout), kWithout), Protection::fence, Protection::locked_row,
                        Protection::expiry, Protection::renewal, Protection::owner_clock,

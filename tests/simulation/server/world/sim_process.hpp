@@ -1,7 +1,7 @@
 // SimProcess: a server program of a world that several servers share, in virtual time. It owns the
 // world or follows the owner, as server/app/standby.hpp and server/runtime/server_core.hpp do with
-// threads and sockets. WorldServer, the reading at a start, and the preparation of a takeover are the
-// real ones. A program can be killed, stand still, and be cut off from the database.
+// threads and sockets. WorldServer, the reading at a start, and the preparation of a takeover are
+// the real ones. A program can be killed, stand still, and be cut off from the database.
 #pragma once
 #include <deque>
 #include <functional>
@@ -63,8 +63,8 @@ class SimProcess final : public SimServer {
       finish_stop_later();
     });
   }
-  /// An owner lets the server with the most players take the world over, and follows it. Returns false if
-  /// it cannot.
+  /// An owner lets the server with the most players take the world over, and follows it. Returns
+  /// false if it cannot.
   bool hand_over() {
     if (role_ != Role::owner || is_stopping_ || is_paused_) return false;
     if (world_->cluster().handover_refusal(std::nullopt)) return false;
@@ -169,7 +169,8 @@ class SimProcess final : public SimServer {
     later(pause, pause, [this, term] {
       if (term_ != term) return;  // it was given up
       if (is_database_cut) return renew_later(term, kLeaseUs / 20);
-      // The database gets the request, and sends its answer, whether this program stands still or not.
+      // The database gets the request, and sends its answer, whether this program stands still or
+      // not.
       time_.after(rng_.between(100, 3'000), [this, term, life = life_, asked_us = time_.now()] {
         if (life != life_ || term_ != term) return;
         const bool is_renewed = database_.renew(term, kLeaseUs);
@@ -443,8 +444,8 @@ class SimProcess final : public SimServer {
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
     if (role_ == Role::handing_over || role_ == Role::following)
       throw SimFault("a server that does not own the world orders edits");
-    // A program that goes on after it stood still first orders the edits that it had accepted. Later
-    // it may order an edit only while it has the lease.
+    // A program that goes on after it stood still first orders the edits that it had accepted.
+    // Later it may order an edit only while it has the lease.
     const bool ran_on = time_.now() - resumed_us_ > kRunsForUs;
     if (!records.empty() && ran_on && !database_.holds(*term_))
       throw SimFault("a server orders edits when its lease may have run out");
