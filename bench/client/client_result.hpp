@@ -23,9 +23,9 @@ struct BurstRow {
   std::size_t frames_min = 0, frames_max = 0;     // until all edits of a burst were presented
   std::size_t carried_max = 0;                    // uploads that a frame left for later ones
   double still_ms = 0;                            // the median frame without a burst
-  /// The slowest of the frames of a burst and of those after it until light and shadows are settled,
-  /// all its work included, and the slowest of about as many frames without a burst. Medians over
-  /// the bursts.
+  /// The slowest of the frames of a burst and of those after it until light and shadows are
+  /// settled, all its work included, and the slowest of about as many frames without a burst.
+  /// Medians over the bursts.
   double slowest_ms = 0, still_slowest_ms = 0;
 };
 

@@ -12,7 +12,8 @@ enum class Ground {
 };
 
 /// Makes a world with so many protected boxes. Returns the microseconds of `decisions` decisions
-/// about voxels at random places among them, one sample a repetition. Half of the players own boxes.
+/// about voxels at random places among them, one sample a repetition. Half of the players own
+/// boxes.
 std::vector<double> time_rights(Ground ground, std::size_t boxes, std::size_t decisions,
                                 unsigned repetitions);
 

@@ -22,8 +22,8 @@ struct StoreBench {
   std::vector<StoreCommits> batches;
 };
 
-/// Makes a world in a folder that it removes afterwards, and one in the database options.postgres, in a
-/// schema that it removes as well. Both wait for the disk as a server does.
+/// Makes a world in a folder that it removes afterwards, and one in the database options.postgres,
+/// in a schema that it removes as well. Both wait for the disk as a server does.
 Result<StoreBench, std::string> run_store_bench(const BenchOptions& options,
                                                 std::ostream& progress);
 

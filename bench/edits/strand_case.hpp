@@ -15,10 +15,11 @@ struct StrandTiming {
   std::vector<double> far_us;   // everybody sees kStrandLevels levels of tiles
 };
 
-/// Measures both in turn. In a world of terrain of edge 32, 20 players in one place each see 6 chunks
-/// around. A repetition is 10 s with 20 ticks a second, in which they set kStrandEdits single voxels
-/// together. The time is that of all calls of WorldServer: received edits, commits, ticks, and sending
-/// tiles anew that edits changed. Work of other threads is not in it: sockets, disk, and making tiles.
+/// Measures both in turn. In a world of terrain of edge 32, 20 players in one place each see 6
+/// chunks around. A repetition is 10 s with 20 ticks a second, in which they set kStrandEdits
+/// single voxels together. The time is that of all calls of WorldServer: received edits, commits,
+/// ticks, and sending tiles anew that edits changed. Work of other threads is not in it: sockets,
+/// disk, and making tiles.
 StrandTiming time_strand(unsigned repetitions);
 
 }  // namespace runstone::bench

@@ -1,6 +1,6 @@
-// StrandSurroundings: what surrounds a WorldServer whose world strand is measured: a wire that loses
-// all but the handshake, a log without a disk, and a list of the chunks to load, which the benchmark
-// answers while its clock is stopped.
+// StrandSurroundings: what surrounds a WorldServer whose world strand is measured: a wire that
+// loses all but the handshake, a log without a disk, and a list of the chunks to load, which the
+// benchmark answers while its clock is stopped.
 #pragma once
 #include <deque>
 #include <map>

@@ -1,6 +1,6 @@
-// `runstone-bench map`: how long the map of the gateway takes. It makes a world of stored chunks with
-// a log, and imports a Luanti world. It draws tiles of the present and of random moments with empty
-// caches, and the whole Luanti world at all zooms.
+// `runstone-bench map`: how long the map of the gateway takes. It makes a world of stored chunks
+// with a log, and imports a Luanti world. It draws tiles of the present and of random moments with
+// empty caches, and the whole Luanti world at all zooms.
 #pragma once
 #include <cstdint>
 #include <iosfwd>

@@ -46,8 +46,8 @@ struct MeshResult {
 void write_csv(const MeshResult& result, std::ostream& out);
 void write_json(const MeshResult& result, std::ostream& out);
 
-/// Prints a table for each world, edge and rank of order: means over its volumes with exposed faces,
-/// and ratios as geometric mean and as ratio of sums.
+/// Prints a table for each world, edge and rank of order: means over its volumes with exposed
+/// faces, and ratios as geometric mean and as ratio of sums.
 void write_tables(const MeshResult& result, std::ostream& out);
 
 /// Prints one table with a line of the product for each of those tables.

@@ -8,8 +8,8 @@
 
 namespace runstone::bench {
 
-/// The measurements of one phase: latencies of builders, joins of newcomers, and the server's use of
-/// memory and processors.
+/// The measurements of one phase: latencies of builders, joins of newcomers, and the server's use
+/// of memory and processors.
 struct HostilePhase {
   FleetReport seen;
   JoinProbe::Joins joins;

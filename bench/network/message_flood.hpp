@@ -1,6 +1,7 @@
 // Message flood: clients that send messages of one kind as fast as the server reads them. The
-// contents are drawn (tests/support/codec/random_message.hpp) and valid, and the numbers are those of a
-// client that keeps to the protocol, so that the server does not refuse a message for its form.
+// contents are drawn (tests/support/codec/random_message.hpp) and valid, and the numbers are those
+// of a client that keeps to the protocol, so that the server does not refuse a message for its
+// form.
 #pragma once
 #include <cstdint>
 #include <vector>

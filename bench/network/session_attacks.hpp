@@ -1,5 +1,5 @@
-// Session attacks: connections, seats, commands and bytes without meaning, and the two rows that are
-// no attacks. Each function plays one thread until its time is over.
+// Session attacks: connections, seats, commands and bytes without meaning, and the two rows that
+// are no attacks. Each function plays one thread until its time is over.
 #pragma once
 
 namespace runstone::bench {

@@ -1,5 +1,5 @@
-// View attacks: sessions that misuse views, claims, requests of chunks and travels to the past. Each
-// function plays one thread of an attack until its time is over.
+// View attacks: sessions that misuse views, claims, requests of chunks and travels to the past.
+// Each function plays one thread of an attack until its time is over.
 #pragma once
 
 namespace runstone::bench {

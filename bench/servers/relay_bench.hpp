@@ -1,5 +1,5 @@
-// The costs of an edit at two servers of one world, without sockets, encryption and database: what the
-// world strand of each server takes, and the codec of the messages between them.
+// The costs of an edit at two servers of one world, without sockets, encryption and database: what
+// the world strand of each server takes, and the codec of the messages between them.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -21,8 +21,8 @@ struct RelayRow {
 };
 
 /// In a world of terrain of edge 32, 20 players at each of two servers stand in one place and see 6
-/// chunks around. The two places are far apart. A repetition is 10,000 single voxels of the players at
-/// one server, then 10,000 at the other one.
+/// chunks around. The two places are far apart. A repetition is 10,000 single voxels of the players
+/// at one server, then 10,000 at the other one.
 Result<std::vector<RelayRow>, std::string> run_relay_bench(const BenchOptions& options,
                                                            std::ostream& progress);
 

@@ -1,6 +1,6 @@
-// `runstone-bench tiles`: levels of detail of whole worlds. It makes all tiles of levels 1 to 4 from
-// the chunks of a world, as a server does, and measures runs, bytes and times. A world with borders
-// is measured once more as if it were repeated sideways without end, by runs and bytes.
+// `runstone-bench tiles`: levels of detail of whole worlds. It makes all tiles of levels 1 to 4
+// from the chunks of a world, as a server does, and measures runs, bytes and times. A world with
+// borders is measured once more as if it were repeated sideways without end, by runs and bytes.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -15,8 +15,8 @@
 namespace runstone::bench {
 
 /// One level of one world. Level 0 are its chunks, which are not made. Chunks and tiles without
-/// voxels are left out. Times are sums over the tiles, each with its median over the passes; 0 means
-/// that it was not measured.
+/// voxels are left out. Times are sums over the tiles, each with its median over the passes; 0
+/// means that it was not measured.
 struct TilesRow {
   std::string world;
   unsigned edge = 0;

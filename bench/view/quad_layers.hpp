@@ -7,7 +7,8 @@
 
 namespace runstone::bench {
 
-/// Sorts quads into the passes and layers of a mesh, whatever their order. Cost: O(quads log quads).
+/// Sorts quads into the passes and layers of a mesh, whatever their order. Cost: O(quads log
+/// quads).
 ChunkMesh layered(std::span<const Quad> quads, const VisibilityTable& visibility);
 
 }  // namespace runstone::bench

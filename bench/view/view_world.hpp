@@ -9,8 +9,8 @@
 
 namespace runstone::bench {
 
-/// Returns "hill", a single chunk of the world "hills", the names of the seeded worlds, and those of
-/// frames_world_names().
+/// Returns "hill", a single chunk of the world "hills", the names of the seeded worlds, and those
+/// of frames_world_names().
 std::vector<std::string> view_world_names();
 
 /// Returns the chunks of that name, at edge 32. Those of a seeded world are 4 x 2 x 4 around its

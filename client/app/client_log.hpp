@@ -1,6 +1,6 @@
-// ClientLog: the log lines of runstone-client about a play: edits that were refused, chunks that are
-// missing, the state of the server, the memory, and the players who come and go. Thread: the main
-// thread.
+// ClientLog: the log lines of runstone-client about a play: edits that were refused, chunks that
+// are missing, the state of the server, the memory, and the players who come and go. Thread: the
+// main thread.
 #pragma once
 #include <cstddef>
 #include <map>

@@ -10,8 +10,8 @@
 
 namespace runstone {
 
-/// Returns the memory budget of a client that was told none: an eighth of the memory that the machine or
-/// container has, from 256 to 1,024 MiB.
+/// Returns the memory budget of a client that was told none: an eighth of the memory that the
+/// machine or container has, from 256 to 1,024 MiB.
 std::uint64_t automatic_memory_mib();
 /// Sets the name, the key file, the view and the memory that the command line did not give. A name
 /// that was never chosen is the user's name on this computer.

@@ -1,5 +1,5 @@
-// TerminalChat: the chat of runstone-client in its terminal. Its lines are printed on standard output,
-// and lines that the player types are sent. One thread.
+// TerminalChat: the chat of runstone-client in its terminal. Its lines are printed on standard
+// output, and lines that the player types are sent. One thread.
 #pragma once
 #include <cstddef>
 #include <deque>

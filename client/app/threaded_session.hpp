@@ -102,7 +102,7 @@ class ThreadedSession {
   bool is_password_asked_ = false;
   std::optional<TimeUs> lost_us_ = 0;  // when the last world was lost; nullopt while one is open
   std::string last_failure_;           // why the last attempt to connect failed
-  FailureWords last_words_;            // the same in words
+  FailureWords last_words_;            // last_failure_ in words for the player
   TimeUs kept_us_ = 0;                 // when the cache last got a batch
   std::unique_ptr<NetClient> net_;     // last: its thread calls wake_
 };

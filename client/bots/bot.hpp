@@ -58,8 +58,8 @@ class Bot {
   void end() { schedule_.end(); }
   /// Returns true if no edit is due any more, and every submitted edit was answered and is on disk.
   bool is_done() const { return schedule_.is_over() && is_answered(); }
-  /// Returns the sequence up to which the server has told the bot that the log is on disk. The bot has
-  /// received every edit up to there that touches its view.
+  /// Returns the sequence up to which the server has told the bot that the log is on disk. The bot
+  /// has received every edit up to there that touches its view.
   virtual Sequence durable() const = 0;
   /// Moves, offers what is due, and takes what arrived. Call it at due_us() at the latest.
   void step(TimeUs now_us);

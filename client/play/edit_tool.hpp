@@ -53,8 +53,8 @@ class EditTool {
   Result<void, std::string> release(TimeUs now_us);
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
-  /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits after
-  /// it are not proposed. If `edits` is a failure, fails with it.
+  /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits
+  /// after it are not proposed. If `edits` is a failure, fails with it.
   Result<void, std::string> propose(const ToolEdits& edits, TimeUs now_us);
 
   /// Carries out a command of the tool window, and proposes its edits. Fails with words for the

@@ -86,13 +86,13 @@ class PlayLog {
 
 class Play {
  public:
-  /// All but `config` must outlive the object. `draw_queue` may be null, see MeshPipeline. `wake` is
-  /// called from mesh threads; it may be null without them.
+  /// All but `config` must outlive the object. `draw_queue` may be null, see MeshPipeline. `wake`
+  /// is called from mesh threads; it may be null without them.
   Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLog& log,
        const PlayConfig& config, std::function<void()> wake = nullptr);
 
-  /// Takes up what changed since the last turn, and keeps the memory within its budget. `is_opened`:
-  /// a world was opened, for the first time or again. `shown`: the open windows.
+  /// Takes up what changed since the last turn, and keeps the memory within its budget.
+  /// `is_opened`: a world was opened, for the first time or again. `shown`: the open windows.
   void begin_turn(bool is_opened, const ShownPanels& shown, TimeUs now_us);
   /// Routes the queued input, moves the player, and carries out clicks and the turns of the wheel.
   /// Returns the input: the caller carries out the actions, and gives the interface its events.
@@ -117,8 +117,8 @@ class Play {
 
   /// Returns the notices for the player since the last call.
   std::vector<PlayerNotice> take_notices() { return std::exchange(notices_, {}); }
-  /// Returns a line about what is shown: a moment of the past, or why ground is missing. The line is
-  /// empty if there is nothing special.
+  /// Returns a line about what is shown: a moment of the past, or why ground is missing. The line
+  /// is empty if there is nothing special.
   std::string state_text() const;
   /// Fills what the interface shows of the world, the player and the open windows.
   void fill(HudState& state, const ShownPanels& shown) const;

@@ -41,8 +41,8 @@ class ViewLimits {
   std::optional<LimitChange> limit_view(TimeUs now_us);
   /// Gives the meshes what the rest leaves of the budget.
   void limit_meshes();
-  /// Changes the levels of distant ground by one at most. Returns the change, or nullopt if there is
-  /// none.
+  /// Changes the levels of distant ground by one at most. Returns the change, or nullopt if there
+  /// is none.
   std::optional<LimitChange> limit_far(TimeUs now_us);
 
   MemoryUse use() const;

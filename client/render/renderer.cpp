@@ -50,7 +50,7 @@ struct Renderer::State {
   const FrameTarget& frame() const { return is_scaled ? stretched : target; }
 
   FrameTarget target;     // of the world
-  FrameTarget stretched;  // of the same in the size of the frame, if that is another one
+  FrameTarget stretched;  // of the world, in the size of the frame, if `target` has another one
   bool is_scaled = false;
   SkyPainter sky;
   Terrain terrain;

@@ -6,7 +6,7 @@
 //   - Shaders read the old texture until all texels were copied. Texels that are written meanwhile
 //     go to both textures.
 //   - A piece is large enough that the move ends before the old texture is full. If no free range
-//     of it is large enough all the same, the rest is copied at once.
+//     of it is large enough nevertheless, the rest is copied at once.
 // Thread: the GL thread.
 #pragma once
 #include <cstddef>

@@ -87,7 +87,7 @@ class TrackedChunk {
   /// What take_ready_edits() took from the inbox.
   struct ReadyEdits {
     std::vector<EditDescriptor> stack;  // to be applied to the confirmed runs
-    std::vector<OrderedPtr> applied;    // the same edits
+    std::vector<OrderedPtr> applied;    // the edits of `stack`, with their order
     std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
     Version version;                    // after the stack
   };

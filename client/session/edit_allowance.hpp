@@ -1,6 +1,6 @@
 // EditAllowance: what is left of the player's edit budget, as far as this client knows. It predicts
 // the server's EditLedger, so that the client does not show edits that the server will reject. The
-// server may reject an edit all the same: other sessions of the same key use the same budget, and
+// server may reject an edit nevertheless: other sessions of the same key use the same budget, and
 // all players of an address share another one.
 // Thread: one. Times are arguments (microseconds of the client's steady clock).
 #pragma once

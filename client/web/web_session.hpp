@@ -26,8 +26,8 @@ class WebSession final : private LinkCallbacks {
   /// Passes lookups and their results between session and cache. A lookup finds chunks that take
   /// `room_bytes` at most.
   void step_cache(std::size_t room_bytes, TimeUs now_us);
-  /// Gives the cache some chunks that changed or left the view, kKeepChunks at most. A round of calls
-  /// visits each chunk once. The next round begins kKeepUs later.
+  /// Gives the cache some chunks that changed or left the view, kKeepChunks at most. A round of
+  /// calls visits each chunk once. The next round begins kKeepUs later.
   void keep_chunks(TimeUs now_us);
   /// Returns null without a cache.
   WebCache* cache() { return cache_ ? &*cache_ : nullptr; }

@@ -1,6 +1,6 @@
-// WebWindows: the windows of the desktop client in a browser: tools, map and rollback. They are drawn
-// on the canvas. Their font is a file that the page loads when a window is opened for the first time;
-// until then, no window is drawn. Thread: the page's only one.
+// WebWindows: the windows of the desktop client in a browser: tools, map and rollback. They are
+// drawn on the canvas. Their font is a file that the page loads when a window is opened for the
+// first time; until then, no window is drawn. Thread: the page's only one.
 #pragma once
 #include <array>
 #include <memory>

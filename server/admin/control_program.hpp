@@ -22,8 +22,8 @@ std::string control_line(const std::vector<std::string>& words);
 /// Returns a new password: typed twice at the terminal without being shown or, if standard input is
 /// no terminal, its first line.
 Result<std::string, std::string> read_new_password();
-/// Returns the line with what its command adds to it here (CommandRow::complete). A password is read
-/// for `password set` alone.
+/// Returns the line with what its command adds to it here (CommandRow::complete). A password is
+/// read for `password set` alone.
 Result<std::string, std::string> completed_line(const std::string& line,
                                                 const ReadPassword& read_password);
 

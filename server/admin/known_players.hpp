@@ -1,6 +1,6 @@
-// KnownPlayers: finds the key that a command means, and the text for a key in an answer. A name says
-// little: several keys may use it one after another. So a word that fits several keys is an error
-// that lists them, and every text has the fingerprint of the key.
+// KnownPlayers: finds the key that a command means, and the text for a key in an answer. A name
+// says little: several keys may use it one after another. So a word that fits several keys is an
+// error that lists them, and every text has the fingerprint of the key.
 #pragma once
 #include <map>
 #include <optional>

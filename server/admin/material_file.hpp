@@ -13,8 +13,8 @@ namespace runstone {
 /// A larger file is refused.
 inline constexpr std::size_t kMaterialFileBytesMax = std::size_t{1} << 20;
 
-/// Reads a file of materials (parse_material_rows()). The error is one line. A pipe or a device is an
-/// error, because reading it may never end. Blocks on the disk.
+/// Reads a file of materials (parse_material_rows()). The error is one line. A pipe or a device is
+/// an error, because reading it may never end. Blocks on the disk.
 Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::string& file);
 
 /// Returns text such as "35 wool_lime" for each row, from `first` on.

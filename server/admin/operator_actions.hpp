@@ -10,16 +10,16 @@
 
 namespace runstone {
 
-/// The actions are called on the world strand and must return at once. Replies may be called from any
-/// thread, until the server is destroyed. A command whose action is empty is refused.
+/// The actions are called on the world strand and must return at once. Replies may be called from
+/// any thread, until the server is destroyed. A command whose action is empty is refused.
 struct OperatorActions {
   std::function<void()> stop;
   /// Reads the settings again and passes them to Server::reload().
   std::function<void(CommandReply)> reload;
   /// Copies the world to a new folder.
   std::function<void(const std::string& folder, CommandReply)> back_up;
-  /// Lets another server take the world over: the one of this number, or nullopt: the one with the most
-  /// players. The last reply has the outcome.
+  /// Lets another server take the world over: the one of this number, or nullopt: the one with the
+  /// most players. The last reply has the outcome.
   std::function<void(std::optional<SessionId> successor, CommandReply)> hand_over;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;

@@ -1,5 +1,5 @@
-// Operators: the players who may give every command. They are known by public key, because a name may
-// have no owner.
+// Operators: the players who may give every command. They are known by public key, because a name
+// may have no owner.
 #pragma once
 #include <set>
 #include <string>

@@ -1,6 +1,6 @@
-// The answers of the commands `roles`, `grants`, `invites`, `bans`, `refusals` and `protected`. Each
-// lists at most 500 entries; a last line counts the others. Players are named with the fingerprints
-// of their keys.
+// The answers of the commands `roles`, `grants`, `invites`, `bans`, `refusals` and `protected`.
+// Each lists at most 500 entries; a last line counts the others. Players are named with the
+// fingerprints of their keys.
 #pragma once
 #include <string>
 #include <vector>

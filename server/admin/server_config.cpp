@@ -19,8 +19,8 @@ namespace {
 
 /// A field whose text has a form of its own.
 struct FormField {
-  /// Sets the member, or returns what is wrong with the text.
-  std::optional<std::string> (*set)(ServerConfig& config, const std::string& text);
+  /// Sets the member. Fails if the text is no value: what is wrong with it.
+  Result<void, std::string> (*set)(ServerConfig& config, const std::string& text);
   std::string (*print)(const ServerConfig& config);
 };
 template <class Enum>
@@ -54,13 +54,13 @@ std::string names_of(const Choices& choices) {
 /// A field with one value of an enumeration. `Choices` has a name for each value.
 template <auto Member, const auto& Choices>
 FormField choice_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             for (const auto& choice : Choices) {
               if (text != choice.name) continue;
               config.*Member = choice.value;
-              return std::nullopt;
+              return {};
             }
-            return "must be " + names_of(Choices);
+            return failure("must be " + names_of(Choices));
           },
           [](const ServerConfig& config) -> std::string {
             return std::find_if(Choices.begin(), Choices.end(),
@@ -70,11 +70,11 @@ FormField choice_field() {
 }
 
 FormField operators_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             auto keys = parse_operators(text);
-            if (!keys) return keys.error();
+            if (!keys) return failure(keys.error());
             config.operators = *std::move(keys);
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) {
             std::string text;
@@ -86,67 +86,68 @@ FormField operators_field() {
 }
 
 FormField builder_budget_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             const auto budget = parse_edit_budget(text);
-            if (!budget) return "must be " + edit_budget_rule();
+            if (!budget) return failure("must be " + edit_budget_rule());
             config.builder_budget = *budget;
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) { return text_of(config.builder_budget); }};
 }
 
 FormField peer_address_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             if (!text.empty()) {
               const auto address = parse_host_port(text, kDefaultPort);
-              if (!address) return address.error();
+              if (!address) return failure(address.error());
             }
             config.peer_address = text;
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) { return config.peer_address; }};
 }
 
 FormField player_address_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
-            if (!text.empty()) {
-              const auto address = parse_host_port(text, kDefaultPort);
-              if (!address) return address.error();
-              if (!is_player_address(to_string(*address)))
-                return "must be HOST, HOST:PORT or [V6]:PORT, with a host of ASCII characters";
-            }
-            config.player_address = text;
-            return std::nullopt;
-          },
-          [](const ServerConfig& config) { return config.player_address; }};
+  return {
+      [](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+        if (!text.empty()) {
+          const auto address = parse_host_port(text, kDefaultPort);
+          if (!address) return failure(address.error());
+          if (!is_player_address(to_string(*address)))
+            return failure("must be HOST, HOST:PORT or [V6]:PORT, with a host of ASCII characters");
+        }
+        config.player_address = text;
+        return {};
+      },
+      [](const ServerConfig& config) { return config.player_address; }};
 }
 
 FormField page_address_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             if (!is_page_address(text))
-              return "must be https://HOST or http://HOST, perhaps with a port and a path";
+              return failure("must be https://HOST or http://HOST, perhaps with a port and a path");
             config.page_address = text;
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) { return config.page_address; }};
 }
 
 FormField message_of_the_day_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             auto line = text.empty() ? Result<std::string, std::string>(text) : chat_text(text);
-            if (!line) return "must be one line of text: " + line.error();
+            if (!line) return failure("must be one line of text: " + line.error());
             config.message_of_the_day = *std::move(line);
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) { return config.message_of_the_day; }};
 }
 
 FormField reserved_names_field() {
-  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
             auto names = parse_reserved_names(text);
-            if (!names) return names.error();
+            if (!names) return failure(names.error());
             config.reserved_names = *std::move(names);
-            return std::nullopt;
+            return {};
           },
           [](const ServerConfig& config) {
             std::string text;
@@ -160,10 +161,10 @@ const SettingsTable<ServerConfig>& settings() {
   using C = ServerConfig;
   const auto number = number_setting<C>;
   const auto flag = flag_setting<C>;
-  const auto text = [](const char* name, const char* help, std::string C::* member) {
+  const auto text = [](const char* name, const char* help, std::string C::*member) {
     return text_setting(name, help, member, false);
   };
-  const auto optional = [](const char* name, const char* help, std::string C::* member) {
+  const auto optional = [](const char* name, const char* help, std::string C::*member) {
     return text_setting(name, help, member, true);
   };
   const auto form = [](const char* name, const std::string& help, const FormField& field) {

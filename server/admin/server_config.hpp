@@ -1,7 +1,7 @@
 // ServerConfig: every setting of the server with its default, unit and range. Their names and their
-// precedence follow the rule of SettingsTable, with the prefix RUNSTONE_. Values are checked when they
-// are set, so a ServerConfig is always valid. It is read once and passed on by const reference.
-// docs/server-reference.md describes the settings.
+// precedence follow the rule of SettingsTable, with the prefix RUNSTONE_. Values are checked when
+// they are set, so a ServerConfig is always valid. It is read once and passed on by const
+// reference. docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -26,22 +26,23 @@ namespace runstone {
 struct ServerConfig {
   // Place.
   std::string world = "world";  // folder
-  /// Address of the PostgreSQL database that holds the rows of the world: postgresql://... The folder
-  /// `world` then holds the log of the chat and the socket of `runstone-server control`. Empty: the world
-  /// is a file in the folder.
+  /// Address of the PostgreSQL database that holds the rows of the world: postgresql://... The
+  /// folder `world` then holds the log of the chat and the socket of `runstone-server control`.
+  /// Empty: the world is a file in the folder.
   std::string store;
   /// Follow the server that owns the world of `store`, and take the world over when it ends.
   bool standby = false;
-  std::uint64_t lease_s =
-      5;  // seconds without an answer of `store` until another may take over, 2..60
-  /// HOST, HOST:PORT or [V6]:PORT, at which other servers of the world of `store` reach this one. Empty:
-  /// see peer_address_of().
+  /// Seconds without an answer of `store` until another server may take the world over, 2..60.
+  std::uint64_t lease_s = 5;
+  /// HOST, HOST:PORT or [V6]:PORT, at which other servers of the world of `store` reach this one.
+  /// Empty: see peer_address_of().
   std::string peer_address;
   /// HOST, HOST:PORT or [V6]:PORT, at which players reach this server of the world of `store`.
   /// Empty: players are not told of this server.
   std::string player_address;
-  std::string
-      page_address;  // https://HOST/PATH of its runstone-web; empty: browsers are not told of this server
+  /// https://HOST/PATH of the runstone-web of this server. Empty: browsers are not told of this
+  /// server.
+  std::string page_address;
   /// Hand the world over to a server that follows when most edits come from the players there.
   bool move_to_builders = false;
   // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
@@ -77,8 +78,8 @@ struct ServerConfig {
   ChunkEncoding encoding = ChunkEncoding::packed;  // sent to clients that can read it
   std::uint64_t idle_s = 60;                       // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;      // per session, 0: no limit
-  /// KiB read from each session per second, twice as many at once, 0: no limit. Reading pauses above
-  /// the limit. The sessions of an address together have `budgets_per_address` times as much.
+  /// KiB read from each session per second, twice as many at once, 0: no limit. Reading pauses
+  /// above the limit. The sessions of an address together have `budgets_per_address` times as much.
   std::uint64_t read_kib_per_second = 512;
   std::uint64_t control_queue_kib = 16'384;  // KiB per session, 64..1048576
   std::uint64_t edit_queue_kib = 4'096;      // KiB per session, 64..1048576

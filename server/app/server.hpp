@@ -21,8 +21,8 @@ namespace runstone {
 /// Why a server did not take the world over, or did not hand it over.
 struct OwnershipError {
   std::string what;  // a sentence
-  // has_failed(ownership()): the server can neither own the world nor follow its owner any more, and has
-  // to be stopped. Otherwise nothing has changed.
+  // has_failed(ownership()): the server can neither own the world nor follow its owner any more,
+  // and has to be stopped. Otherwise nothing has changed.
   bool must_stop = false;
 };
 
@@ -58,11 +58,11 @@ class Server {
   void connect_to(const std::string& owner);
   /// How a server that follows gets on.
   ServerCore::FollowState follow_state() const;
-  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks on
-  /// the database. Requires that it follows.
+  /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks
+  /// on the database. Requires that it follows.
   Result<void, OwnershipError> take_over();
-  /// Lets another server take the world over, and makes the owner a server that follows. Players stay.
-  /// `successor` is as for Cluster::hand_over(). Blocks on the database. Call connect_to()
+  /// Lets another server take the world over, and makes the owner a server that follows. Players
+  /// stay. `successor` is as for Cluster::hand_over(). Blocks on the database. Call connect_to()
   /// afterwards as long as it follows.
   Result<void, OwnershipError> hand_over(std::optional<SessionId> successor);
   /// Returns the part that this server plays in its world. Thread: any.
@@ -71,8 +71,8 @@ class Server {
   /// Carries out a command as an operator. Replies come from another thread; the last one has
   /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
-  /// Carries out a command as an operator, and returns its last answer. Blocks until the world strand
-  /// has answered.
+  /// Carries out a command as an operator, and returns its last answer. Blocks until the world
+  /// strand has answered.
   CommandAnswer answer_of(const std::string& line);
   /// Takes over the settings of `read` that a running server may change, or reports why there are
   /// none. The reply comes from another thread.

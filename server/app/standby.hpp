@@ -37,8 +37,8 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
 class TakeoverWatch {
  public:
   /// `server` must outlive the object. `on_failure` is called at most once, from the thread, if
-  /// has_failed(server.ownership()). `handed_over` is empty unless the server has just handed the world
-  /// over: it gets one answer, from any thread, when the world has an owner again.
+  /// has_failed(server.ownership()). `handed_over` is empty unless the server has just handed the
+  /// world over: it gets one answer, from any thread, when the world has an owner again.
   TakeoverWatch(const std::string& place, Server& server, std::function<void()> on_failure,
                 CommandReply handed_over = {});
   /// Ends the thread. Waits for a takeover that is under way.

@@ -30,7 +30,7 @@ class Importer {
         block_materials_(format, options.keep_all) {}
 
   Result<LuantiImportReport, ImportError> run() {
-    if (const auto failure = scan()) return error(*failure);
+    if (const auto scanned = scan(); !scanned) return error(scanned.error());
     auto table = block_materials_.make_table();
     if (!table) return error(table.error().what);
     std::sort(positions_.begin(), positions_.end());  // a damaged map may have another order
@@ -52,7 +52,7 @@ class Importer {
   }
 
   /// The first pass: finds the sound blocks, the names that they use, and their bounds.
-  std::optional<std::string> scan() {
+  Result<void, std::string> scan() {
     return map_.each_row([&](std::int64_t pos, ByteView data) {
       const ChunkCoord at = luanti_block_coord(pos);
       const auto read = luanti_block_pos(at) == pos

@@ -39,13 +39,13 @@ Result<LuantiMap, std::string> LuantiMap::open(const std::string& file) {
                    static_cast<std::uint64_t>(*count));
 }
 
-std::optional<std::string> LuantiMap::each_row(
+Result<void, std::string> LuantiMap::each_row(
     const std::function<void(std::int64_t pos, ByteView data)>& row) {
   scan_.rewind();
   for (;;) {
     const auto more = scan_.step();
-    if (!more) return more.error().what;
-    if (!*more) return std::nullopt;
+    if (!more) return failure(more.error().what);
+    if (!*more) return {};
     row(scan_.integer(0), scan_.blob(1));
   }
 }

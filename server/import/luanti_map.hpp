@@ -21,9 +21,9 @@ class LuantiMap {
 
   std::uint64_t row_count() const { return row_count_; }
 
-  /// Calls `row` for every block, ascending by key. `data` is valid during that call. Returns the
-  /// error, or nullopt if all rows were read.
-  std::optional<std::string> each_row(
+  /// Calls `row` for every block, ascending by key. `data` is valid during that call. Fails if not
+  /// all rows could be read.
+  Result<void, std::string> each_row(
       const std::function<void(std::int64_t pos, ByteView data)>& row);
 
   /// Returns the bytes of one block, or nullopt if the row is missing or cannot be read. The bytes

@@ -19,16 +19,16 @@ namespace runstone {
 
 class OwnerConnection {
  public:
-  /// `io`, `strand` and the threads of `decoders` must outlive the object. `is_encrypted`: the owner
-  /// takes encrypted connections only.
+  /// `io`, `strand` and the threads of `decoders` must outlive the object. `is_encrypted`: the
+  /// owner takes encrypted connections only.
   OwnerConnection(asio::io_context& io, WorldStrand& strand, asio::any_io_executor decoders,
                   std::uint16_t chunk_edge, bool is_encrypted);
 
   /// Sets what gets the messages. Call it before connect_to().
   void attach(WorldServer& world) { world_ = &world; }
-  /// Connects to the owner at HOST:PORT, unless a connection there exists or is being made, this server
-  /// does not follow, or end() was called. Ends a connection that leads elsewhere; a later call then
-  /// connects.
+  /// Connects to the owner at HOST:PORT, unless a connection there exists or is being made, this
+  /// server does not follow, or end() was called. Ends a connection that leads elsewhere; a later
+  /// call then connects.
   void connect_to(const std::string& address);
   /// Queues a message. Returns false if there is no room, or no connection.
   bool send(const EncodedMessage& message) { return link_ != nullptr && link_->send(message); }

@@ -83,8 +83,8 @@ class ServerCore final : public NetEvents {
   /// Cluster::hand_over(). Returns the server that is to take the world over, or why nothing
   /// has changed. Requires start(). Blocks. Thread: any but those of `threads`.
   Result<SessionId, std::string> begin_handover(std::optional<SessionId> successor);
-  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires the
-  /// same as begin_handover().
+  /// Writes the log and ends the log writer. After an error the server must be stopped. Requires
+  /// what begin_handover() requires.
   Result<void, std::string> end_handover();
   /// Returns the part that this server plays in its world. Thread: any.
   OwnershipState ownership() const { return world_->order().ownership().state(); }
@@ -100,12 +100,13 @@ class ServerCore final : public NetEvents {
   std::uint16_t port() const { return listener_->port(); }
 
   /// Stops in this order: no new connections; a goodbye to each session; every accepted edit is
-  /// ordered and made durable; changed chunks are written as snapshots, for at most `stop_s`. Blocks
-  /// until this is done, or the log has failed, or the disk is full and `stop_s` is over. Returns true
-  /// if another server waits to take the world over. Thread: any but those of `threads`.
+  /// ordered and made durable; changed chunks are written as snapshots, for at most `stop_s`.
+  /// Blocks until this is done, or the log has failed, or the disk is full and `stop_s` is over.
+  /// Returns true if another server waits to take the world over. Thread: any but those of
+  /// `threads`.
   bool stop_world();
-  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes what
-  /// is queued. Requires stop_world().
+  /// Ends the readers, the log of the chat, the keyframe thread and the log writer, which writes
+  /// what is queued. Requires stop_world().
   void stop_writer();
   /// Returns what the stop has left undone. Requires stop_writer(), and that no thread runs the
   /// strand any more.
@@ -123,7 +124,8 @@ class ServerCore final : public NetEvents {
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
   void command(const std::string& line, CommandReply reply);
-  /// Carries out a command, and returns its last answer. Blocks. Thread: any but those of `threads`.
+  /// Carries out a command, and returns its last answer. Blocks. Thread: any but those of
+  /// `threads`.
   CommandAnswer answer_of(const std::string& line);
 
   /// Answers a question of a gateway, of which there is one: "status". The answer is the line of
@@ -166,8 +168,8 @@ class ServerCore final : public NetEvents {
   /// already.
   void schedule_delivery();
   void schedule_tile_resends();
-  /// Ends the timers if the stop that is under way has nothing more to wait for. Returns nullopt if it
-  /// has, otherwise true if another server waits to take the world over.
+  /// Ends the timers if the stop that is under way has nothing more to wait for. Returns nullopt if
+  /// it has, otherwise true if another server waits to take the world over.
   std::optional<bool> finish_stop();
   std::string all_counters(std::uint64_t memory_bytes) const;
   /// Returns the answer to the command `status` at a server that follows.

@@ -1,8 +1,8 @@
 // WorldStrand: runs tasks one at a time, in the order in which they were posted, on the I/O
 // threads. Everything that touches WorldServer runs as a task of this strand. After every task the
 // strand calls `after_task`, so that no caller can forget the work that any task may make
-// necessary. Other threads ask the world with ask() and ask_until().
-// Threads: post() may be called from any thread, ask() and ask_until() from any but the I/O threads.
+// necessary. Other threads ask the world with ask() and ask_until(). Threads: post() may be called
+// from any thread, ask() and ask_until() from any but the I/O threads.
 #pragma once
 #include <asio/bind_executor.hpp>
 #include <asio/error_code.hpp>
@@ -27,8 +27,8 @@ namespace runstone {
 
 class WorldStrand {
  public:
-  /// No task waits for a disk or a peer, so an answer takes longer than this only if no thread runs the
-  /// strand.
+  /// No task waits for a disk or a peer, so an answer takes longer than this only if no thread runs
+  /// the strand.
   static constexpr std::chrono::milliseconds kAnswerTime{30'000};
   /// The caller waits for as long as it takes.
   static constexpr std::chrono::milliseconds kAnyTime = std::chrono::milliseconds::max();
@@ -48,12 +48,11 @@ class WorldStrand {
     });
   }
 
-  /// Runs `question()` as a task behind the tasks that were posted before, and waits. Returns what the
-  /// question returns, as a Result<T, std::string> unless it is one.
-  /// Fails if the question has not begun within `longest`. It never runs then, so it may refer to what
-  /// the caller holds. A question that has begun is waited for.
-  /// Requires that the I/O context outlives the call, and that the calling thread does not run it, as
-  /// all coroutines do: it would wait for itself.
+  /// Runs `question()` as a task behind the tasks that were posted before, and waits. Returns what
+  /// the question returns, as a Result<T, std::string> unless it is one. Fails if the question has
+  /// not begun within `longest`. It never runs then, so it may refer to what the caller holds. A
+  /// question that has begun is waited for. Requires that the I/O context outlives the call, and
+  /// that the calling thread does not run it, as all coroutines do: it would wait for itself.
   template <class Question>
   AnswerOf<std::invoke_result_t<Question&>> ask(Question question,
                                                 std::chrono::milliseconds longest = kAnswerTime) {
@@ -62,9 +61,9 @@ class WorldStrand {
         [question = std::move(question)]() mutable { return std::optional<Answer>(question()); },
         longest);
   }
-  /// Waits until `question()`, which returns an optional, returns a value: it runs as for ask(), and
-  /// again behind every later task of the strand. Fails if there is no value within `longest`. The
-  /// question does not run any more then. Requires the same as ask().
+  /// Waits until `question()`, which returns an optional, returns a value: it runs as for ask(),
+  /// and again behind every later task of the strand. Fails if there is no value within `longest`.
+  /// The question does not run any more then. Requires the same as ask().
   template <class Question>
   AnswerOf<typename std::invoke_result_t<Question&>::value_type> ask_until(
       Question question, std::chrono::milliseconds longest = kAnswerTime) {

@@ -49,8 +49,8 @@ class SettingsTable {
                                 const std::string& text) const {
     const Setting<Config>* setting = find(name);
     if (setting == nullptr) return failure(name + ": no such setting");
-    if (const auto wrong = setting->set(config, text))
-      return failure(name + " = \"" + text + "\": " + *wrong);
+    if (const auto done = setting->set(config, text); !done)
+      return failure(name + " = \"" + text + "\": " + done.error());
     return {};
   }
   /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names
@@ -71,12 +71,13 @@ class SettingsTable {
     Config read = config;
     for (const TomlSetting& value : values) {
       const Setting<Config>* setting = find(value.key);
-      std::optional<std::string> wrong = "no such setting";
-      if (setting != nullptr) {
-        wrong = can_be(value, setting->type) ? setting->set(read, value.text)
-                                             : type_rule(setting->type) + ": " + setting->help;
-      }
-      if (wrong) return failure(TextError{std::string(file), value.line, value.key, *wrong});
+      const auto wrong = [&](std::string why) {
+        return failure(TextError{std::string(file), value.line, value.key, std::move(why)});
+      };
+      if (setting == nullptr) return wrong("no such setting");
+      if (!can_be(value, setting->type))
+        return wrong(type_rule(setting->type) + ": " + setting->help);
+      if (const auto done = setting->set(read, value.text); !done) return wrong(done.error());
     }
     config = std::move(read);
     return {};

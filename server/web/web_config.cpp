@@ -13,15 +13,14 @@ constexpr std::size_t kServerNameBytesMax = 32;
 
 /// Makes a setting that is one line of text.
 template <class Config>
-Setting<Config> line_setting(const char* name, const char* help, std::string Config::* member,
+Setting<Config> line_setting(const char* name, const char* help, std::string Config::*member,
                              bool is_optional) {
   Setting<Config> out = text_setting(name, help, member, is_optional);
   // The texts stand on pages and in log lines.
-  out.set = [set = out.set](Config& config,
-                            const std::string& value) -> std::optional<std::string> {
+  out.set = [set = out.set](Config& config, const std::string& value) -> Result<void, std::string> {
     if (value.size() > kWebTextBytesMax || !is_printable_utf8(value))
-      return "must be one line of UTF-8 text of at most " + std::to_string(kWebTextBytesMax) +
-             " bytes";
+      return failure("must be one line of UTF-8 text of at most " +
+                     std::to_string(kWebTextBytesMax) + " bytes");
     return set(config, value);
   };
   return out;
@@ -51,15 +50,16 @@ bool is_server_name(std::string_view name) {
 
 }  // namespace
 
-std::optional<std::string> fault_of_servers(const WebConfig& config) {
-  if (config.servers.empty()) return std::nullopt;
+Result<void, std::string> check_servers(const WebConfig& config) {
+  if (config.servers.empty()) return {};
   if (config.servers.size() > kWebServersMax)
-    return "at most " + std::to_string(kWebServersMax) + " servers fit behind one gateway";
+    return failure("at most " + std::to_string(kWebServersMax) + " servers fit behind one gateway");
   const WebConfig defaults;
   if (config.gateway_socket != defaults.gateway_socket || !config.world.empty() ||
       !config.public_address.empty())
-    return "gateway_socket, world and public_address belong into the sections of the servers";
-  return std::nullopt;
+    return failure(
+        "gateway_socket, world and public_address belong into the sections of the servers");
+  return {};
 }
 
 Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
@@ -84,7 +84,7 @@ Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
         return wrong("its gateway_socket is that of the server " + other.name);
     }
     read.servers.push_back(std::move(server));
-    if (const auto fault = fault_of_servers(read)) return wrong(*fault);
+    if (const auto checked = check_servers(read); !checked) return wrong(checked.error());
   }
   config = std::move(read);
   return {};

@@ -60,9 +60,9 @@ const SettingsTable<WebConfig>& web_settings();
 /// Reads the settings and the sections of a TOML file, see SettingsTable::read_toml().
 Result<void, TextError> read_web_toml(WebConfig& config, std::string_view toml,
                                       std::string_view file);
-/// Returns why the sections and the other settings do not fit together, or nullopt. Flags and
-/// variables of the environment may come after the file.
-std::optional<std::string> fault_of_servers(const WebConfig& config);
+/// Fails if the sections and the other settings do not fit together: why. Flags and variables of
+/// the environment may come after the file, so the caller checks after all of them.
+Result<void, std::string> check_servers(const WebConfig& config);
 /// Returns all settings and sections as TOML, which read_web_toml() reads back.
 std::string to_web_toml(const WebConfig& config);
 /// Returns the configuration for the pages and the map of one server of several: that of the

@@ -39,12 +39,20 @@ AddressBlock block_of(const boost::asio::ip::address& address) {
                          : address_block_v4(address.to_v4().to_uint());
 }
 
-/// Returns what is wrong with the path of a server's socket, or nullopt.
-std::optional<std::string> fault_of_socket(const std::string& path) {
-  if (path.size() + std::string_view(".status").size() <= kSocketNameBytesMax) return std::nullopt;
-  return "gateway_socket = " + path + ": the path of a socket has at most " +
-         std::to_string(kSocketNameBytesMax) +
-         " bytes, with \".status\": use a shorter or a relative one";
+/// Fails if the path of a server's socket is too long.
+Result<void, std::string> check_socket_path(const std::string& path) {
+  if (path.size() + std::string_view(".status").size() <= kSocketNameBytesMax) return {};
+  return failure("gateway_socket = " + path + ": the path of a socket has at most " +
+                 std::to_string(kSocketNameBytesMax) +
+                 " bytes, with \".status\": use a shorter or a relative one");
+}
+/// Checks the paths of the sockets of all servers of the gateway.
+Result<void, std::string> check_socket_paths(const WebConfig& config) {
+  if (config.servers.empty()) return check_socket_path(config.gateway_socket);
+  for (const WebServer& server : config.servers) {
+    if (const auto checked = check_socket_path(server.gateway_socket); !checked) return checked;
+  }
+  return {};
 }
 
 /// Returns true if an accept failed because this process may open no more files. A connection that is
@@ -242,11 +250,7 @@ void WebGateway::Parts::stop() {
 WebGateway::WebGateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Result<std::unique_ptr<WebGateway>, std::string> WebGateway::start(const WebConfig& config) {
-  auto fault = config.servers.empty() ? fault_of_socket(config.gateway_socket) : std::nullopt;
-  for (const WebServer& server : config.servers) {
-    if (!fault) fault = fault_of_socket(server.gateway_socket);
-  }
-  if (fault) return failure(*fault);
+  if (const auto checked = check_socket_paths(config); !checked) return failure(checked.error());
   auto origins = parse_origins(config.origins);
   if (!origins) return failure(origins.error());
   auto certificate = Certificate::read(config.tls_certificate, config.tls_key);

@@ -46,7 +46,7 @@ Result<WebConfig, std::string> read_config(const WebOptions& options) {
     const auto set = web_settings().set(config, field, text);
     if (!set) return failure(flag_name(field) + ": " + set.error());
   }
-  if (const auto fault = fault_of_servers(config)) return failure(*fault);
+  if (const auto checked = check_servers(config); !checked) return failure(checked.error());
   return config;
 }
 

@@ -1,7 +1,7 @@
 // PaddedGrid: a value for each voxel of a chunk and of the one voxel around it, the input of the
-// dense reference meshers. DenseGrid holds materials. It is a type of its own, so that nothing dense
-// gets into the product: only this folder, benchmarks and tests use it. It is flattened in an axis
-// order like a chunk, so that runs of the same order decode by plain fills.
+// dense reference meshers. DenseGrid holds materials. It is a type of its own, so that nothing
+// dense gets into the product: only this folder, benchmarks and tests use it. It is flattened in an
+// axis order like a chunk, so that runs of the same order decode by plain fills.
 #pragma once
 #include <array>
 #include <cstddef>

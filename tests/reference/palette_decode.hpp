@@ -1,7 +1,7 @@
-// Palette decode: the shortest way from runs to the input of binary greedy meshing. One pass over the
-// runs writes a palette id of one byte a voxel into a padded grid of the runs' own order, and the
-// words of the occupancy mask. There are two entries: a chunk with its neighbours, as the product has
-// them, and a list of runs that was made for this mesher and contains the border.
+// Palette decode: the shortest way from runs to the input of binary greedy meshing. One pass over
+// the runs writes a palette id of one byte a voxel into a padded grid of the runs' own order, and
+// the words of the occupancy mask. There are two entries: a chunk with its neighbours, as the
+// product has them, and a list of runs that was made for this mesher and contains the border.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -58,14 +58,14 @@ struct PaletteVolume {
 };
 
 /// Replaces `out` by a chunk with the adjoining layers of its neighbours. Counts a dense expansion.
-/// Returns false, with `out` unspecified, if the chunk has more than BytePalette::kIdsMax materials.
-/// Requires sides of at most kBinarySideMax. Cost: O(runs + lines).
+/// Returns false, with `out` unspecified, if the chunk has more than BytePalette::kIdsMax
+/// materials. Requires sides of at most kBinarySideMax. Cost: O(runs + lines).
 bool decode_palette(const RunChunk& chunk, const GridNeighbours& neighbours,
                     const VisibilityTable& visibility, PaletteVolume& out);
 
 /// The runs of a chunk and of the one voxel around it, as a world would keep them that meshes by
-/// binary greedy only. Run i has the voxels [ends[i - 1], ends[i]) of the padded volume in the order
-/// of the chunk, and the material materials[ids[i]].
+/// binary greedy only. Run i has the voxels [ends[i - 1], ends[i]) of the padded volume in the
+/// order of the chunk, and the material materials[ids[i]].
 struct PaddedRuns {
   Extent extent;  // without the border
   AxisOrder order = AxisOrder::xyz;

@@ -23,7 +23,8 @@ constexpr std::uint64_t low_bits(std::uint32_t count) {
 inline constexpr std::size_t kCompareSlack = 16;
 
 #if defined(__SSE2__)
-/// Return all bits of a lane if the voxels there are equal. A register has 16 / sizeof(Voxel) lanes.
+/// Return all bits of a lane if the voxels there are equal. A register has 16 / sizeof(Voxel)
+/// lanes.
 inline __m128i equal_lanes(__m128i a, __m128i b, std::uint8_t) { return _mm_cmpeq_epi8(a, b); }
 inline __m128i equal_lanes(__m128i a, __m128i b, std::uint16_t) { return _mm_cmpeq_epi16(a, b); }
 inline __m128i splat(std::uint8_t voxel) { return _mm_set1_epi8(static_cast<char>(voxel)); }
@@ -57,8 +58,8 @@ std::uint64_t differing_bits(const Voxel* a, const Voxel* b, std::uint32_t count
   return ~equal & low_bits(count);
 }
 
-/// Returns a word with bit i set if ids[i] < limit, for i < count. Requires 0 < count <= 64, a limit
-/// of at most 256, and kCompareSlack readable ids behind them.
+/// Returns a word with bit i set if ids[i] < limit, for i < count. Requires 0 < count <= 64, a
+/// limit of at most 256, and kCompareSlack readable ids behind them.
 inline std::uint64_t ids_below(const std::uint8_t* ids, std::uint32_t count, std::uint32_t limit) {
   if (limit == 0) return 0;
   std::uint64_t below = 0;
@@ -74,8 +75,8 @@ inline std::uint64_t ids_below(const std::uint8_t* ids, std::uint32_t count, std
   return below & low_bits(count);
 }
 
-/// Returns how many of the `count` voxels from `row` on equal `voxel`, before the first that differs.
-/// Requires kCompareSlack readable voxels behind them.
+/// Returns how many of the `count` voxels from `row` on equal `voxel`, before the first that
+/// differs. Requires kCompareSlack readable voxels behind them.
 template <class Voxel>
 std::uint32_t equal_prefix(const Voxel* row, std::uint32_t count, Voxel voxel) {
   std::uint32_t i = 0;

@@ -1,6 +1,6 @@
-// ClientRig: the parts of a client from the replica to the screen, without a server and a network. It
-// holds a block of a world and draws it off screen. What a real client does in a turn of its main
-// thread, turn() does here. Thread: one.
+// ClientRig: the parts of a client from the replica to the screen, without a server and a network.
+// It holds a block of a world and draws it off screen. What a real client does in a turn of its
+// main thread, turn() does here. Thread: one.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -38,8 +38,8 @@ class ClientRig {
   static constexpr std::int32_t kEdge = 32, kRadius = 9;
   static constexpr std::uint8_t kRadiusV = 1;
 
-  /// Makes the chunks of `world` around its ground, a disc of kRadius chunks, and shows them. Throws
-  /// std::runtime_error if there is no OpenGL.
+  /// Makes the chunks of `world` around its ground, a disc of kRadius chunks, and shows them.
+  /// Throws std::runtime_error if there is no OpenGL.
   ClientRig(const VoxelWorld& world, const RigOptions& options);
 
   /// Runs turns until the next frame was presented. The frame is ordered as soon as the one before

@@ -16,8 +16,8 @@ struct EffectsResult {
 };
 
 /// Draws the worlds hills and luanti from a player's height, with every quality. The ways to draw
-/// take turns, in an order that is shuffled for each frame. Fails if the Luanti world cannot be read.
-/// Throws std::runtime_error if there is no OpenGL.
+/// take turns, in an order that is shuffled for each frame. Fails if the Luanti world cannot be
+/// read. Throws std::runtime_error if there is no OpenGL.
 Result<EffectsResult, std::string> measure_effects(const ClientBenchOptions& options,
                                                    std::ostream& progress);
 

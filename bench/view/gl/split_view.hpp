@@ -1,5 +1,5 @@
-// SplitView: a picture in parts side by side, in each of which the client's renderer draws the meshes
-// of one pane from the same camera. Thread: the one whose context is current.
+// SplitView: a picture in parts side by side, in each of which the client's renderer draws the
+// meshes of one pane from the same camera. Thread: the one whose context is current.
 #pragma once
 #include <memory>
 #include <span>

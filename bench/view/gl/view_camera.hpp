@@ -1,5 +1,5 @@
-// ViewCamera: a camera that looks at the middle of a block of chunks, and that the mouse turns around
-// it.
+// ViewCamera: a camera that looks at the middle of a block of chunks, and that the mouse turns
+// around it.
 #pragma once
 #include <array>
 #include <span>

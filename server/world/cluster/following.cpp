@@ -35,7 +35,7 @@ std::vector<LogPart> Following::stop() {
 }
 
 bool Following::catch_up(const ReadLog& read, const Clocks& now) {
-  return !take(read, now) && world_.order.head() == read.last;
+  return take(read, now) && world_.order.head() == read.last;
 }
 
 void Following::leave(const std::string& why) {
@@ -58,11 +58,11 @@ void Following::connected(const std::optional<ChannelBinding>& binding, const Cl
   if (!world_.link.connected(binding, now)) leave_slow();
 }
 
-/// Takes what a reader has found. Returns why the log is not the one that this server has followed,
-/// or nullopt. Records that are known already must be the same.
-std::optional<std::string> Following::take(const ReadLog& read, const Clocks& now) {
+/// Takes what a reader has found. Fails if the log is not the one that this server has followed: its
+/// record at the head of this server has another epoch.
+Result<void, std::string> Following::take(const ReadLog& read, const Clocks& now) {
   const Version known = world_.order.last_record();
-  if (read.last < known.seq) return std::nullopt;
+  if (read.last < known.seq) return {};
   std::vector<LogPartRecord> records;
   bool has_head = known.seq == 0;
   for (const EditRecord& record : read.records) {
@@ -70,11 +70,11 @@ std::optional<std::string> Following::take(const ReadLog& read, const Clocks& no
     if (version.seq == known.seq) has_head = version.epoch == known.epoch;
     if (version.seq > known.seq) records.push_back({record, 0});
   }
-  if (!has_head) return "the log has other edits than this server";
+  if (!has_head) return failure("the log has other edits than this server");
   for (const PlayerRow& row : read.players) world_.order.players().restore(row);
   world_.order.names().follow_all(read.names);
   follow(records, now);
-  return std::nullopt;
+  return {};
 }
 
 /// Applies records that another server has ordered, and sends them to the sessions.
@@ -220,7 +220,7 @@ void Following::received(Message&& message, const Clocks& now) {
   if (std::holds_alternative<Pong>(message)) return;
   if (const auto* welcome = std::get_if<Welcome>(&message)) {
     if (stage == Stage::greeting) {
-      if (const auto why = world_.link.on_welcome(*welcome)) leave(*why);
+      if (const auto done = world_.link.on_welcome(*welcome); !done) leave(done.error());
       return;
     }
   } else if (std::holds_alternative<SessionAccepted>(message)) {
@@ -244,9 +244,9 @@ void Following::log_read(const Result<ReadLog, std::string>& read, const Clocks&
   is_reading_ = false;
   if (world_.link.stage() != Stage::reading) return;
   if (!read) return leave(read.error());
-  if (const auto why = take(*read, now)) {
+  if (const auto taken = take(*read, now); !taken) {
     world_.order.ownership().find_fork();
-    return leave(*why);
+    return leave(taken.error());
   }
   const Version known = world_.order.last_record();
   if (known.epoch > world_.link.owner_epoch()) return leave(kTakenOver);
@@ -263,7 +263,7 @@ void Following::log_read(const Result<ReadLog, std::string>& read, const Clocks&
 }
 
 void Following::tick(const Clocks& now) {
-  if (const auto why = world_.link.tick(now)) return leave(*why);
+  if (const auto done = world_.link.tick(now); !done) return leave(done.error());
   if (world_.link.stage() == Stage::reading && !is_reading_ && now.steady_us >= read_again_us_)
     read_more();
 }

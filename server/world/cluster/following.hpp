@@ -95,7 +95,7 @@ class Following {
   };
   void leave(const std::string& why);
   void leave_slow() { leave(kOwnerReadsTooSlowly); }
-  std::optional<std::string> take(const ReadLog& read, const Clocks& now);
+  Result<void, std::string> take(const ReadLog& read, const Clocks& now);
   void follow(std::span<const LogPartRecord> records, const Clocks& now);
   void go_live(const Clocks& now);
   void read_more();

@@ -25,7 +25,7 @@ bool OwnerLink::connected(const std::optional<ChannelBinding>& binding, const Cl
   hello_.key = config_.server_keys.public_key;
   hello_.name = "server";
   hello_.features = kFeatureServers | kFeatureServerList;
-  // The same on each connection, so that the owner knows which one it replaces.
+  // Each connection of this start sends one number, so that the owner knows which one it replaces.
   hello_.instance = earlier;
   if (earlier == 0) {
     std::array<std::uint8_t, sizeof hello_.instance> instance{};
@@ -36,21 +36,21 @@ bool OwnerLink::connected(const std::optional<ChannelBinding>& binding, const Cl
   return send(hello_);
 }
 
-std::optional<std::string> OwnerLink::on_welcome(const Welcome& welcome) {
+Result<void, std::string> OwnerLink::on_welcome(const Welcome& welcome) {
   const PublicKey& key = config_.server_keys.public_key;
   const Bytes transcript = server_transcript(hello_, welcome, binding_);
   if (welcome.world_id != config_.world_id || welcome.server_key != key ||
       !verify(key, transcript, welcome.signature))
-    return "what answers there is no server of this world";
+    return failure("what answers there is no server of this world");
   if ((welcome.features & kFeatureServers) == 0)
-    return "the server there does not let others follow";
-  if (welcome.epoch < order_.last_record().epoch) return kTakenOver;
+    return failure("the server there does not let others follow");
+  if (welcome.epoch < order_.last_record().epoch) return failure(kTakenOver);
   stage_ = Stage::authenticating;
   owner_epoch_ = welcome.epoch;
   const Bytes own = client_transcript(hello_, welcome, binding_);
   if (!send(ClientAuth{sign(config_.server_keys, own), "", std::nullopt}))
-    return kOwnerReadsTooSlowly;
-  return std::nullopt;
+    return failure(kOwnerReadsTooSlowly);
+  return {};
 }
 
 bool OwnerLink::ask_for_log() {
@@ -59,14 +59,14 @@ bool OwnerLink::ask_for_log() {
       FollowRequest{{order_.epoch(), order_.head()}, config_.player_address, config_.page_address});
 }
 
-std::optional<std::string> OwnerLink::tick(const Clocks& now) {
-  if (stage_ == Stage::none) return std::nullopt;
+Result<void, std::string> OwnerLink::tick(const Clocks& now) {
+  if (stage_ == Stage::none) return {};
   if (now.steady_us - heard_us_ >= kOwnerSilentUsMax)
-    return "the owner has sent nothing for too long";
-  if (!heard_us() || now.steady_us - pinged_us_ < kPingIntervalUs) return std::nullopt;
+    return failure("the owner has sent nothing for too long");
+  if (!heard_us() || now.steady_us - pinged_us_ < kPingIntervalUs) return {};
   pinged_us_ = now.steady_us;
-  if (!send(Ping{now.steady_us})) return kOwnerReadsTooSlowly;
-  return std::nullopt;
+  if (!send(Ping{now.steady_us})) return failure(kOwnerReadsTooSlowly);
+  return {};
 }
 
 }  // namespace runstone

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/core/channel_binding.hpp"
+#include "common/core/result.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "server/world/order/order.hpp"
 
@@ -42,14 +43,14 @@ class OwnerLink {
   /// Begins the handshake. Returns false if the connection takes nothing.
   bool connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void heard(const Clocks& now) { heard_us_ = now.steady_us; }
-  /// Answers the welcome. Returns why what answered is not the owner, or nullopt.
-  std::optional<std::string> on_welcome(const Welcome& welcome);
+  /// Answers the welcome. Fails if the sender is not the owner, or reads too slowly.
+  Result<void, std::string> on_welcome(const Welcome& welcome);
   /// Asks for the log behind what this server has.
   bool ask_for_log();
   /// Sends a message. Returns false if there is no room, or no connection.
   bool send(const Message& message) { return environment_.send_to_owner(encode_message(message)); }
-  /// Sends pings while the owner is connected. Returns why the connection must end, or nullopt.
-  std::optional<std::string> tick(const Clocks& now);
+  /// Sends pings while the owner is connected. Fails if the connection must end.
+  Result<void, std::string> tick(const Clocks& now);
 
  private:
   const WorldConfig& config_;

@@ -65,8 +65,8 @@ ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, Aut
         break;
       }
     }
-    const auto refused = order_.authority().submit(offer);
-    RUNSTONE_ASSERT(!refused);
+    const auto queued = order_.authority().enqueue(offer);
+    RUNSTONE_ASSERT(queued.has_value());
     ++out.count;
   }
   if (out.count < offers.size()) out.state = State::busy;

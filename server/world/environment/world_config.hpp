@@ -34,8 +34,8 @@ struct WorldConfig {
   bool may_be_followed = false;  // the world is where other servers reach it, too
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
-  std::size_t sessions_per_key = 0;           // likewise; 0: no limit
-  std::size_t sessions_per_address = 0;       // likewise; 0: no limit
+  std::size_t sessions_per_key = 0;           // beyond it: server_full; 0: no limit
+  std::size_t sessions_per_address = 0;       // beyond it: server_full; 0: no limit
   std::size_t names_per_key = 3;              // that a key may own; owned names stay owned
   std::uint64_t names_per_address = 0;        // claimed within an hour; 0: no limit
   std::set<std::string> reserved_names;       // folded; nobody may have them

@@ -83,7 +83,8 @@ class WorldEnvironment {
   /// WorldServer::drained() is called when the queue has room again.
   virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                              const ChunkPtr& chunk) = 0;
-  /// Does the same for a tile that replaces one that the session has, in the encoding of chunks.
+  /// Queues a tile that replaces one that the session has, as send_snapshot() does, but in the
+  /// encoding of chunks.
   /// After an edit many sessions get the tile, and the time to read it delays their edits.
   virtual bool send_changed_tile(SessionId session, std::uint32_t view, const ChunkKey& key,
                                  const ChunkPtr& tile) {

@@ -225,10 +225,10 @@ bool Ground::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
     loads_.load_again(key, OperatorLogLevel::debug, "it is newer than what has arrived", now);
     return false;
   }
-  if (const auto wrong = chunks.loaded(key, std::move(chunk))) {
+  if (const auto loaded = chunks.loaded(key, std::move(chunk)); !loaded) {
     ++base_.counters.chunks_failed;
     base_.environment.report(OperatorLogLevel::error,
-                             "chunk=" + text_of(key) + " quarantined: " + *wrong);
+                             "chunk=" + text_of(key) + " quarantined: " + loaded.error());
   }
   deliver_loaded(key, now);
   // A chunk that was loaded for its stack alone has no user, so nothing else makes it a candidate

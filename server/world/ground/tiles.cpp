@@ -139,7 +139,7 @@ void Tiles::start(const Clocks& now) {
   if (base_.order.is_stopping()) return;
   board_.mark_outdated(now);
   while (const auto key = board_.queue().next(now.steady_us, kTilesInFlightMax)) {
-    // A session may leave before its tile is made. Its player pays all the same.
+    // A session may leave before its tile is made. Its player pays nevertheless.
     if (const auto waits = board_.queue().first_waiting(*key)) {
       const Viewer& viewer = base_.viewers.at(*waits);
       payers_.insert_or_assign(*key, base_.quotas.load_payer(viewer.session));

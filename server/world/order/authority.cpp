@@ -33,17 +33,17 @@ void Authority::replay_onto_stack(const EditRecord& record) {
     chunks_.replay_onto_stack({0, at}, record.version, record.edit, bytes);
 }
 
-std::optional<RejectReason> Authority::submit(const EditOffer& offer) {
-  if (resolved_.knows(offer.op)) return resolved_.answer_to(offer.op);
-  auto refusal = offer.cause == Cause::player ? check_edit(offer.edit, limits_)
-                                              : check_server_edit(offer.edit, limits_);
+Result<void, RejectReason> Authority::enqueue(const EditOffer& offer) {
+  if (resolved_.knows(offer.op)) return failure(resolved_.answer_to(offer.op));
+  const auto refusal = offer.cause == Cause::player ? check_edit(offer.edit, limits_)
+                                                    : check_server_edit(offer.edit, limits_);
   if (refusal) {
     resolved_.reject(offer.op, *refusal);
-    return refusal;
+    return failure(*refusal);
   }
   resolved_.raise(offer.op);
   queue_.push(offer);
-  return std::nullopt;
+  return {};
 }
 
 std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t large_room) {

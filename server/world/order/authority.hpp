@@ -1,4 +1,4 @@
-// Authority: orders the edits of the world. submit() checks an edit and queues or rejects it at
+// Authority: orders the edits of the world. enqueue() checks an edit and queues or rejects it at
 // once. commit() gives the queued edits consecutive sequence numbers, raises the versions of the
 // touched chunks, and publishes each touched chunk that is in memory exactly once. It uses no
 // clock, socket, disk or thread: the same offers give the same result. Rules:
@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/rules/edit_check.hpp"
@@ -44,18 +45,18 @@ class Authority {
   OperationWatermarks& resolved() { return resolved_; }
   const OperationWatermarks& resolved() const { return resolved_; }
   /// Puts a record of the log above the checkpoint back on the stacks of the chunks it touches.
-  /// Requires log order, before the first submit().
+  /// Requires log order, before the first enqueue().
   void replay_onto_stack(const EditRecord& record);
 
   /// Returns why a player's edit cannot be ordered (check_edit()), or nullopt.
   std::optional<RejectReason> check(const EditDescriptor& edit) const {
     return check_edit(edit, limits_);
   }
-  /// Queues an edit. Returns nullopt if it was queued, otherwise the reason for the rejection.
-  /// Either way the operation is resolved: submitting it again returns the same rejection, or
-  /// already_resolved. An edit of a player must pass check_edit(), any other edit
-  /// check_server_edit(). Requires that the log has room.
-  std::optional<RejectReason> submit(const EditOffer& offer);
+  /// Queues an edit, so that the next commit() orders it. Fails if the edit is rejected. Either way
+  /// the operation is resolved: a second call for it fails in the same way, or as already_resolved.
+  /// An edit of a player must pass check_edit(), any other edit check_server_edit(). Requires that
+  /// the log has room.
+  Result<void, RejectReason> enqueue(const EditOffer& offer);
   /// Edits may use the materials below `count` from now on.
   void set_material_count(std::size_t count) { limits_.material_count = count; }
   /// Resolves an operation that was rejected by a check outside of Authority.

@@ -150,9 +150,9 @@ bool WorldChunks::begin_load(const ChunkKey& key) {
   return true;
 }
 
-std::optional<std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk) {
+Result<void, std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk) {
   Entry* e = entry(key);
-  if (e == nullptr || e->residency != Residency::loading) return std::nullopt;
+  if (e == nullptr || e->residency != Residency::loading) return {};
   std::string wrong;
   if (chunk.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) {
     wrong = "its size differs from the world's chunk edge";
@@ -162,10 +162,10 @@ std::optional<std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk)
   }
   if (!wrong.empty()) {
     quarantine(key);
-    return wrong;
+    return failure(std::move(wrong));
   }
   apply_and_publish(key, *e, std::move(chunk));
-  return std::nullopt;
+  return {};
 }
 
 void WorldChunks::quarantine(const ChunkKey& key) {

@@ -64,10 +64,9 @@ class WorldChunks {
   std::size_t stack_size(const ChunkKey& key) const;
   /// Makes an absent chunk loading. Returns true if it was absent; the caller must load it then.
   bool begin_load(const ChunkKey& key);
-  /// Applies the stack above its version to a loaded chunk and publishes it. Returns nullopt, or
-  /// the reason why the chunk was quarantined: its size or version contradicts the log. Ignores
-  /// chunks that are not loading.
-  std::optional<std::string> loaded(const ChunkKey& key, Chunk chunk);
+  /// Applies the stack above its version to a loaded chunk and publishes it. Fails and quarantines
+  /// the chunk if its size or version contradicts the log. Ignores chunks that are not loading.
+  Result<void, std::string> loaded(const ChunkKey& key, Chunk chunk);
   /// Quarantines a chunk whose load failed, and drops its stack. A later start reads it from the
   /// log again.
   void quarantine(const ChunkKey& key);

@@ -34,24 +34,24 @@ class Credentials {
       : config_(config), order_(order), rights_(rights), changes_(changes) {}
 
   /// Gives an authenticated player without a granted role the role of an invite or, if there is
-  /// none, of the password. Returns why nothing was granted, as a sentence, or nullopt. The session
-  /// may be closed on return, if the role may not see the world.
-  std::optional<std::string> accept(const Session& session, const JoinCredentials& brought,
-                                    const Clocks& now);
+  /// none, of the password. Fails if nothing was granted: why, as a sentence. The session may be
+  /// closed on return, if the role may not see the world.
+  Result<void, std::string> accept(const Session& session, const JoinCredentials& brought,
+                                   const Clocks& now);
   /// Removes the sealed key of a slot and returns it, or returns why the session ends: there is
   /// none, which counts as a guess, or the address has guessed too often.
   Result<Bytes, Refusal> take_key(const Session& session, const KeySlot& slot, const Clocks& now);
-  /// Keeps a sealed key of the player. Returns why not, or nullopt.
-  std::optional<std::string> leave_key(const Session& session, const KeyDeposit& deposit,
-                                       const Clocks& now);
+  /// Keeps a sealed key of the player. Fails if it cannot be kept: why, as a sentence.
+  Result<void, std::string> leave_key(const Session& session, const KeyDeposit& deposit,
+                                      const Clocks& now);
 
  private:
-  std::optional<std::string> accept_invite(const Session& session, const std::string& ticket,
-                                           const Clocks& now);
-  std::optional<std::string> accept_password(const Session& session, const PasswordKey& key,
-                                             const Clocks& now);
-  std::optional<std::string> take_role(const Session& session, const RightsChange& change,
-                                       const Clocks& now);
+  Result<void, std::string> accept_invite(const Session& session, const std::string& ticket,
+                                          const Clocks& now);
+  Result<void, std::string> accept_password(const Session& session, const PasswordKey& key,
+                                            const Clocks& now);
+  Result<void, std::string> take_role(const Session& session, const RightsChange& change,
+                                      const Clocks& now);
 
   const WorldConfig& config_;
   Order& order_;

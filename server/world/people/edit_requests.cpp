@@ -92,10 +92,10 @@ std::optional<EditRequests::Refusal> EditRequests::decide(const Attempt& attempt
     return refusal;
   }
   const EditRequest& request = attempt.request;
-  const auto refused = authority.submit({attempt.op, Cause::player, request.submitted_us,
+  const auto queued = authority.enqueue({attempt.op, Cause::player, request.submitted_us,
                                          request.edit, 0, request.action, attempt.now.steady_us});
-  if (!refused) return std::nullopt;
-  return Refusal{*refused};
+  if (queued) return std::nullopt;
+  return Refusal{queued.error()};
 }
 
 /// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.

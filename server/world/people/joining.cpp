@@ -103,17 +103,17 @@ bool Joining::close_if_banned(Session& session) {
 /// that helps: a player who has a role keeps it.
 bool Joining::close_if_not_admitted(Session& session, const JoinCredentials& brought,
                                     const Clocks& now) {
-  const auto no_role = credentials_.accept(session, brought, now);
+  const auto accepted = credentials_.accept(session, brought, now);
   if (session.is_closed) return true;  // the new role closed it
   auto why = world_.rights.join_refusal(session.key, session.address);
   if (!why) {
-    if (no_role) {
-      world_.rights.note_refusal(session.key, "role: " + *no_role, now.utc_us);
-      of_[session.id].no_role = *no_role;
+    if (!accepted) {
+      world_.rights.note_refusal(session.key, "role: " + accepted.error(), now.utc_us);
+      of_[session.id].no_role = accepted.error();
     }
     return false;
   }
-  if (no_role) *why += " (" + *no_role + ")";
+  if (!accepted) *why += " (" + accepted.error() + ")";
   world_.rights.note_refusal(session.key, kRefusedJoin + *why, now.utc_us);
   world_.sessions.close(session, GoodbyeReason::not_admitted, *why);
   return true;
@@ -307,9 +307,10 @@ void Joining::on_key_deposit(Session& session, const KeyDeposit& deposit, const 
   if (close_if_authenticated(session) || close_if_forged(session, deposit.signature) ||
       close_if_not_admitted(session, {}, now))
     return;
-  const auto why = credentials_.leave_key(session, deposit, now);
+  const auto kept = credentials_.leave_key(session, deposit, now);
   constexpr auto kSeconds = static_cast<std::uint32_t>(kDepositUs / 1'000'000);
-  if (world_.sessions.send_or_close(session, KeyDeposited{why ? 0 : kSeconds, why.value_or("")}))
+  const KeyDeposited answer = kept ? KeyDeposited{kSeconds, ""} : KeyDeposited{0, kept.error()};
+  if (world_.sessions.send_or_close(session, answer))
     world_.sessions.close(session, GoodbyeReason::closing, "that is all");
 }
 

@@ -13,6 +13,7 @@
 
 #include "common/core/address_block.hpp"
 #include "common/core/public_key.hpp"
+#include "common/core/result.hpp"
 #include "protocol/codec/device_code.hpp"
 
 namespace runstone {
@@ -24,9 +25,9 @@ inline constexpr std::size_t kDepositsPerAddress = 32;
 
 class KeyDeposits {
  public:
-  /// Keeps a sealed key. Returns nullopt, or the reason why it is not kept. Cost: O(deposits).
-  std::optional<std::string> put(const PublicKey& owner, AddressBlock from, KeyDeposit deposit,
-                                 TimeUs now_us) {
+  /// Keeps a sealed key. Fails if it cannot be kept: why, as a sentence. Cost: O(deposits).
+  Result<void, std::string> put(const PublicKey& owner, AddressBlock from, KeyDeposit deposit,
+                                TimeUs now_us) {
     std::erase_if(kept_, [now_us](const Kept& kept) { return kept.until_us <= now_us; });
     const auto count_others = [&](auto is_counted) {
       return static_cast<std::size_t>(
@@ -35,12 +36,13 @@ class KeyDeposits {
     };
     if (count_others([](const Kept&) { return true; }) >= kDepositsMax ||
         count_others([from](const Kept& kept) { return kept.from == from; }) >= kDepositsPerAddress)
-      return "the server keeps as many keys as it can: try again in some minutes";
+      return failure("the server keeps as many keys as it can: try again in some minutes");
     const auto same = find(deposit.slot);
-    if (same != kept_.end() && same->owner != owner) return "the code is in use: make another one";
+    if (same != kept_.end() && same->owner != owner)
+      return failure("the code is in use: make another one");
     std::erase_if(kept_, [&owner](const Kept& kept) { return kept.owner == owner; });
     kept_.push_back({owner, from, now_us + kDepositUs, deposit.slot, std::move(deposit.sealed)});
-    return std::nullopt;
+    return {};
   }
 
   /// Removes the key of a slot and returns it, or returns nullopt if there is none. All slots are

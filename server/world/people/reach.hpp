@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-/// Returns true if the edit lies within WorldConfig::reach_max of the place that the session's player
-/// can have reached by now.
+/// Returns true if the edit lies within WorldConfig::reach_max of the place that the session's
+/// player can have reached by now.
 bool is_within_reach(const WorldConfig& config, Session& session, const EditDescriptor& edit,
                      const Clocks& now);
 

@@ -1,6 +1,6 @@
-// Plane colours: meshes in which a material tells the plane of a face in the world, so that a picture
-// shows which plane each pixel belongs to. They serve to find pinholes: a mesh of merged quads and
-// the same one cut into single faces must give equal pictures.
+// Plane colours: meshes in which a material tells the plane of a face in the world, so that a
+// picture shows which plane each pixel belongs to. They serve to find pinholes: a mesh of merged
+// quads and the same one cut into single faces must give equal pictures.
 #pragma once
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"

@@ -1,7 +1,7 @@
 // RawClient: a blocking socket that sends and receives frames and messages, over TLS unless told
-// otherwise. It does only what the test does, and it can send any bytes, also invalid ones. Reads and
-// writes have a deadline, so a test fails instead of hanging.
-// Threads: after the handshake one may send while another reads.
+// otherwise. It does only what the test does, and it can send any bytes, also invalid ones. Reads
+// and writes have a deadline, so a test fails instead of hanging. Threads: after the handshake one
+// may send while another reads.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -103,8 +103,8 @@ class RawClient {
     arrived_.pop_front();
     return message;
   }
-  /// Returns the next message of one kind, or the next ChunkSnapshot of any message. Earlier messages
-  /// are passed to `seen`, if any, and dropped.
+  /// Returns the next message of one kind, or the next ChunkSnapshot of any message. Earlier
+  /// messages are passed to `seen`, if any, and dropped.
   template <class Kind>
   std::optional<Kind> next_of(std::vector<Message>* seen = nullptr) {
     while (auto message = next()) {

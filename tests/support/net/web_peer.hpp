@@ -1,6 +1,6 @@
-// WebPeer: a blocking socket of a browser's side, over TLS if told so: HTTP requests, and a WebSocket
-// (RFC 6455) written by hand, so that it can send what no library sends. Reads have a deadline, so a
-// test fails instead of hanging.
+// WebPeer: a blocking socket of a browser's side, over TLS if told so: HTTP requests, and a
+// WebSocket (RFC 6455) written by hand, so that it can send what no library sends. Reads have a
+// deadline, so a test fails instead of hanging.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -177,8 +177,8 @@ class WebPeer {
     return true;
   }
   std::size_t byte(std::size_t at) const { return static_cast<std::uint8_t>(in_[at]); }
-  /// Returns the bytes of the header and the payload of the first frame, or nullopt if the header is
-  /// not complete.
+  /// Returns the bytes of the header and the payload of the first frame, or nullopt if the header
+  /// is not complete.
   std::optional<std::pair<std::size_t, std::size_t>> frame_sizes() const {
     if (in_.size() < 2) return std::nullopt;
     const std::size_t first = byte(1);

@@ -1,7 +1,7 @@
 // DenseChunk: the oracle for run chunks. It has a flat vector of materials, per-voxel loops, its
 // own index arithmetic and its own digest. It shares no code with common/runs and no formula with
-// its fast paths. Every new DenseChunk counts as a dense expansion (copies do not), because the rule
-// "runs from end to end" requires oracles to count theirs (common/runs/dense.hpp).
+// its fast paths. Every new DenseChunk counts as a dense expansion (copies do not), because the
+// rule "runs from end to end" requires oracles to count theirs (common/runs/dense.hpp).
 #pragma once
 #include <iosfwd>
 #include <optional>

@@ -14,8 +14,8 @@ namespace runstone::test {
 /// edge 32 only.
 std::unique_ptr<Generator> scenario_generator(unsigned number, unsigned edge);
 
-/// The step from one scenario to the next in tests of edges 64 and 128. With a sanitizer all of them
-/// would take minutes.
+/// The step from one scenario to the next in tests of edges 64 and 128. With a sanitizer all of
+/// them would take minutes.
 #ifdef RUNSTONE_SANITIZED
 inline constexpr unsigned kLargeScenarioStep = 12;
 #else

@@ -2,11 +2,10 @@
 // - Unsynced writes may then be lost, kept, or torn at sector borders, each sector independently,
 //   in any subset and so in any order.
 // - Files that were never synced may disappear, and unsynced deletions may come back.
-// - Synced data stays.
-// It promises what SQLite's default VFS promises on Linux: bytes outside a write are never harmed
-// (powersafe overwrite), and a sync of a new file also syncs its name. Connections of one process
-// share files and WAL memory. Threads: any, for connections and controls; power_loss() requires that
-// no connection of before is used meanwhile.
+// - Synced data stays. It promises what SQLite's default VFS promises on Linux: bytes outside a
+//   write are never harmed (powersafe overwrite), and a sync of a new file also syncs its name.
+//   Connections of one process share files and WAL memory. Threads: any, for connections and
+//   controls; power_loss() requires that no connection of before is used meanwhile.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// TempPlace: a place for the worlds of one test (server/store/store.hpp), removed with the object. It
-// is a folder, or, if RUNSTONE_TEST_POSTGRES has the address of a PostgreSQL database, schemas of that
-// database. So a test of the store runs on both. Tests of the files of SQLite use TempFolder and have the
-// tag [sqlite]; scripts/check-postgres leaves them out.
+// TempPlace: a place for the worlds of one test (server/store/store.hpp), removed with the object.
+// It is a folder, or, if RUNSTONE_TEST_POSTGRES has the address of a PostgreSQL database, schemas
+// of that database. So a test of the store runs on both. Tests of the files of SQLite use
+// TempFolder and have the tag [sqlite]; scripts/check-postgres leaves them out.
 #pragma once
 #include <unistd.h>
 
@@ -40,8 +40,8 @@ class TempPlace {
   bool is_postgres() const { return !url_.empty(); }
   /// Returns the place of a world.
   std::string path() const { return is_postgres() ? place_of(schema_) : folder_.path(); }
-  /// Returns the place of another world, for a plain name. Returns the database of a world for raw_sql(),
-  /// for "world.sqlite" and for "NAME/world.sqlite".
+  /// Returns the place of another world, for a plain name. Returns the database of a world for
+  /// raw_sql(), for "world.sqlite" and for "NAME/world.sqlite".
   std::string operator/(const std::string& name) {
     if (!is_postgres()) return folder_ / name;
     std::string world = name.substr(0, name.rfind("world.sqlite"));
@@ -69,7 +69,8 @@ class TempPlace {
   std::set<std::string> schemas_;
 };
 
-/// Opens the database of a world for writing, without a store. `file` is that of TempPlace::operator/().
+/// Opens the database of a world for writing, without a store. `file` is that of
+/// TempPlace::operator/().
 inline sql::Result<sql::Database> open_database(const std::string& file) {
   if (sql::is_postgres_url(file)) return sql::open_postgres(file, sql::PostgresMode::write);
   return sql::open_sqlite(file, sql::SqliteMode::write);

@@ -22,8 +22,9 @@ inline bool send_all(int socket, ByteView bytes) {
   return true;
 }
 
-/// Performs the handshake of a client with the server `host` over a connected socket. Returns nullopt
-/// if it fails, or if the server is silent for ten seconds. `source` must outlive the channel.
+/// Performs the handshake of a client with the server `host` over a connected socket. Returns
+/// nullopt if it fails, or if the server is silent for ten seconds. `source` must outlive the
+/// channel.
 inline std::optional<TlsChannel> connect_tls(int socket, SocketSource& source,
                                              const TlsContext& context, const std::string& host) {
   constexpr int kSilentMsMax = 10'000;

@@ -1,5 +1,5 @@
-// TitleBench: the real client program in a window of its own display, one at a time. Tests press its
-// keys and read its log.
+// TitleBench: the real client program in a window of its own display, one at a time. Tests press
+// its keys and read its log.
 #pragma once
 #include <catch2/catch.hpp>
 #include <chrono>

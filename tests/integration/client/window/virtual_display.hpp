@@ -71,8 +71,8 @@ class VirtualDisplay {
     name_ = ":" + number;
   }
 
-  /// Returns DISPLAY=..., the setting for a driver without a GPU, and user folders inside the folder
-  /// of this display.
+  /// Returns DISPLAY=..., the setting for a driver without a GPU, and user folders inside the
+  /// folder of this display.
   std::vector<std::string> environment() const {
     return {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1", "XDG_CONFIG_HOME=" + folder_ + "/config",
             "XDG_DATA_HOME=" + folder_ + "/data", "XDG_STATE_HOME=" + folder_ + "/state"};

@@ -42,8 +42,8 @@ class HostileClients {
     for (ClientSequence seq = 1; !is_over_ && client.is_open(); ++seq) {
       client.send(
           EditRequest{seq, 0, clipboard ? far_paste(clipboard, n, random) : far_box(random)});
-      // It reads a few messages only. If it read until none is left, the commits of others would keep
-      // it from sending.
+      // It reads a few messages only. If it read until none is left, the commits of others would
+      // keep it from sending.
       for (int read = 0; read < kReadsMax && client.next(kReadMs); ++read) {
       }
     }

@@ -1,5 +1,5 @@
-// PostgresServers: servers of one world in PostgreSQL, each in a process of its own. One owns the world, the
-// others follow. Its tests need a PostgreSQL server, see scripts/check-postgres.
+// PostgresServers: servers of one world in PostgreSQL, each in a process of its own. One owns the
+// world, the others follow. Its tests need a PostgreSQL server, see scripts/check-postgres.
 #pragma once
 #include <catch2/catch.hpp>
 #include <functional>
@@ -39,8 +39,8 @@ struct PostgresServers {
     REQUIRE(server->port() != 0);
     return server;
   }
-  /// Returns the clients' sequences of the log, by author, in the order of the log. Checks that the world
-  /// is sound, and that epochs never become lower.
+  /// Returns the clients' sequences of the log, by author, in the order of the log. Checks that the
+  /// world is sound, and that epochs never become lower.
   std::map<AuthorId, std::vector<ClientSequence>> log() const {
     std::map<AuthorId, std::vector<ClientSequence>> edits;
     const auto store = open_world(place.path(), StoreAccess::read_only);

@@ -64,7 +64,8 @@ class ServerProcess {
   /// Stops the process as a frozen machine, and lets it go on.
   void pause() { ::kill(child_, SIGSTOP); }
   void resume() { ::kill(child_, SIGCONT); }
-  /// Waits until the server ends by itself. Returns true if its log had failed. Call it at most once.
+  /// Waits until the server ends by itself. Returns true if its log had failed. Call it at most
+  /// once.
   bool fails() { return wait() != 0; }
   /// Kills the process as `kill -9` does. It may be called again.
   void kill() {

@@ -1,5 +1,5 @@
-// FakeServer: a Unix socket in the place of the server's, with which a test decides what the gateway
-// gets, and what is read of it. Reads and writes have a deadline.
+// FakeServer: a Unix socket in the place of the server's, with which a test decides what the
+// gateway gets, and what is read of it. Reads and writes have a deadline.
 #pragma once
 #include <poll.h>
 #include <sys/socket.h>

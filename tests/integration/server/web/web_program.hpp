@@ -79,8 +79,8 @@ class WebProgram {
     }
     return false;
   }
-  /// From now on the program can only open a file after it has closed one. Requires that the numbers
-  /// of its descriptors have no gap: a number behind a gap could not be used again.
+  /// From now on the program can only open a file after it has closed one. Requires that the
+  /// numbers of its descriptors have no gap: a number behind a gap could not be used again.
   void forbid_more_files() {
     const std::set<rlim_t> open = open_files();
     REQUIRE(*open.rbegin() + 1 == open.size());

@@ -1,7 +1,7 @@
-// ClusterBench: servers of one world in one thread. Server 0 owns the world at first, the others follow
-// it. Messages between them are encoded and decoded, as between programs. The bench is their database:
-// it keeps what the owner's log writes, up to the sequence that the test allows. Its players answer a
-// Resume as clients do.
+// ClusterBench: servers of one world in one thread. Server 0 owns the world at first, the others
+// follow it. Messages between them are encoded and decoded, as between programs. The bench is their
+// database: it keeps what the owner's log writes, up to the sequence that the test allows. Its
+// players answer a Resume as clients do.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -89,8 +89,8 @@ struct ClusterBench {
     std::vector<Message> from_owner;  // all that arrived
   };
 
-  /// Makes an owner and connects followers with it. `sends_unwritten`: servers send what is not durable
-  /// to those that come, as all programs but old ones do.
+  /// Makes an owner and connects followers with it. `sends_unwritten`: servers send what is not
+  /// durable to those that come, as all programs but old ones do.
   explicit ClusterBench(std::size_t followers = 1, WorldConfig c = config(),
                         bool sends_unwritten = true)
       : config_(std::move(c)) {
@@ -175,7 +175,8 @@ struct ClusterBench {
     run();
   }
 
-  /// Writes the owner's log, records up to durable_max. A row of a player is written with its records.
+  /// Writes the owner's log, records up to durable_max. A row of a player is written with its
+  /// records.
   void write() {
     if (gone.contains(owner)) return;
     Server& mine = servers[owner];

@@ -14,8 +14,8 @@ inline WorldConfig with_tiles() {
   return c;
 }
 
-/// From here a session draws the tiles of levels 1 and 2 at the origin. From the origin it draws what is
-/// below them.
+/// From here a session draws the tiles of levels 1 and 2 at the origin. From the origin it draws
+/// what is below them.
 inline constexpr ChunkCoord kAside{4, 0, 0};
 
 /// A world whose ground is the layer of chunks at y = 0. Each tile that has ground is dotted.

@@ -35,7 +35,13 @@ Chunk base_chunk(Material material = kEmpty) {
 
 void load(Authority& authority, const ChunkKey& key, const Chunk& chunk) {
   REQUIRE(authority.chunks().begin_load(key));
-  REQUIRE_FALSE(authority.chunks().loaded(key, chunk).has_value());
+  REQUIRE(authority.chunks().loaded(key, chunk).has_value());
+}
+
+/// Queues an edit. Returns why it was rejected, or nullopt if it was queued.
+std::optional<RejectReason> why_rejected(Authority& authority, const EditOffer& offer) {
+  const auto queued = authority.enqueue(offer);
+  return queued ? std::nullopt : std::optional(queued.error());
 }
 
 constexpr ChunkKey kOrigin{0, {0, 0, 0}};
@@ -44,14 +50,14 @@ constexpr Clocks kNow{1000, 5000};
 
 TEST_CASE("edits of one action name its first edit in commit and record", "[world][undo]") {
   Authority authority(limits(), {3, 40, 0});
-  const auto submit = [&](ClientSequence seq, ClientSequence action) {
+  const auto enqueue = [&](ClientSequence seq, ClientSequence action) {
     EditOffer o = offer(seq, box(0, 4), 1);
     o.action = action;
-    return authority.submit(o);
+    return authority.enqueue(o);
   };
-  CHECK_FALSE(submit(1, 1).has_value());
-  CHECK_FALSE(authority.submit(offer(1, box(0, 4), 2, 2)).has_value());
-  CHECK_FALSE(submit(2, 1).has_value());
+  CHECK(enqueue(1, 1).has_value());
+  CHECK(authority.enqueue(offer(1, box(0, 4), 2, 2)).has_value());
+  CHECK(enqueue(2, 1).has_value());
   auto batch = authority.commit(kNow);
   REQUIRE(batch.has_value());
   REQUIRE(batch->records.size() == 3);
@@ -60,7 +66,7 @@ TEST_CASE("edits of one action name its first edit in commit and record", "[worl
     if (record.op.author == 1) (record.op.seq == 1 ? first : second) = record.version.seq;
     CHECK(record.subject == (record.op == OperationId{1, 77, 2} ? first : 0));
   }
-  CHECK_FALSE(submit(3, 1).has_value());  // in the next commit
+  CHECK(enqueue(3, 1).has_value());  // in the next commit
   batch = authority.commit(kNow);
   REQUIRE(batch.has_value());
   CHECK(batch->records[0].subject == first);
@@ -72,9 +78,9 @@ TEST_CASE("queued edits get consecutive sequences, and the previous sequence of 
           "[world]") {
   Authority authority(limits(), {3, 40, 0});
   load(authority, kOrigin, base_chunk());
-  CHECK_FALSE(authority.submit(offer(1, box(0, 4), 1)).has_value());
-  CHECK_FALSE(authority.submit(offer(2, box(10, 20), 2)).has_value());  // two chunks
-  CHECK_FALSE(authority.submit(offer(3, box(16, 18), 3)).has_value());  // east only
+  CHECK(authority.enqueue(offer(1, box(0, 4), 1)).has_value());
+  CHECK(authority.enqueue(offer(2, box(10, 20), 2)).has_value());  // two chunks
+  CHECK(authority.enqueue(offer(3, box(16, 18), 3)).has_value());  // east only
   const auto batch = authority.commit(kNow);
   REQUIRE(batch.has_value());
   CHECK(batch->commit.epoch == 3);
@@ -99,12 +105,12 @@ TEST_CASE("queued edits get consecutive sequences, and the previous sequence of 
 
 TEST_CASE("records have version, operation and a time that never decreases", "[world]") {
   Authority authority(limits(), {2, 0, 0, 9000});
-  (void)authority.submit(offer(1, SetVoxel{{1, 1, 1}}, 1));
+  (void)authority.enqueue(offer(1, SetVoxel{{1, 1, 1}}, 1));
   const auto first = authority.commit({0, 5000});
   CHECK(first->records[0].time_us == 9000);  // the wall clock was behind the log
   CHECK(first->records[0].version == Version{2, 1});
   CHECK(first->records[0].op == OperationId{1, 77, 1});
-  (void)authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2));
+  (void)authority.enqueue(offer(2, SetVoxel{{1, 1, 1}}, 2));
   CHECK(authority.commit({5000, 10'000})->records[0].time_us == 10'000);
 }
 
@@ -112,7 +118,7 @@ TEST_CASE("an edit that changes no voxel still moves the version", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   load(authority, kOrigin, base_chunk(5));
   const ChunkPtr before = authority.chunks().find(kOrigin);
-  (void)authority.submit(offer(1, box(0, 4), 5));
+  (void)authority.enqueue(offer(1, box(0, 4), 5));
   (void)authority.commit(kNow);
   const ChunkPtr after = authority.chunks().find(kOrigin);
   CHECK(after->voxels == before->voxels);
@@ -123,20 +129,20 @@ TEST_CASE("an edit that changes no voxel still moves the version", "[world]") {
 TEST_CASE("an operation is resolved once, by a commit or by a final rejection", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   authority.resolved().raise({1, 77, 10});  // from the store
-  CHECK(authority.submit(offer(10, box(0, 1), 1)) == RejectReason::already_resolved);
-  CHECK(authority.submit(offer(9, box(0, 1), 1)) == RejectReason::already_resolved);
-  CHECK_FALSE(authority.submit(offer(20, box(0, 1), 1)).has_value());  // gaps are allowed
-  CHECK(authority.submit(offer(20, box(0, 1), 1)) ==
+  CHECK(why_rejected(authority, offer(10, box(0, 1), 1)) == RejectReason::already_resolved);
+  CHECK(why_rejected(authority, offer(9, box(0, 1), 1)) == RejectReason::already_resolved);
+  CHECK(authority.enqueue(offer(20, box(0, 1), 1)).has_value());  // gaps are allowed
+  CHECK(why_rejected(authority, offer(20, box(0, 1), 1)) ==
         RejectReason::already_resolved);  // not yet committed
-  CHECK(authority.submit(offer(15, box(0, 1), 1)) == RejectReason::already_resolved);
-  CHECK(authority.submit(offer(21, box(0, 1), 99)) == RejectReason::unknown_material);
-  CHECK(authority.submit(offer(21, box(0, 1), 1)) ==
+  CHECK(why_rejected(authority, offer(15, box(0, 1), 1)) == RejectReason::already_resolved);
+  CHECK(why_rejected(authority, offer(21, box(0, 1), 99)) == RejectReason::unknown_material);
+  CHECK(why_rejected(authority, offer(21, box(0, 1), 1)) ==
         RejectReason::unknown_material);  // the same reason as before
   // Another instance of the same author, and another author, have their own watermarks.
   EditOffer other = offer(1, box(0, 1), 1);
   other.op.instance = 78;
-  CHECK_FALSE(authority.submit(other).has_value());
-  CHECK_FALSE(authority.submit(offer(1, box(0, 1), 1, 2)).has_value());
+  CHECK(authority.enqueue(other).has_value());
+  CHECK(authority.enqueue(offer(1, box(0, 1), 1, 2)).has_value());
   CHECK(authority.commit(kNow)->records.size() == 3);
 }
 
@@ -146,11 +152,11 @@ TEST_CASE("every rejection is final, also busy, and is repeated when the edit is
   authority.reject(offer(1, box(0, 1), 1).op, RejectReason::busy);
   CHECK(authority.resolved().of(1, 77) == 1);
   CHECK(authority.queue().size() == 0);
-  CHECK(authority.submit(offer(1, box(0, 1), 1)) == RejectReason::busy);
-  CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1)).has_value());
-  CHECK(authority.submit(offer(1, box(0, 1), 1)) == RejectReason::busy);
-  CHECK(authority.submit(offer(2, box(0, 1), 1)) == RejectReason::already_resolved);
-  CHECK(authority.submit(offer(3, box(0, 1), 99)) == RejectReason::unknown_material);
+  CHECK(why_rejected(authority, offer(1, box(0, 1), 1)) == RejectReason::busy);
+  CHECK(authority.enqueue(offer(2, box(0, 1), 1)).has_value());
+  CHECK(why_rejected(authority, offer(1, box(0, 1), 1)) == RejectReason::busy);
+  CHECK(why_rejected(authority, offer(2, box(0, 1), 1)) == RejectReason::already_resolved);
+  CHECK(why_rejected(authority, offer(3, box(0, 1), 99)) == RejectReason::unknown_material);
 }
 
 TEST_CASE("the oldest rejections of an instance are dropped beyond the bound", "[world]") {
@@ -170,16 +176,16 @@ TEST_CASE(
   narrow.heights = {0, 8};
   Authority authority(narrow, {1, 0, 0});
   EditOffer large = offer(1, FillBox{{{0, -4, 0}, {64, 60, 64}}}, 2);
-  CHECK(authority.submit(large) == RejectReason::outside_world);
+  CHECK(why_rejected(authority, large) == RejectReason::outside_world);
   large.op.seq = 2;
   large.cause = Cause::rollback;
-  CHECK_FALSE(authority.submit(large).has_value());
+  CHECK(authority.enqueue(large).has_value());
   EditOffer endless = offer(3, FillBox{{{0, 0, 0}, {4000, 4000, 4000}}}, 2);
   endless.cause = Cause::undo;
-  CHECK(authority.submit(endless) == RejectReason::too_large);
+  CHECK(why_rejected(authority, endless) == RejectReason::too_large);
   EditOffer unknown = offer(4, box(0, 4), 8);
   unknown.cause = Cause::redo;
-  CHECK(authority.submit(unknown) == RejectReason::unknown_material);
+  CHECK(why_rejected(authority, unknown) == RejectReason::unknown_material);
 }
 
 TEST_CASE("a commit ends before its message is too long, whatever the size of the edits",
@@ -196,7 +202,7 @@ TEST_CASE("a commit ends before its message is too long, whatever the size of th
   const auto clipboard = *Clipboard::of({1, 2}, cells);
   CHECK(clipboard->byte_size() > 48'000);
   for (ClientSequence seq = 1; seq <= 40; ++seq) {
-    CHECK_FALSE(authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty)).has_value());
+    CHECK(authority.enqueue(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty)).has_value());
   }
   std::size_t edits = 0, commits = 0;
   while (const auto batch = authority.commit(kNow)) {
@@ -209,7 +215,7 @@ TEST_CASE("a commit ends before its message is too long, whatever the size of th
   CHECK(commits == 40);  // such a paste is alone in its commit
 
   for (ClientSequence seq = 41; seq <= 40 + 500; ++seq) {
-    CHECK_FALSE(authority.submit(offer(seq, SetVoxel{{1, 1, 1}}, 1)).has_value());
+    CHECK(authority.enqueue(offer(seq, SetVoxel{{1, 1, 1}}, 1)).has_value());
   }
   CHECK(authority.commit(kNow)->records.size() == 500);
 }
@@ -219,8 +225,8 @@ TEST_CASE("the subject of an edit is in its commit and its record", "[world]") {
   EditOffer undo = offer(1, SetVoxel{{1, 1, 1}}, 1);
   undo.cause = Cause::undo;
   undo.subject = 17;
-  CHECK_FALSE(authority.submit(undo).has_value());
-  CHECK_FALSE(authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2)).has_value());
+  CHECK(authority.enqueue(undo).has_value());
+  CHECK(authority.enqueue(offer(2, SetVoxel{{1, 1, 1}}, 2)).has_value());
   const auto batch = authority.commit(kNow);
   CHECK(batch->commit.edits[0].subject == 17);
   CHECK(batch->records[0].subject == 17);
@@ -238,8 +244,8 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
     EditShape shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(5))};
     if (seq % 3 == 0) shape = FillStroke{{at, {15 - at.x, at.y, at.z}, {at.x, 15 - at.y, 20}}, 1};
     const EditOffer edit = offer(seq, shape, static_cast<Material>(rng.below(8)));
-    (void)authority.submit(edit);
-    (void)resident.submit(edit);
+    (void)authority.enqueue(edit);
+    (void)resident.enqueue(edit);
     if (rng.below(3) == 0) {
       (void)authority.commit(kNow);
       (void)resident.commit(kNow);
@@ -251,7 +257,7 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
   (void)authority.commit(kNow);
   (void)resident.commit(kNow);
   CHECK(authority.chunks().stack_size(kOrigin) > 0);
-  REQUIRE_FALSE(authority.chunks().loaded(kOrigin, base_chunk(3)).has_value());
+  REQUIRE(authority.chunks().loaded(kOrigin, base_chunk(3)).has_value());
   CHECK(authority.chunks().stack_size(kOrigin) == 0);
   const ChunkPtr late = authority.chunks().find(kOrigin);
   const ChunkPtr early = resident.chunks().find(kOrigin);
@@ -269,7 +275,7 @@ TEST_CASE("recovery puts records back on the stacks and skips those that a snaps
   ChunkPtr snapshot;
   for (ClientSequence seq = 1; seq <= 5; ++seq) {
     const auto x = static_cast<std::int32_t>(seq);
-    (void)first.submit(offer(seq, box(x, x + 3), static_cast<Material>(seq)));
+    (void)first.enqueue(offer(seq, box(x, x + 3), static_cast<Material>(seq)));
     const auto batch = first.commit(kNow);
     log.insert(log.end(), batch->records.begin(), batch->records.end());
     if (seq == 2) snapshot = first.chunks().find(kOrigin);
@@ -285,7 +291,7 @@ TEST_CASE("recovery puts records back on the stacks and skips those that a snaps
   load(second, kOrigin, *snapshot);
   CHECK(second.chunks().find(kOrigin)->voxels == first.chunks().find(kOrigin)->voxels);
   CHECK(second.chunks().find(kOrigin)->version == Version{1, 5});
-  (void)second.submit(offer(6, box(0, 1), 1));
+  (void)second.enqueue(offer(6, box(0, 1), 1));
   const auto batch = second.commit(kNow);
   CHECK(batch->commit.edits.at(0).seq == 6);
   CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{5});
@@ -299,26 +305,26 @@ TEST_CASE(
   authority.chunks().set_saved(kOrigin, {1, 7});
   SECTION("older than its snapshot") {
     REQUIRE(authority.chunks().begin_load(kOrigin));
-    CHECK(authority.chunks().loaded(kOrigin, base_chunk()).has_value());
+    CHECK_FALSE(authority.chunks().loaded(kOrigin, base_chunk()).has_value());
   }
   SECTION("newer than the order") {
     Chunk newer = base_chunk();
     newer.version = {1, 8};
     REQUIRE(authority.chunks().begin_load(kOrigin));
-    CHECK(authority.chunks().loaded(kOrigin, newer).has_value());
+    CHECK_FALSE(authority.chunks().loaded(kOrigin, newer).has_value());
   }
   SECTION("of another size") {
     Chunk other;
     other.voxels = uniform_chunk(Extent::cube(32), 1);
     other.version = {1, 7};
     REQUIRE(authority.chunks().begin_load(kOrigin));
-    CHECK(authority.chunks().loaded(kOrigin, other).has_value());
+    CHECK_FALSE(authority.chunks().loaded(kOrigin, other).has_value());
   }
   CHECK(authority.chunks().residency(kOrigin) == Residency::quarantined);
   CHECK_FALSE(authority.chunks().begin_load(kOrigin));
   CHECK_FALSE(authority.chunks().first_quarantined_edit().has_value());
-  (void)authority.submit(offer(1, box(0, 4), 1));
-  (void)authority.submit(offer(2, box(0, 4), 1));
+  (void)authority.enqueue(offer(1, box(0, 4), 1));
+  (void)authority.enqueue(offer(2, box(0, 4), 1));
   const auto batch = authority.commit(kNow);
   CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{7});
   CHECK(batch->commit.edits[1].previous == std::vector<Sequence>{10});
@@ -330,7 +336,7 @@ TEST_CASE(
 TEST_CASE("a commit never exceeds its limits, and the rest is in the next one", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   for (ClientSequence seq = 1; seq <= kCommitEditsMax + 5; ++seq) {
-    REQUIRE_FALSE(authority.submit(offer(seq, SetVoxel{{0, 0, 0}}, 1)).has_value());
+    REQUIRE(authority.enqueue(offer(seq, SetVoxel{{0, 0, 0}}, 1)).has_value());
   }
   Sequence next = 1;
   std::size_t commits = 0;
@@ -348,7 +354,7 @@ TEST_CASE("only clean chunks without users are evicted, longest unused first", "
   Authority authority(limits(), {1, 0, 0});
   WorldChunks& chunks = authority.chunks();
   for (std::int32_t x = 0; x < 4; ++x) load(authority, {0, {x, 0, 0}}, base_chunk());
-  (void)authority.submit(offer(1, box(16, 20), 1));  // chunk 1 becomes dirty
+  (void)authority.enqueue(offer(1, box(16, 20), 1));  // chunk 1 becomes dirty
   (void)authority.commit(kNow);
   const auto is_used = [](const ChunkKey& key) { return key.at.x == 2; };
   for (std::int32_t x = 0; x < 4; ++x) chunks.released({0, {x, 0, 0}});

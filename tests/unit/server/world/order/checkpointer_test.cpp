@@ -22,7 +22,7 @@ struct CheckpointerBench {
 
   void edit(std::int32_t chunk_x, Material material = 1) {
     const EditDescriptor edit{SetVoxel{{chunk_x * 16, 0, 0}}, {}, material};
-    REQUIRE_FALSE(authority.submit({{1, 1, next_client++}, Cause::player, 0, edit}).has_value());
+    REQUIRE(authority.enqueue({{1, 1, next_client++}, Cause::player, 0, edit}).has_value());
     (void)authority.commit({0, 0});
   }
   void step(TimeUs now_us = 0) {
@@ -34,7 +34,7 @@ struct CheckpointerBench {
     while (!environment.loads.empty()) {
       const ChunkKey key = environment.loads.front();
       environment.loads.pop_front();
-      REQUIRE_FALSE(authority.chunks().loaded(key, test::empty_chunk(16)).has_value());
+      REQUIRE(authority.chunks().loaded(key, test::empty_chunk(16)).has_value());
     }
   }
 
