@@ -12,7 +12,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -25,6 +24,7 @@
 
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/program.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
@@ -161,13 +161,19 @@ void log_stop(const StopReport& report, const ServerConfig& config) {
   if (!report.error.empty()) logger("store").error("{}", report.error);
 }
 
+/// Prints a line of a server that runs. Standard output may be gone by now, such as a pipe whose
+/// reader has ended. This does not make the server fail. Returns true if the line is written.
+bool print_line(const std::string& line) {
+  std::cout << line << "\n";
+  const auto written = flush_standard_output();
+  if (!written) logger("app").warn("{}", written.error());
+  return written.has_value();
+}
+
 /// Prints the link for the first administrator, but not into a journal, which others may read.
 void welcome_administrator(Server& server) {
-  if (!is_journal(STDOUT_FILENO)) {
-    std::cout << make_first_invite(server) << std::endl;
-  } else {
+  if (is_journal(STDOUT_FILENO) || !print_line(make_first_invite(server)))
     logger("app").info("this world has no administrator: control invite role administrator");
-  }
 }
 
 int run(const ServerOptions& options) {
@@ -267,8 +273,8 @@ int run(const ServerOptions& options) {
   const OwnershipState part = running->ownership();
   const StopReport report = running->stop();
   if (!owns(part)) {
-    std::cout << (has_failed(part) ? "stopped, because the server could not go on: see the log\n"
-                                   : "stopped, and another server owns the world\n");
+    print_line(has_failed(part) ? "stopped, because the server could not go on: see the log"
+                                : "stopped, and another server owns the world");
     return has_failed(part) ? kFailed : kStopped;
   }
   log_stop(report, *config);
@@ -278,7 +284,7 @@ int run(const ServerOptions& options) {
     is_written = written.has_value();
     if (!is_written) logger("app").error("{}", written.error());
   }
-  std::cout << stop_line(report) << " dense expansions: " << dense_expansions() << "\n";
+  print_line(stop_line(report) + " dense expansions: " + std::to_string(dense_expansions()));
   return report.state.is_durable() && report.error.empty() && is_written ? kStopped : kFailed;
 }
 
@@ -316,11 +322,9 @@ int server_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::set_new_handler(runstone::end_without_memory);
-  try {
+  return runstone::run_program("runstone-server", runstone::kCannotStart, [&] {
     const int code = runstone::server_program(argc, argv);
     spdlog::shutdown();  // writes the queued lines
     return code;
-  } catch (const std::exception& error) {
-    return runstone::cannot_start(error.what());
-  }
+  });
 }
