@@ -29,8 +29,9 @@ class ControlSocket {
   static Result<std::unique_ptr<ControlSocket>, std::string> listen(asio::io_context& io,
                                                                     const std::string& world,
                                                                     Handler handler);
-  /// The same at any path, with the mode 0660 if `is_for_group`. Requires that no program listens
-  /// there, and that a file there is a socket.
+  /// Starts listening at any path, with the mode 0660 if `is_for_group`. Requires that no program
+  /// listens there, and that a file there is a socket. Fails if the path is too long or the folder
+  /// cannot be written.
   static Result<std::unique_ptr<ControlSocket>, std::string> listen_at(asio::io_context& io,
                                                                        const std::string& path,
                                                                        bool is_for_group,

@@ -14,6 +14,19 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
   return {{std::move(what), row}};
 }
 
+/// Returns why a change is not in the log, as a sentence for the one who makes it. Requires that it is
+/// not ordered.
+std::string why_not_ordered(const ServerEditsResult& result) {
+  switch (result.state) {
+    case ServerEditsResult::State::closed:
+      return "the world takes no changes any more";
+    case ServerEditsResult::State::taken:
+      return "the player's client uses sequence numbers of the server: join again";
+    default:
+      return std::string(result.reason) + ": try again later";
+  }
+}
+
 }  // namespace
 
 /// Returns who pays for edits of an author: its key, and the address of its first session. Returns
@@ -86,9 +99,7 @@ Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
   const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
   const ServerEditsResult ordered = order_edits({offer}, author, now);
   if (ordered.state == ServerEditsResult::State::ordered) return rights_.newest();
-  if (ordered.state == ServerEditsResult::State::closed)
-    return failure("the world takes no changes any more");
-  return failure(std::string(ordered.reason) + ": try again later");
+  return failure(why_not_ordered(ordered));
 }
 
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,
@@ -106,9 +117,7 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   const ServerEditsResult ordered = order_edits({offer}, 0, now);
   if (ordered.state == ServerEditsResult::State::ordered)
     return AddedAt{order_.newest_materials(), first};
-  if (ordered.state == ServerEditsResult::State::busy)
-    return refusal(std::string(ordered.reason) + ": try again later");
-  return refusal("the world takes no changes any more");
+  return refusal(why_not_ordered(ordered));
 }
 
 }  // namespace runstone

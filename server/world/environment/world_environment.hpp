@@ -128,8 +128,9 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// Tiles::made() or stopped(). Without tiles (WorldConfig::tile_levels_max is
-  /// 0), neither this nor the next five calls are made.
+  /// Tiles::made() or stopped(). Without tiles (WorldConfig::tile_levels_max is 0), this call,
+  /// make_past_tile(), tiles_edited(), newest_tile_edit(), is_tile_current() and save_tiles() are
+  /// not made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
   /// Tiles::past_made() or past_stopped().
