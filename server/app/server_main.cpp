@@ -197,7 +197,7 @@ int run(const ServerOptions& options) {
   }
   start_logging(config->log_level, config->log_format);
   if (!options.port_file.empty()) {  // before the world is opened
-    if (const auto written = write_output_file(options.port_file, ""); !written) {
+    if (const auto written = empty_output_file(options.port_file); !written) {
       return cannot_start(written.error());
     }
   }
