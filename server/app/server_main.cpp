@@ -1,7 +1,8 @@
 // runstone-server: runs a world, imports, compacts, backs up or restores one, or gives a running
 // server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
-// while running, 2 could not start (docs/server-reference.md).
+// while running, 2 could not start, 3 control: the command is in force and not on disk yet
+// (docs/server-reference.md).
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -39,7 +40,7 @@
 namespace runstone {
 namespace {
 
-enum ExitCode { kStopped = 0, kFailed = 1, kCannotStart = 2 };
+enum ExitCode { kStopped = 0, kFailed = 1, kCannotStart = 2, kUnsaved = 3 };
 
 int cannot_start(const std::string& line) {
   std::cerr << "runstone-server: " << line << "\n";
@@ -311,7 +312,7 @@ int server_program(int argc, char** argv) {
   if (options->control) {
     const auto done = control_server(*options->control, std::cout);
     if (!done) return cannot_start(done.error());
-    return *done ? kStopped : kFailed;
+    return *done == ControlEnd::done ? kStopped : *done == ControlEnd::unsaved ? kUnsaved : kFailed;
   }
   if (!options->import) return run(*options);
   return exit_code_of(import_world(*options->import, std::cout));

@@ -15,6 +15,8 @@ struct CommandAnswer {
   std::string text;
   bool is_done = true;
   bool is_ok = true;  // of the last answer
+  /// An answer that others follow: what the command does is in force, but not on disk yet.
+  bool is_unsaved = false;
   /// The last answer to a preview of a rollback, as far as a client shows it.
   std::shared_ptr<const RestorePreview> restore = nullptr;
 
@@ -24,6 +26,7 @@ struct CommandAnswer {
   }
   /// An answer that others follow.
   static CommandAnswer progress(std::string text) { return {std::move(text), false, true}; }
+  static CommandAnswer unsaved(std::string text) { return {std::move(text), false, true, true}; }
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 
