@@ -23,7 +23,7 @@ constexpr const char* kFileSystems = "lost+found";  // at the root of a file sys
 std::string lock_in(const std::string& folder) { return folder + "/partial.lock"; }
 
 /// Where the files of a folder are written.
-struct Place {
+struct Unfinished {
   std::string target;   // to which no symbolic link leads further
   std::string partial;  // the folder of unfinished files
   bool is_inside = false;
@@ -37,20 +37,20 @@ bool is_empty(const std::string& folder, std::error_code& error) {
   return true;
 }
 
-Result<Place, std::string> place_of(const std::string& target) {
+Result<Unfinished, std::string> unfinished_of(const std::string& target) {
   const std::string whole = resolved_name(target);
   std::error_code error;
   if (fs::exists(whole, error)) {
     const std::string folder = fs::canonical(whole, error).string();
     if (!fs::is_directory(whole, error)) return failure(whole + ": is there and is no folder");
     if (!is_empty(folder, error) || error) return failure(whole + ": is not empty");
-    return Place{folder, folder + "/" + kInside, true};
+    return Unfinished{folder, folder + "/" + kInside, true};
   }
   if (fs::is_symlink(fs::symlink_status(whole, error)))
     return failure(whole + ": is a symbolic link to a folder that does not exist");
   const auto parent = fs::path(whole).parent_path();
   if (!fs::is_directory(parent, error)) return failure(parent.string() + ": is no folder");
-  return Place{whole, whole + ".partial", false};
+  return Unfinished{whole, whole + ".partial", false};
 }
 
 /// Fails if what has the name of the unfinished files is not what an interrupted program left.
@@ -102,7 +102,7 @@ std::string resolved_name(const std::string& folder) {
 }
 
 Made NewFolder::check(const std::string& target) {
-  const auto place = place_of(target);
+  const auto place = unfinished_of(target);
   if (!place) return failure(place.error());
   const std::string parent = fs::path(place->partial).parent_path().string();
   if (::access(parent.c_str(), W_OK | X_OK) != 0)
@@ -111,7 +111,7 @@ Made NewFolder::check(const std::string& target) {
 }
 
 Result<NewFolder, std::string> NewFolder::make(const std::string& target, std::ostream& out) {
-  auto place = place_of(target);
+  auto place = unfinished_of(target);
   if (!place) return failure(place.error());
   const std::string& partial = place->partial;
   if (auto removed = remove_interrupted(partial, out); !removed) return failure(removed.error());

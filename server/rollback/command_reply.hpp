@@ -15,10 +15,10 @@ struct CommandAnswer {
   std::string text;
   bool is_done = true;
   bool is_ok = true;  // of the last answer
-  /// An answer that others follow: what the command does is in force, but not on disk yet.
-  bool is_unsaved = false;
   /// The last answer to a preview of a rollback, as far as a client shows it.
   std::shared_ptr<const RestorePreview> restore = nullptr;
+  /// An answer that others follow: what the command does is in force, but not on disk yet.
+  bool is_unsaved = false;
 
   /// The last answer, to a command that succeeded or, unless `is_ok`, that did not.
   static CommandAnswer last(std::string text, bool is_ok = true) {
@@ -26,7 +26,7 @@ struct CommandAnswer {
   }
   /// An answer that others follow.
   static CommandAnswer progress(std::string text) { return {std::move(text), false, true}; }
-  static CommandAnswer unsaved(std::string text) { return {std::move(text), false, true, true}; }
+  static CommandAnswer unsaved(std::string text) { return {std::move(text), false, true, nullptr, true}; }
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 

@@ -41,12 +41,12 @@ void Receipts::reject(Session& session, Reject reject) {
 void Receipts::send_pending(Session& session) {
   if (session.is_closed) return;
   Sent& sent = sent_[session.id];
-  std::size_t sent = 0;
-  while (sent < sent.rejects.size() &&
-         sessions_.send_or_skip(session, encode_message(sent.rejects[sent])))
-    ++sent;
+  std::size_t count = 0;
+  while (count < sent.rejects.size() &&
+         sessions_.send_or_skip(session, encode_message(sent.rejects[count])))
+    ++count;
   sent.rejects.erase(sent.rejects.begin(),
-                     sent.rejects.begin() + static_cast<std::ptrdiff_t>(sent));
+                     sent.rejects.begin() + static_cast<std::ptrdiff_t>(count));
   if (sent.durable < order_.durable() && sent.durable < sent.awaits_durable)
     send_durable(session, sent, encode_message(durable()));
 }

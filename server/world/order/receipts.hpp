@@ -24,7 +24,7 @@ class Receipts {
   /// Reports that the session gets `welcome`, which says the epoch, the durable watermark, and the
   /// materials.
   void welcomed(const Session& session, const Welcome& welcome);
-  void forget(SessionId session) { told_.erase(session); }
+  void forget(SessionId session) { sent_.erase(session); }
 
   // Rejects.
   /// Sends a reject. If the session's queue is full, the reject is sent later, in order. A session
