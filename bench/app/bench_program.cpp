@@ -52,9 +52,8 @@ int finish(const Result<T, std::string>& result, const Options& options, std::os
   }
   print(*result);
   bool done = true;
-  if constexpr (requires(std::ostream & to) { write_csv(*result, to); }) {
-    done = write_file(
-        options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  if constexpr (requires(std::ostream& to) { write_csv(*result, to); }) {
+    done = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
   }
   return write_file(
              options.json, [&](std::ostream& to) { write_json(*result, to); }, err) &&

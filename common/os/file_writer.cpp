@@ -56,14 +56,14 @@ std::string without_links(const std::string& path) {
 
 Result<FileWriter, std::string> FileWriter::replace(const std::string& file, mode_t mode) {
   const std::string target = without_links(file);
-  struct stat old {};
+  struct stat old{};
   const bool is_there = ::stat(target.c_str(), &old) == 0;
   for (int i = 0; i < kNamesMax; ++i) {
     const std::string fresh = target + ".new" + (i == 0 ? "" : std::to_string(i));
     const int descriptor = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) return system_error(errno);
-    struct stat made {};
+    struct stat made{};
     if (is_there && ::fstat(descriptor, &made) == 0)
       static_cast<void>(::fchmod(descriptor, made.st_mode & old.st_mode & 0777));
     return FileWriter(descriptor, target, fresh);

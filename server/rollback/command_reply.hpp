@@ -26,7 +26,9 @@ struct CommandAnswer {
   }
   /// An answer that others follow.
   static CommandAnswer progress(std::string text) { return {std::move(text), false, true}; }
-  static CommandAnswer unsaved(std::string text) { return {std::move(text), false, true, nullptr, true}; }
+  static CommandAnswer unsaved(std::string text) {
+    return {std::move(text), false, true, nullptr, true};
+  }
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 

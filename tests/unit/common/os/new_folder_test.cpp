@@ -53,8 +53,7 @@ TEST_CASE("an empty folder is filled and stays the same folder", "[os]") {
   fs::create_directory(folder / "disk/lost+found");
   fs::permissions(folder / "disk", fs::perms::owner_all | fs::perms::group_read);
   fs::create_directory_symlink("disk", folder / "link");
-  struct stat before {
-  }, after{};
+  struct stat before{}, after{};
   REQUIRE(::stat((folder / "disk").c_str(), &before) == 0);
   SECTION("by its name") { REQUIRE(make_at(folder / "disk/") == ""); }
   SECTION("through a link, which stays") { REQUIRE(make_at(folder / "link") == ""); }
