@@ -55,7 +55,8 @@ struct MesherCase {
 std::span<const std::string_view> mesher_case_names();
 
 /// Returns a mesher case, or nullopt if the mesher cannot take the volume: binary greedy requires
-/// sides of at most 64, with padded runs 62. `volume` and `visibility` must outlive it. Aborts on an unknown name.
+/// sides of at most 64, with padded runs 62. `volume` and `visibility` must outlive it. Aborts on an
+/// unknown name.
 std::optional<MesherCase> make_mesher_case(std::string_view name, const Volume& volume,
                                            const VisibilityTable& visibility);
 

@@ -26,8 +26,8 @@ enum class ChunkState : std::uint8_t {
   /// The server has vouched for the confirmed chunk. Commits are applied to it, and a gap makes it
   /// request a snapshot.
   current,
-  /// The server has vouched for the confirmed chunk, but edits got lost or the digest differs, and a
-  /// snapshot was requested. Nothing but a snapshot is applied.
+  /// The server has vouched for the confirmed chunk, but edits got lost or the digest differs, and
+  /// a snapshot was requested. Nothing but a snapshot is applied.
   repairing,
   /// The server cannot send the chunk. Nothing is held, shown or held back.
   unavailable,

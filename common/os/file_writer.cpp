@@ -14,7 +14,7 @@
 namespace runstone {
 namespace {
 
-constexpr int kLinksMax = 40;   // as the kernel
+constexpr int kLinksMax = 40;   // the kernel's limit
 constexpr int kNamesMax = 100;  // of new files; a program that was killed leaves one behind
 
 Unexpected<std::string> system_error(int error) { return failure(std::strerror(error)); }
@@ -43,6 +43,8 @@ void sync_folder_of(const std::string& file) {
 }
 
 }  // namespace
+
+bool is_own_descriptor(const std::string& file) { return own_descriptor(file).has_value(); }
 
 std::string without_links(const std::string& path) {
   std::filesystem::path at = path;
@@ -98,8 +100,8 @@ bool FileWriter::write(ByteView bytes) {
   while (!bytes.empty() && error_.empty()) {
     const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      error_ = std::strerror(errno);
+    if (count <= 0) {
+      error_ = count < 0 ? std::strerror(errno) : "nothing was written";
     } else {
       bytes = bytes.subspan(static_cast<std::size_t>(count));
     }

@@ -13,10 +13,10 @@ namespace runstone {
 
 class FileWriter {
  public:
-  /// Writes to a new file beside `file`, which replaces it in finish(). So after a crash the old file
-  /// or the new one is there, complete. The new file has the permissions `mode` without those that
-  /// the umask of the process takes away and those that an existing file does not give. The error is
-  /// that of the system: "Permission denied".
+  /// Writes to a new file beside `file`, which replaces it in finish(). So after a crash the old
+  /// file or the new one is there, complete. The new file has the permissions `mode` without those
+  /// that the umask of the process takes away and those that an existing file does not give. The
+  /// error is that of the system: "Permission denied".
   static Result<FileWriter, std::string> replace(const std::string& file, mode_t mode);
   /// Writes to what is at `file` now: a device, a pipe, or a descriptor of this process such as
   /// /dev/stdout. Fails instead of waiting if nobody reads a named pipe.
@@ -50,7 +50,9 @@ class FileWriter {
   std::string error_;  // of the first write that failed
 };
 
-/// Returns the path to which the symbolic links at the end of `path` lead. Nothing need be there.
+/// Returns true for /dev/stdout and the other names of a descriptor of this process.
+bool is_own_descriptor(const std::string& file);
+/// Returns the path to which the symbolic links at the end of `path` lead. The path need not exist.
 std::string without_links(const std::string& path);
 
 }  // namespace runstone

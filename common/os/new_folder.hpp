@@ -20,7 +20,8 @@ namespace runstone {
 
 class NewFolder {
  public:
-  /// Fails unless make() can make a folder of this name now. Changes nothing. The error is one line.
+  /// Fails unless make() can make a folder of this name now. Changes nothing. The error is one
+  /// line.
   static Result<void, std::string> check(const std::string& target);
   /// Begins to make `target`. Prints a line about an interrupted folder that it removes to `out`.
   /// Fails if
@@ -40,8 +41,8 @@ class NewFolder {
 
   /// Returns the folder into which the files are written until finish().
   const std::string& path() const { return path_; }
-  /// Completes the folder. `last` is the file that comes last. The files, their names and the parent
-  /// are on disk on return. Requires that no file in it is open for writing.
+  /// Completes the folder. `last` is the file that comes last. The files, their names and the
+  /// parent are on disk on return. Requires that no file in it is open for writing.
   Result<void, std::string> finish(const std::string& last);
 
  private:

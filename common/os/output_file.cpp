@@ -22,7 +22,7 @@ bool is_database(const std::string& file) {
 
 /// Returns true for what cannot be replaced: a device, a pipe, a descriptor of this process.
 bool is_written_in_place(const std::string& file) {
-  if (file.starts_with("/dev/") || file.starts_with("/proc/")) return true;
+  if (is_own_descriptor(file)) return true;
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);

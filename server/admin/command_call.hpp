@@ -53,7 +53,8 @@ struct CommandServices {
     /// Is called instead of `begin` if the log cannot be written any more and, for work, if the
     /// server orders no edits.
     std::function<void()> refuse;
-    /// Is called once if the disk is full or this time of the steady clock has passed. May be empty.
+    /// Is called once if the disk is full or this time of the steady clock has passed. May be
+    /// empty.
     std::function<void()> report = {};
     TimeUs report_us = 0;
     bool is_work = true;  // otherwise an answer to what is done

@@ -34,9 +34,9 @@ enum class ControlEnd {
   unsaved,  // it is in force, but not on disk yet
 };
 
-/// Sends the command and prints each line of the answer to `out` as it arrives. The error is one line: the command has control characters such as a newline,
-/// or no server runs that world. Blocks until the answer is complete, or is that the command is in
-/// force and not on disk yet.
+/// Sends the command and prints each line of the answer to `out` as it arrives. The error is one
+/// line: the command has control characters such as a newline, or no server runs that world. Blocks
+/// until the answer is complete, or is that the command is in force and not on disk yet.
 Result<ControlEnd, std::string> control_server(
     const ControlRequest& request, std::ostream& out,
     const ReadPassword& read_password = read_new_password);

@@ -50,6 +50,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void close() {
     asio::error_code ignored;
     socket_.close(ignored);
+    slot_.reset();  // the command may go on, and keeps this object
   }
 
   void read() {
@@ -69,6 +70,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
  private:
   void answer(const CommandAnswer& answer) {
+    if (!socket_.is_open()) return;
     std::string out;
     for (std::size_t at = 0; at <= answer.text.size();) {
       const std::size_t end = std::min(answer.text.find('\n', at), answer.text.size());
@@ -76,8 +78,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
       at = end + 1;
     }
     if (answer.is_done) out += answer.is_ok ? "=ok\n" : "=error\n";
-    if (answer.is_unsaved) out += "=unsaved\n";
-    is_done_ = answer.is_done;
+    if (answer.is_unsaved) {
+      out += "=unsaved\n";
+      is_finishing_ = true;
+    }
+    is_done_ = answer.is_done || answer.is_unsaved;
     out_.push_back(std::move(out));
     if (out_.size() == 1) write();
   }

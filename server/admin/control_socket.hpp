@@ -1,9 +1,10 @@
 // ControlSocket: receives commands from other programs of the same user, through a Unix domain
 // socket in the world's folder ("control.sock", mode 0600, removed when the server stops). A
 // command is one line of text. The answer is lines that begin with "|", followed by "=ok" or
-// "=error". The line "=unsaved" says that the command is in force and not on disk yet, and that
-// more follows. A connection may send several commands, one after another. Thread: everything runs on
-// one strand of the I/O context. The handler is called there; it may reply from any thread.
+// "=error". After "=unsaved" instead, the command is in force and not on disk yet, and the server
+// closes the connection. A connection may send several commands, one after another. Thread:
+// everything runs on one strand of the I/O context. The handler is called there; it may reply from
+// any thread.
 #pragma once
 #include <asio/io_context.hpp>
 #include <functional>

@@ -68,8 +68,8 @@ class ServerCore final : public NetEvents {
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
   /// starts the log writer.
   Result<void, std::string> recover();
-  /// Reads what the store remembers, and follows the owner of the world. Then call connect_to() with
-  /// the address of the owner.
+  /// Reads what the store remembers, and follows the owner of the world. Then call connect_to()
+  /// with the address of the owner.
   Result<void, std::string> follow();
   /// Connects to the owner at HOST:PORT, unless there is a connection. Thread: any.
   void connect_to(const std::string& address) { owner_.connect_to(address); }

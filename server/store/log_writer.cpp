@@ -27,14 +27,18 @@ LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
 LogWriter::~LogWriter() { stop(); }
 
 bool LogWriter::has_room(std::size_t records) const {
-  if (!has_queue_room(records)) return false;
+  if (!world_.is_owned()) return false;
   const std::lock_guard guard(mutex_);
-  return space_ == DiskSpace::enough;
+  return space_ == DiskSpace::enough && is_room_in_queue(records);
 }
 
 bool LogWriter::has_queue_room(std::size_t records) const {
   if (!world_.is_owned()) return false;
   const std::lock_guard guard(mutex_);
+  return is_room_in_queue(records);
+}
+
+bool LogWriter::is_room_in_queue(std::size_t records) const {
   return !failed_ && !stopping_ && room_taken_ + records <= limits_.queued_records_max;
 }
 

@@ -14,8 +14,8 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
   return {{std::move(what), row}};
 }
 
-/// Returns why a change is not in the log, as a sentence for the one who makes it. Requires that it is
-/// not ordered.
+/// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it was
+/// not.
 std::string why_not_ordered(const ServerEditsResult& result) {
   switch (result.state) {
     case ServerEditsResult::State::closed:

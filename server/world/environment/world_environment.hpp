@@ -114,12 +114,14 @@ class WorldEnvironment {
   virtual bool owns_world() const { return true; }
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
-  /// Returns log_has_room(), but also true while the disk has no space: the records wait in memory.
+  /// Returns true also while the disk has no space, otherwise as log_has_room(): the records then
+  /// wait in memory, and are lost if no space comes before the stop.
   virtual bool log_has_queue_room(std::size_t records) const { return log_has_room(records); }
   /// Returns the bytes of memory that the records take that are not durable yet.
   virtual std::size_t log_queued_bytes() const = 0;
   /// Queues records for the log writer, and rows of players to be written with them. There may be
-  /// rows without records. Requires log_has_queue_room(). Answer to records: WorldServer::durable().
+  /// rows without records. Requires log_has_queue_room(). Answer to records:
+  /// WorldServer::durable().
   virtual void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) = 0;
   /// Queues changes of names for the log writer, ahead of all records that are queued later.
   /// Requires log_has_room(1). Answer: WorldServer::names_durable().

@@ -37,7 +37,10 @@ class LogClock {
   /// Returns the time for an edit that is ordered at the last advance().
   TimeUs stamp();
   /// Reports an edit that another server has ordered at this time.
-  void follow(TimeUs time_us) { last_us_ = time_us > last_us_ ? time_us : last_us_; }
+  void follow(TimeUs time_us) {
+    last_us_ = std::max(last_us_, time_us);
+    ahead_us_ = std::max(ahead_us_, last_us_ - time_us_);
+  }
   /// Returns the log's time at the last advance(), or a later one if the log ends ahead of the wall
   /// clock: at least the time of the last edit, and always advancing with the steady clock.
   TimeUs time() const { return std::max(last_us_, time_us_ + ahead_us_); }
@@ -56,7 +59,7 @@ class LogClock {
 
   TimeUs last_us_;                   // of the last edit
   TimeUs time_us_ = 0;               // the log's time at steady_us_
-  TimeUs ahead_us_ = 0;              // time() minus the log's time, while the last edit is ahead
+  TimeUs ahead_us_ = 0;              // how far time() is ahead of time_us_
   std::optional<TimeUs> steady_us_;  // of the last advance(); nullopt before the first
   TimeUs slew_left_ = 0;             // millionths of 1 us of slew, below one million
   std::optional<Jump> jump_;         // a jump that the log's time does not follow

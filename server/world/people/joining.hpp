@@ -47,8 +47,9 @@ class Joining {
   bool is_server(const Session& session) const;
   /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
   /// the session: closing (another server may own the world), server_full, name_refused or
-  /// not_admitted. Closes an older session of the key and client instance (already_connected). The signature shows that both are
-  /// the same client, and the older connection is usually dead without a sign of it.
+  /// not_admitted. Closes an older session of the key and client instance (already_connected). The
+  /// signature shows that both are the same client, and the older connection is usually dead
+  /// without a sign of it.
   void let_in(Session& session, const JoinCredentials& brought, const Clocks& now);
   /// Handles the session of a player at another server, which has authenticated the player: lets
   /// the player in, or closes the session. A session of a player whom an earlier owner let in goes

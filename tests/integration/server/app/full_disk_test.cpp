@@ -1,7 +1,11 @@
 // A whole server whose disk has no space: it is read-only until there is space again.
 #include <catch2/catch.hpp>
+#include <sstream>
 
+#include "server/admin/control_program.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
+#include "tests/integration/server/app/server_commands.hpp"
+#include "tests/support/core/text_contains.hpp"
 #include "tests/support/net/raw_client.hpp"
 #include "tests/support/sql/full_disk_vfs.hpp"
 
@@ -68,6 +72,16 @@ TEST_CASE("a server whose disk fills up rejects edits, keeps the accepted ones a
     REQUIRE(client.sees_durable(1));
     vfs.fill();
     const ClientSequence rejected = edit_until_rejected(client, 2);
+    // A ban does not wait for the disk. `control` hears that it is not saved, and more often than
+    // there are connections.
+    for (int i = 0; i < 20; ++i) {
+      std::ostringstream out;
+      const auto ban =
+          control_server({folder / "world", {"ban", "203.0.113." + std::to_string(i)}}, out);
+      REQUIRE(ban.has_value());
+      CHECK(*ban == ControlEnd::unsaved);
+      CHECK(contains(out.str(), "in force, not on disk yet: the world's disk is full"));
+    }
     vfs.make_room();
     const ClientSequence accepted = edit_until_accepted(client, rejected + 1);
     CHECK(accepted > rejected);
@@ -77,6 +91,7 @@ TEST_CASE("a server whose disk fills up rejects edits, keeps the accepted ones a
     CHECK(report.error.empty());
   }
   const auto server = start_server(edits_config(folder / "world"), {});
+  CHECK(contains(control(folder / "world", {"bans"}).text, "203.0.113.19"));
   CHECK(server->stop().is_clean);
 }
 

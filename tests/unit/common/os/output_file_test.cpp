@@ -68,6 +68,26 @@ TEST_CASE("a full device stays a device, and the reason is named", "[os]") {
   CHECK(std::filesystem::is_character_file("/dev/full"));
 }
 
+TEST_CASE("a file in the memory of the machine is a file, although it lies below /dev", "[os]") {
+  const std::string file = "/dev/shm/runstone-test-" + std::to_string(::getpid());
+  REQUIRE(write_output_file(file, "first, longer").has_value());
+  REQUIRE(empty_output_file(file).has_value());
+  CHECK(content_of(file).empty());
+  REQUIRE(write_output_file(file, "4747").has_value());
+  CHECK(content_of(file) == "4747");
+  ::unlink(file.c_str());
+}
+
+TEST_CASE("a descriptor is written where it stands", "[os]") {
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  CHECK(write_output_file("/dev/fd/" + std::to_string(ends[1]), "text").has_value());
+  char bytes[8] = {};
+  CHECK(::read(ends[0], bytes, sizeof bytes) == 4);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
 TEST_CASE("a symbolic link stays, and its target is replaced", "[os]") {
   const TempFolder folder;
   std::filesystem::create_directory(folder / "disk");

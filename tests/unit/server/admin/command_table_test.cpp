@@ -273,6 +273,7 @@ TEST_CASE("a server that follows carries out status, reload and stop", "[admin][
     return last.is_ok ? "ok " + last.text : last.text;
   };
   CHECK(answer_to("status") == "ok follows");
+  CHECK(answer_to("  status ") == "ok follows");
   CHECK(answer_to("stop") == "ok ");
   for (const char* line : {"reload", "players", "status now", ""})
     CHECK(answer_to(line) == kGiveThere);

@@ -33,6 +33,11 @@ struct RightsBench : RollbackBench {
     return answer();
   }
   CommandAnswer console(const std::string& line) { return give({}, line); }
+  /// Gives a command at the console. What it orders is not on disk yet.
+  void order(const std::string& line) {
+    answers.clear();
+    give_command({services, {}, bench.now(), reply()}, line);
+  }
   CommandAnswer player(std::uint8_t who, const std::string& line) {
     const PublicKey key = key_of(who);
     return give({who, {key, key == operator_key}}, line);
@@ -257,8 +262,7 @@ TEST_CASE("a change of rights is in force at once, and answered when it is on di
   WorldServer& world = bench.bench.server;
   const Clocks now = bench.bench.now();
   const Clocks late{now.steady_us + kAnswerUnsavedUs, now.utc_us};
-  bench.answers.clear();
-  give_command({bench.services, {}, now, bench.reply()}, "role set mason see");
+  bench.order("role set mason see");
   CHECK(world.rights().state().find_role("mason") != nullptr);
   bench.services.tick(now);
   CHECK(bench.answers.empty());
@@ -297,9 +301,9 @@ TEST_CASE("a full disk does not keep a host from a ban, and the answer says that
   RightsBench bench;
   WorldServer& world = bench.bench.server;
   const Clocks now = bench.bench.now();
+  bench.bench.environment.disk_has_space = false;
   world.set_disk_is_full(true, now);
-  bench.answers.clear();
-  give_command({bench.services, {}, now, bench.reply()}, "ban 203.0.113.9");
+  bench.order("ban 203.0.113.9");
   bench.services.tick(now);
   REQUIRE(bench.answers.size() == 1);
   CHECK(bench.answers[0].is_unsaved);

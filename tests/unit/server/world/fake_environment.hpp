@@ -79,6 +79,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<SessionId> trusted;        // sessions of other servers
   bool is_owner = true;                  // no other server may own the world
   bool log_room = true;
+  bool disk_has_space = true;
   std::size_t log_records_max =
       std::numeric_limits<std::size_t>::max();  // records that are not written yet
   std::size_t log_written = 0;                  // written records
@@ -120,6 +121,9 @@ class FakeEnvironment : public WorldEnvironment {
     closed.push_back({session, reason, text});
   }
   bool log_has_room(std::size_t more) const override {
+    return disk_has_space && log_has_queue_room(more);
+  }
+  bool log_has_queue_room(std::size_t more) const override {
     return log_room && more <= log_records_max &&
            records.size() - log_written <= log_records_max - more;
   }

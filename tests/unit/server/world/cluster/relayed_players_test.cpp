@@ -126,6 +126,24 @@ TEST_CASE("the owner's rejections reach the player at a follower", "[world][serv
   CHECK(bench.sent<Reject>(1, 1).size() == 4);
 }
 
+TEST_CASE("an action that was rejected at a follower stays so after a lone invalid edit",
+          "[world][servers]") {
+  ClusterBench bench;
+  bench.join(1, 1, 2);
+  const auto send = [&](ClientSequence seq, ClientSequence action, bool is_faulty) {
+    EditRequest request{seq, 0, {block(1), {}, 1}};
+    request.action = action;
+    if (is_faulty) request.fault = Error{ErrorCode{}, "a broken edit", 5};
+    bench.receive(1, 1, request);
+  };
+  send(1, 1, true);
+  send(2, 0, true);
+  send(3, 1, false);
+  bench.run();
+  CHECK(bench.sent<Reject>(1, 1).size() == 3);
+  CHECK(bench.edits(1, 1).empty());
+}
+
 TEST_CASE("a command of the owner closes the session of a banned player at a follower",
           "[world][servers][rights]") {
   ClusterBench bench;

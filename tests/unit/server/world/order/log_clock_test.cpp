@@ -151,5 +151,16 @@ TEST_CASE("the time by which restrictions end advances although the log ends yea
   }
 }
 
+TEST_CASE("restrictions end also at a server that took over from one whose clock is ahead",
+          "[world]") {
+  ClockPair clocks;
+  clocks.pass(kMinute);
+  clocks.log.follow(kStart + 2 * kYear);
+  const TimeUs begin_us = clocks.log.time();
+  CHECK(begin_us == kStart + 2 * kYear);
+  clocks.pass(5 * kSecond);
+  CHECK(clocks.log.time() == begin_us + 5 * kSecond);
+}
+
 }  // namespace
 }  // namespace runstone
