@@ -25,13 +25,17 @@ int main() {
     }
   }
 
-  const RunChunk chunk = from_dense(extent, AxisOrder::xyz, voxels);
+  const Result<RunChunk> chunk = from_dense(extent, AxisOrder::xyz, voxels);
+  if (!chunk) {  // for example, if the number of voxels is not 32 * 32 * 32
+    std::fprintf(stderr, "%s\n", chunk.error().what);
+    return 1;
+  }
   const MeshNeighbours neighbours{};  // none: the faces at the edge of the chunk are drawn
   RdmScratch scratch;                 // one per thread, reused
   ChunkMesh mesh;
-  mesh_rdm(chunk, neighbours, table, scratch, mesh);
+  mesh_rdm(*chunk, neighbours, table, scratch, mesh);
 
-  std::printf("%zu runs, %zu opaque quads, %zu transparent quads\n", chunk.runs.size(),
+  std::printf("%zu runs, %zu opaque quads, %zu transparent quads\n", chunk->runs.size(),
               mesh.opaque.quads.size(), mesh.transparent.quads.size());
   const QuadFields first = unpack(mesh.opaque.quads.front());
   std::printf("first quad: corner %d %d %d, %d x %d faces of material %d\n", first.x, first.y,

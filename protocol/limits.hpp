@@ -1,7 +1,8 @@
 // The limits of messages and frames. The decoder, the verifier and the queues take them from here.
 // Limits of what messages carry are defined with their types: descriptors in
 // common/edits/descriptor/edit_descriptor.hpp, materials in common/materials/material_table.hpp,
-// chunk volumes in common/runs/extent.hpp.
+// chunk volumes in common/runs/extent.hpp, levels of detail in common/core/tile_keys.hpp, world
+// coordinates in common/core/coords.hpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -81,7 +82,6 @@ inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // then a silent peer l
 inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
 
 // World.
-inline constexpr std::uint8_t kLodMax = 0;            // levels of detail above 0 are reserved
 inline constexpr std::size_t kViewRadiusMax = 64;     // chunks
 inline constexpr std::uint16_t kViewConeMax = 32768;  // half a turn: the cone is the whole sphere
 

@@ -131,11 +131,11 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   if (!map) return failure(map.error());
   LuantiNodes nodes;
   std::optional<std::string> damaged;
-  const auto read_all = map->each_row([&](std::int64_t pos, ByteView data) {
-    const auto place = place_of(luanti_block_coord(pos), box);
+  const auto read = map->each_row([&](const LuantiRow& row) {
+    const auto place = place_of(row.block, box);
     if (!place || damaged) return;
-    if (const auto read = decode_luanti_row(data, nodes); !read) {
-      damaged = std::string("a block of ") + folder + ": " + read.error().what;
+    if (const auto decoded = decode_luanti_row(row.data, nodes); !decoded) {
+      damaged = std::string("a block of ") + folder + ": " + decoded.error().what;
       return;
     }
     LitChunk& chunk = out[place->chunk];
@@ -147,7 +147,7 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
       }
     }
   });
-  if (!read_all) return failure(read_all.error());
+  if (!read) return failure(read.error());
   if (damaged) return failure(*damaged);
   return out;
 }

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -28,6 +27,7 @@
 #include "client/settings/settings_file.hpp"
 #include "common/os/program.hpp"
 #include "common/os/stop_signals.hpp"
+#include "common/os/text_file.hpp"
 
 namespace {
 
@@ -70,9 +70,12 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
   using namespace runstone;
   std::optional<Script> script;
   if (!options.script.empty()) {
-    std::ifstream in(options.script, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    auto parsed = parse_script(text, options.script);
+    const auto text = read_text_file(options.script, kTextFileBytesMax);
+    if (!text) {
+      std::fprintf(stderr, "%s\n", text.error().c_str());
+      return kExitNoStart;
+    }
+    auto parsed = parse_script(*text, options.script);
     if (!parsed) {
       std::fprintf(stderr, "%s\n", parsed.error().message().c_str());
       return kExitNoStart;

@@ -1,7 +1,6 @@
 #include "client/app/key_program.hpp"
 
 #include <exception>
-#include <fstream>
 #include <istream>
 #include <ostream>
 
@@ -9,6 +8,7 @@
 #include "client/net/key_file.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/passphrase.hpp"
+#include "common/os/text_file.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 
 namespace runstone {
@@ -21,11 +21,10 @@ void print(const KeySeed& seed, std::ostream& out) {
   out << "public key  " << to_hex(key) << "\nfingerprint " << key_fingerprint(key) << "\n";
 }
 
-/// Returns the first line, at most kLineBytesMax bytes of it, or an empty text.
-std::string first_line(std::istream& in) {
-  constexpr std::size_t kLineBytesMax = 1024;  // an exported key has about 150
-  std::string line;
-  for (char c = 0; line.size() < kLineBytesMax && in.get(c) && c != '\n';) line += c;
+Result<std::string, std::string> exported_line(const KeyCommand& command, std::istream& in) {
+  if (!command.file.empty()) return read_first_line(command.file);
+  std::string line = first_line_of(in);
+  if (line.empty()) return failure("standard input: cannot be read, or its first line is empty");
   return line;
 }
 
@@ -33,7 +32,7 @@ std::string first_line(std::istream& in) {
 Result<std::string, std::string> new_passphrase(const KeyCommand& command) {
   const bool is_asked = command.passphrase_file.empty();
   auto passphrase = is_asked ? ask_new_passphrase("passphrase for the exported key: ")
-                             : read_passphrase(command.passphrase_file);
+                             : read_first_line(command.passphrase_file);
   if (passphrase && passphrase->size() < kPassphraseBytesMin)
     return failure("the passphrase has fewer than " + std::to_string(kPassphraseBytesMin) +
                    " bytes: take some words");
@@ -56,17 +55,13 @@ Done export_key(const KeyCommand& command, std::ostream& out, SealCost cost) {
 }
 
 Done import_key(const KeyCommand& command, std::istream& in, std::ostream& out) {
-  std::ifstream file;
-  if (!command.file.empty()) file.open(command.file);
-  const std::string line = first_line(command.file.empty() ? in : file);
-  if (line.empty())
-    return failure((command.file.empty() ? "standard input" : command.file) +
-                   ": cannot be read, or its first line is empty");
+  const auto line = exported_line(command, in);
+  if (!line) return failure(line.error());
   const auto passphrase = command.passphrase_file.empty()
                               ? ask_passphrase("passphrase of the exported key: ")
-                              : read_passphrase(command.passphrase_file);
+                              : read_first_line(command.passphrase_file);
   if (!passphrase) return failure(passphrase.error());
-  const auto seed = open_sealed_key(line, *passphrase);
+  const auto seed = open_sealed_key(*line, *passphrase);
   if (!seed) return failure(seed.error());
   save_new_key(command.key_file, *seed);
   print(*seed, out);
@@ -76,7 +71,7 @@ Done import_key(const KeyCommand& command, std::istream& in, std::ostream& out) 
 Done receive(KeyCommand command, std::istream& in, std::ostream& out) {
   if (command.code.empty()) {
     out << "code: " << std::flush;
-    command.code = first_line(in);
+    command.code = first_line_of(in);
   }
   const auto seed = receive_key(command, out);
   if (!seed) return failure(seed.error());

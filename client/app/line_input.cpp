@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/core/text.hpp"
+#include "common/os/text_file.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -41,7 +42,7 @@ void LineInput::take(std::string_view bytes, std::vector<std::string>& lines) {
     if (line_.size() > kCommandBytesMax) line_.resize(kCommandBytesMax);
     if (end == bytes.size()) return;
     bytes.remove_prefix(end + 1);
-    if (line_.ends_with('\r')) line_.pop_back();
+    trim_line(line_);
     lines.push_back(std::exchange(line_, {}));
   }
 }

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <thread>
 
@@ -11,7 +10,7 @@
 #include "common/core/day_time.hpp"
 #include "common/core/tile_keys.hpp"
 #include "common/os/output_file.hpp"
-#include "common/os/passphrase.hpp"
+#include "common/os/text_file.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/codec/view_tiles.hpp"
@@ -186,7 +185,7 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   }
   if (raw.insecure) out.tls.reset();
   if (!raw.password_file.empty()) {
-    auto password = read_passphrase(raw.password_file);
+    auto password = read_first_line(raw.password_file);
     if (!password) throw CLI::ValidationError("--password-file", password.error());
     out.password = *std::move(password);
   }
@@ -221,9 +220,9 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   out.quality = parse_quality(raw.quality);
   if (!raw.benchmark.empty()) {
     if (!out.render) throw CLI::ValidationError("--benchmark", "needs a renderer");
-    std::ifstream in(raw.benchmark, std::ios::binary);
-    auto path =
-        FlightPath::parse(std::string{std::istreambuf_iterator<char>(in), {}}, raw.benchmark);
+    const auto text = read_text_file(raw.benchmark, kTextFileBytesMax);
+    if (!text) throw CLI::ValidationError("--benchmark", text.error());
+    auto path = FlightPath::parse(*text, raw.benchmark);
     if (!path) throw CLI::ValidationError("--benchmark", path.error().message());
     out.benchmark = *std::move(path);
   }

@@ -20,6 +20,8 @@ class ScriptActions final : public ScriptHost {
   ScriptActions(Play& play, TerminalChat& chat, ClientHud& hud, std::string screenshot_folder);
 
   bool ready() const override { return session_.connect_count() != 0; }
+  bool connected() const override { return session_.is_open(); }
+  std::uint64_t connections() const override { return session_.connect_count(); }
   WorldPos eye() const override { return play_.player().eye(); }
   void move_to(const WorldPos& eye) override;
   void look(double yaw, double pitch) override;
@@ -59,6 +61,7 @@ class ScriptActions final : public ScriptHost {
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }
   bool show_answer() override;
+  bool answer_lost() const override { return session_.is_answer_lost(); }
   TimeUs utc_now_us() const override;
   void press(const KeyChord& chord) override;
   void type(const std::string& text) override;

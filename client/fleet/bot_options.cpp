@@ -4,7 +4,7 @@
 
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
-#include "common/os/passphrase.hpp"
+#include "common/os/text_file.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/program_version.hpp"
 
@@ -168,7 +168,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
     if (!password_file.empty()) {
       if (!out.web_path.empty())
         throw CLI::ValidationError("--password-file", "a gateway passes no passwords on");
-      auto password = read_passphrase(password_file);
+      auto password = read_first_line(password_file);
       if (!password) throw CLI::ValidationError("--password-file", password.error());
       out.password = *std::move(password);
     }

@@ -8,12 +8,12 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "common/core/hex.hpp"
 #include "common/os/private_file.hpp"
+#include "common/os/text_file.hpp"
 
 namespace runstone {
 namespace {
@@ -55,21 +55,21 @@ void save_new_key(const std::string& file, const KeySeed& seed) {
 }
 
 KeySeed load_key_seed(const std::string& file) {
-  struct stat info{};
+  struct stat info {};
   if (::stat(file.c_str(), &info) != 0) throw_error(file, std::strerror(errno));
   if ((info.st_mode & 077) != 0)
     throw_error(file, "other users may read this key: run chmod 600 on it");
-  std::ifstream in(file);
-  std::string line;
+  const auto line = read_first_line(file);
   KeySeed seed;
-  if (!std::getline(in, line) || !read_hex(line, seed))
-    throw_error(file, "is not a key file (64 hex digits)");
+  if (!line || !read_hex(*line, seed))
+    throw_error(file,
+                "is not a key file (64 hex digits): copy the key again, or take a backup of it");
   return seed;
 }
 
 KeyPair load_or_create_key(const std::string& file) {
   need_sodium();
-  struct stat info{};
+  struct stat info {};
   if (::stat(file.c_str(), &info) != 0 && errno == ENOENT) {
     KeySeed seed;
     randombytes_buf(seed.data(), seed.size());
@@ -103,7 +103,10 @@ ClientInstance random_instance() {
 std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
   std::map<WorldId, PublicKey> pinned;
   const std::string file = key_file + kPinsSuffix;
-  std::ifstream in(file);
+  if (!std::filesystem::exists(file)) return pinned;
+  const auto text = read_text_file(file, kTextFileBytesMax);
+  if (!text) throw std::runtime_error(text.error());
+  std::istringstream in(*text);
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     std::istringstream fields(line);

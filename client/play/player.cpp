@@ -84,9 +84,9 @@ Camera Player::camera(double view_voxels) const {
 
 VoxelPos Player::voxel() const {
   const auto down = [](double v) {
-    constexpr double kLimit = kWorldLimit - 1;
     if (std::isnan(v)) return 0;
-    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
+    return static_cast<std::int32_t>(
+        std::floor(std::clamp<double>(v, -kWorldLimit, kWorldLimit - 1)));
   };
   return {down(eye_.x), down(eye_.y), down(eye_.z)};
 }

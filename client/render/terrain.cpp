@@ -88,8 +88,8 @@ glm::dvec3 origin_in_world(const ChunkKey& key, std::int32_t edge) {
 /// Returns the voxel that holds a place. Places beyond the limits of the world count as at them.
 VoxelPos voxel_at(const glm::dvec3& at) {
   const auto whole = [](double v) {
-    constexpr double kLimit = kWorldLimit - 1;
-    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
+    return static_cast<std::int32_t>(
+        std::floor(std::clamp<double>(v, -kWorldLimit, kWorldLimit - 1)));
   };
   return {whole(at.x), whole(at.y), whole(at.z)};
 }

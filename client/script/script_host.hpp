@@ -25,6 +25,10 @@ class ScriptHost {
 
   /// Returns true once a world was opened. No command runs before that.
   virtual bool ready() const = 0;
+  /// Returns true while the connection is open. Commands for the server wait for it.
+  virtual bool connected() const = 0;
+  /// Returns how often the connection was opened.
+  virtual std::uint64_t connections() const = 0;
   virtual WorldPos eye() const = 0;
   virtual void move_to(const WorldPos& eye) = 0;
   /// Sets the direction, in radians.
@@ -87,6 +91,8 @@ class ScriptHost {
   virtual bool commanding() const = 0;
   /// Prints the lines of the complete answer. Returns true if the command succeeded.
   virtual bool show_answer() = 0;
+  /// Returns true if the connection ended before the answer to the newest command was complete.
+  virtual bool answer_lost() const = 0;
   /// Returns true until all chunks of the requested moment are here, or the request was refused.
   virtual bool travelling() const = 0;
   /// Returns why the last travel() was refused, or an empty text.

@@ -44,18 +44,19 @@ ScriptRunner::Progress ScriptRunner::run(const script::ShowTimeline& c) {
 
 ScriptRunner::Progress ScriptRunner::run(const script::Rollback& c) {
   using Kind = script::Rollback::Kind;
-  if (!started_) {
-    start();
+  start();
+  if (!state_.is_sent) {
+    if (!host_.connected()) return wait_for_connection();
     const std::string refusal = c.kind == Kind::preview ? host_.preview_rollback(c.filters)
                                 : c.kind == Kind::apply ? host_.apply_rollback()
                                 : c.kind == Kind::undo  ? host_.undo_rollback()
                                                         : host_.forget_rollback();
     if (!refusal.empty()) return give_up("the rollback cannot begin: " + refusal);
+    state_.is_sent = true;
   }
   const Progress progress =
       wait_for_panel(host_.rolling_back(), "the server did not answer in time");
-  if (progress == Progress::done && !host_.show_rollback_answer())
-    fail("the server refused the rollback");
+  if (progress == Progress::done && !host_.show_rollback_answer()) fail_answer("the rollback");
   return progress;
 }
 

@@ -92,7 +92,7 @@ std::optional<WorldPos> ScriptRunner::resolve(const ScriptPosition& position) {
     }
     out.y = *top + position[1].offset;
   }
-  const auto outside = [](double v) { return std::fabs(v) >= kWorldLimit; };
+  const auto outside = [](double v) { return v < -kWorldLimit || v >= kWorldLimit; };
   if (outside(out.x) || outside(out.y) || outside(out.z)) {
     fail("position lies outside the world");
     return std::nullopt;
@@ -385,8 +385,10 @@ ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
-  if (!started_) {
-    start();
+  start();
+  if (!host_.connected()) return wait_for_connection();
+  // A new connection shows the live world, so the request is sent again.
+  if (!state_.is_sent || state_.connections != host_.connections()) {
     HistoryRequest request;
     request.to = c.to;
     request.seq = c.seq;
@@ -395,6 +397,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
           host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
     }
     host_.travel(request);
+    state_.is_sent = true;
+    state_.connections = host_.connections();
   }
   if (!host_.travelling()) {
     const std::string refusal = host_.travel_refusal();
@@ -407,6 +411,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Say& c) {
+  start();
+  if (!host_.connected()) return wait_for_connection();
   const std::string refusal = host_.say(c.text);
   if (!refusal.empty()) fail("the line is not sent: " + refusal);
   return Progress::done;
@@ -425,13 +431,15 @@ ScriptRunner::Progress ScriptRunner::run(const script::WaitChat& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
-  if (!started_) {
-    start();
+  start();
+  if (!state_.is_sent) {
+    if (!host_.connected()) return wait_for_connection();
     const std::string refusal = host_.command(c.text);
     if (!refusal.empty()) return give_up("the command cannot be sent: " + refusal);
+    state_.is_sent = true;
   }
   if (!host_.commanding()) {
-    if (!host_.show_answer()) fail("the server refused \"" + c.text + "\"");
+    if (!host_.show_answer()) fail_answer("\"" + c.text + "\"");
     return Progress::done;
   }
   const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
@@ -456,6 +464,20 @@ ScriptRunner::Progress ScriptRunner::run(const script::End& c) {
     repeats_left_.pop_back();
   }
   return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::wait_for_connection() {
+  const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
+  if (now_us_ >= due_us) return give_up("the connection did not come back in time");
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
+void ScriptRunner::fail_answer(const std::string& what) {
+  // It is not sent again: a second undo would take back another action.
+  fail(host_.answer_lost() ? "the connection ended before the answer to " + what +
+                                 " came: the server may have carried it out or not"
+                           : "the server refused " + what);
 }
 
 ScriptRunner::Progress ScriptRunner::after_input() {

@@ -35,11 +35,13 @@ class ScriptRunner {
   enum class Progress { done, waits, stop };
   struct Started {  // state of the command that waits
     TimeUs at_us = 0;
-    TimeUs last_us = 0;       // walk: time of the last movement
-    std::uint64_t mark = 0;   // synced
-    std::uint32_t count = 0;  // burst: edits proposed
-    SplitMix64 random{0};     // burst
-    WorldPos centre;          // burst: the player at its start; walk: the destination
+    TimeUs last_us = 0;             // walk: time of the last movement
+    std::uint64_t mark = 0;         // synced
+    bool is_sent = false;           // a command for the server
+    std::uint64_t connections = 0;  // that were opened when it was sent
+    std::uint32_t count = 0;        // burst: edits proposed
+    SplitMix64 random{0};           // burst
+    WorldPos centre;                // burst: the player at its start; walk: the destination
   };
 
   Progress run(const script::Move& c);
@@ -68,6 +70,10 @@ class ScriptRunner {
   Progress run(const script::Say& c);
   Progress run(const script::WaitChat& c);
   Progress run(const script::Command& c);
+  /// Waits until the connection is open. Ends the script if that takes too long.
+  Progress wait_for_connection();
+  /// Records that the server did not carry out a command, or may not have done so. `what` names it.
+  void fail_answer(const std::string& what);
   /// Waits until the client has handled the input of this command.
   Progress after_input();
   Progress run(const script::PressKey& c);

@@ -36,7 +36,10 @@ void ClientSession::disconnected() {
   history_.clear();
   timeline_.disconnected();
   chat_.disconnected();
-  if (is_commanding_) command_lines_ = {"the connection ended before the answer came"};
+  if (is_commanding_) {
+    command_lines_ = {"the connection ended before the answer came"};
+    is_answer_lost_ = true;
+  }
   is_commanding_ = false;
   restore_preview_.reset();  // the server forgets its previews when it ends
   early_.clear();
@@ -229,7 +232,7 @@ Result<void> ClientSession::command(std::string text) {
     return fail(ErrorCode::bad_value, "a command is 1 to 1024 bytes of text");
   }
   is_commanding_ = true;
-  is_command_ok_ = false;
+  is_command_ok_ = is_answer_lost_ = false;
   command_lines_.clear();
   restore_preview_.reset();
   connection_.send(CommandRequest{++command_, std::move(text)});

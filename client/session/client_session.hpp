@@ -112,6 +112,8 @@ class ClientSession {
   /// Returns the output of the newest command so far. If the connection ended before, a line says
   /// so.
   const std::vector<std::string>& command_lines() const { return command_lines_; }
+  /// Returns true if the connection ended before the output of the newest command was complete.
+  bool is_answer_lost() const { return is_answer_lost_; }
   /// Returns true if the newest command has completed and succeeded.
   bool command_ok() const { return is_command_ok_; }
 
@@ -210,7 +212,7 @@ class ClientSession {
   std::vector<std::pair<Message, Arrival>> early_;  // arrived before SessionAccepted
 
   std::uint32_t command_ = 0;  // id of the newest command
-  bool is_commanding_ = false, is_command_ok_ = false;
+  bool is_commanding_ = false, is_command_ok_ = false, is_answer_lost_ = false;
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
   std::optional<RestorePreview> restore_preview_;
   LogTimeline timeline_;

@@ -12,6 +12,7 @@
 #include "client/settings/toml_text.hpp"
 #include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
+#include "common/os/text_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
@@ -81,7 +82,7 @@ LoadedServers load_recent_servers(const std::string& file) {
   LoadedServers out;
   std::error_code error;
   if (file.empty() || (!std::filesystem::exists(file, error) && !error)) return out;
-  const auto text = read_file(file, kServersBytesMax);
+  const auto text = read_text_file(file, kServersBytesMax);
   if (!text) {
     out.warning = text.error();
     return out;

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "common/os/private_file.hpp"
+#include "common/os/text_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
@@ -25,7 +26,7 @@ LoadedSettings load_settings(const std::string& file) {
   LoadedSettings out;
   std::error_code error;
   if (file.empty() || (!std::filesystem::exists(file, error) && !error)) return out;
-  const auto text = read_file(file, kSettingsBytesMax);
+  const auto text = read_text_file(file, kSettingsBytesMax);
   if (!text) {
     out.warnings.push_back(text.error() + "; the default settings are used");
     return out;

@@ -20,8 +20,8 @@ constexpr std::array<const char*, kDirectionCount> kDirections = {"-x", "+x", "-
                                                                   "+y", "-z", "+z"};
 constexpr std::array<const char*, 5> kSymmetries = {"none", "mirrored along x", "mirrored along z",
                                                     "mirrored along x and z", "a half turn"};
-/// The greatest coordinate that can be typed.
-constexpr int kCoordinateMax = kWorldLimit - 1;
+/// The range of the coordinates that can be typed.
+constexpr int kCoordinateMin = -kWorldLimit, kCoordinateMax = kWorldLimit - 1;
 const ImVec4 kToolWarning = {1, 0.82F, 0.47F, 1};
 
 std::array<int, 3> numbers_of(VoxelPos at) { return {at.x, at.y, at.z}; }
@@ -30,7 +30,7 @@ VoxelPos voxel_of(const std::array<int, 3>& at) { return {at[0], at[1], at[2]}; 
 /// Shows three fields for a place. Returns true if the user changed it.
 bool place_fields(const char* label, std::array<int, 3>& at) {
   if (!ImGui::InputInt3(label, at.data())) return false;
-  for (int& v : at) v = std::clamp(v, -kCoordinateMax, kCoordinateMax);
+  for (int& v : at) v = std::clamp(v, kCoordinateMin, kCoordinateMax);
   return true;
 }
 
@@ -237,7 +237,7 @@ void ToolWindow::build_symmetry(const HudState& state, std::vector<ToolCommand>&
   std::array<double, 2> centre = {symmetry.centre2_x / 2.0, symmetry.centre2_z / 2.0};
   const auto field = [](const char* label, double& value, std::int32_t& twice) {
     if (!ImGui::InputDouble(label, &value, 0.5, 1, "%.1f")) return;
-    value = std::clamp<double>(value, -kCoordinateMax, kCoordinateMax);
+    value = std::clamp<double>(value, kCoordinateMin, kCoordinateMax);
     twice = static_cast<std::int32_t>(std::lround(2 * value));
   };
   field("centre x", centre[0], symmetry.centre2_x);

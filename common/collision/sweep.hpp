@@ -10,6 +10,7 @@
 
 #include "common/collision/voxel_space.hpp"
 #include "common/core/coords.hpp"
+#include "common/core/result.hpp"
 #include "common/core/world_pos.hpp"
 
 namespace runstone {
@@ -31,6 +32,11 @@ struct SweepHit {
   Direction face{};     // of the voxel that was hit, towards the box
   VoxelPos voxel;       // one of those that were hit
 };
+
+/// Returns success if sweep() and slide() can move the box so. Fails with bad_value if a number is
+/// not finite, the box is empty on an axis, the move is longer than kSweepMax on an axis, or the
+/// way leaves the world.
+Result<void> validate_move(const BodyBox& box, const WorldPos& move);
 
 /// Returns the first solid voxel that the box meets on the way along `move` (voxels), or nullopt if
 /// the way is free. Requires finite numbers, |move| <= kSweepMax on each axis, and that the way

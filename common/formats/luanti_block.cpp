@@ -1,65 +1,27 @@
 #include "common/formats/luanti_block.hpp"
 
-#include <zstd.h>
-
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/formats/luanti_stream.hpp"
 #include "common/runs/run_builder.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::uint8_t kVersion = 29;
+// The first version with ids of two bytes, the first one with a word of lighting, and the first one
+// that is a zstd stream as a whole. No version after that is known.
+constexpr std::uint8_t kFirstVersion = 24, kLightingVersion = 27, kZstdVersion = 29;
 constexpr std::uint32_t kNodeCount = kLuantiBlockEdge * kLuantiBlockEdge * kLuantiBlockEdge;
 constexpr std::size_t kNodeIdBytes = 2, kNodeParamBytes = 2;
 // A block cannot use more names than it has nodes, and i + 1 must fit a material id.
 constexpr std::size_t kNameCountMax = kNodeCount;
-
-struct StreamDeleter {
-  void operator()(ZSTD_DStream* stream) const { ZSTD_freeDStream(stream); }
-};
-
-/// Decompresses exactly one zstd frame. The streaming calls are needed, because Luanti writes no
-/// content size.
-Result<Bytes> decompress(ByteView in) {
-  const std::unique_ptr<ZSTD_DStream, StreamDeleter> stream(ZSTD_createDStream());
-  RUNSTONE_ASSERT(stream != nullptr);
-  Bytes out(std::size_t{20} << 10);  // nearly every block fits: the nodes are 16 KiB
-  ZSTD_inBuffer source{in.data(), in.size(), 0};
-  std::size_t filled = 0;
-  while (true) {
-    ZSTD_outBuffer target{out.data(), out.size(), filled};
-    const std::size_t status = ZSTD_decompressStream(stream.get(), &target, &source);
-    const std::uint64_t offset = source.pos + 1;  // the version byte precedes the stream
-    if (ZSTD_isError(status) != 0) {
-      return fail(ErrorCode::bad_value, "luanti block: not a zstd stream, or a damaged one",
-                  offset);
-    }
-    filled = target.pos;
-    if (status == 0) {
-      if (source.pos != source.size) {
-        return fail(ErrorCode::trailing_bytes, "luanti block: bytes after the zstd stream", offset);
-      }
-      out.resize(filled);
-      return out;
-    }
-    if (filled < out.size()) {
-      // The output has room left, so the stream needs more input, but all input was consumed.
-      return fail(ErrorCode::truncated, "luanti block: the zstd stream ends early", offset);
-    }
-    if (out.size() == kLuantiBlockBytesMax) {
-      return fail(ErrorCode::limit_exceeded, "luanti block: decompresses to more than 1 MiB",
-                  offset);
-    }
-    out.resize(std::min(out.size() * 4, kLuantiBlockBytesMax));
-  }
-}
+// Metadata before version 29 precedes the names, so it has to be decompressed. It is not kept.
+constexpr std::size_t kMetadataBytesMax = std::size_t{64} << 20;
 
 /// Reads big-endian numbers with the common reader.
 class BigEndian {
@@ -107,9 +69,15 @@ NameTable read_names(ByteReader& in) {
   const std::uint16_t count = big.u16();
   if (count > kNameCountMax)
     in.reject(ErrorCode::limit_exceeded, "luanti block: more than 4096 names");
+  std::size_t name_bytes = 0;
   for (std::uint16_t i = 0; i < count && in.ok(); ++i) {
     const std::uint16_t id = big.u16();
     const ByteView name = in.bytes(big.u16());
+    name_bytes += name.size();
+    if (name_bytes > kLuantiBlockBytesMax) {
+      in.reject(ErrorCode::limit_exceeded, "luanti block: names take more than 1 MiB");
+      break;
+    }
     table.blocks.push_back({std::string(name.begin(), name.end()), ""});
     table.of_id.emplace_back(
         id, table.blocks.back().name == "ignore" ? kEmpty : static_cast<Material>(i + 1));
@@ -121,6 +89,87 @@ NameTable read_names(ByteReader& in) {
     }
   }
   return table;
+}
+
+void read_widths(ByteReader& in) {
+  if (in.u8() != kNodeIdBytes)
+    in.reject(ErrorCode::bad_value, "luanti block: node ids are not of 2 bytes");
+  if (in.u8() != kNodeParamBytes)
+    in.reject(ErrorCode::bad_value, "luanti block: parameters are not of 2 bytes");
+}
+
+/// Reads the planes of ids, light and param2, and makes runs of them. They are the other program's
+/// dense form, which is read node by node from the place where it was decompressed, so no dense
+/// buffer of this project is made.
+Result<ForeignPiece> read_nodes(ByteReader& in, NameTable table) {
+  const std::uint64_t plane_at = in.offset();
+  const ByteView plane = in.bytes(kNodeCount * kNodeIdBytes);
+  in.bytes(kNodeCount);  // param1: the light
+  const ByteView param2 = in.bytes(kNodeCount);
+  if (!in.ok()) return failure(in.error());
+
+  RunBuilder runs(Extent::cube(kLuantiBlockEdge), AxisOrder::xyz);
+  std::uint32_t first = 0;  // node at which the current stretch of one id and param2 began
+  const auto id_at = [&](std::uint32_t node) {
+    return static_cast<std::uint16_t>(plane[2 * node] << 8 | plane[2 * node + 1]);
+  };
+  for (std::uint32_t node = 1; node <= kNodeCount; ++node) {
+    if (node < kNodeCount && id_at(node) == id_at(first) && param2[node] == param2[first]) continue;
+    const auto material = table.find(id_at(first), param2[first]);
+    if (!material)
+      return fail(ErrorCode::bad_value, "luanti block: a node id has no name",
+                  plane_at + 2 * first);
+    if (table.state_bytes > kLuantiBlockBytesMax)
+      return fail(ErrorCode::limit_exceeded, "luanti block: names and states take more than 1 MiB",
+                  plane_at + 2 * first);
+    runs.append(node - first, *material);
+    first = node;
+  }
+  return ForeignPiece{{}, runs.finish(), std::move(table.blocks)};
+}
+
+/// Version 29: all but the version is one zstd stream, in which the names precede the nodes.
+Result<ForeignPiece> decode_zstd_block(ByteView data) {
+  const auto plain = unpack_zstd(data, 1, kLuantiBlockBytesMax);
+  if (!plain) return failure(plain.error());
+  ByteReader in(*plain);
+  in.bytes(1 + 2 + 4);  // flags, lighting, timestamp
+  NameTable table = read_names(in);
+  read_widths(in);
+  auto piece = read_nodes(in, std::move(table));
+  if (!piece && piece.error().code == ErrorCode::truncated && plain->size() == kLuantiBlockBytesMax)
+    return fail(ErrorCode::limit_exceeded, "luanti block: names take more than 1 MiB");
+  return piece;
+}
+
+/// Versions 24 to 28: nodes and metadata are a zlib stream each, and the names come last.
+Result<ForeignPiece> decode_zlib_block(ByteView data) {
+  const std::uint8_t version = data[0];
+  ByteReader head(data);
+  head.bytes(version >= kLightingVersion ? 1 + 1 + 2 : 1 + 1);  // version, flags, lighting
+  read_widths(head);
+  if (!head.ok()) return failure(head.error());
+  Bytes nodes;
+  const auto behind_nodes = unpack_zlib(data, head.offset(), kNodeCount * 4, &nodes);
+  if (!behind_nodes) return failure(behind_nodes.error());
+  const auto behind_metadata = unpack_zlib(data, *behind_nodes, kMetadataBytesMax, nullptr);
+  if (!behind_metadata) return failure(behind_metadata.error());
+
+  ByteReader in(data);
+  in.bytes(*behind_metadata);
+  BigEndian big(in);
+  // Timers follow the names since version 25.
+  if (version == 24 && in.u8() != 0) in.bytes(std::size_t{big.u16()} * (2 + 4 + 4));
+  in.u8();  // version of the static objects
+  for (unsigned left = big.u16(); left > 0 && in.ok(); --left) {
+    in.bytes(1 + 3 * 4);  // kind, position
+    in.bytes(big.u16());
+  }
+  in.bytes(4);  // timestamp
+  NameTable table = read_names(in);
+  if (!in.ok()) return failure(in.error());
+  ByteReader planes(nodes);
+  return read_nodes(planes, std::move(table));
 }
 
 std::int32_t low_12_bits_signed(std::int64_t v) {
@@ -151,44 +200,11 @@ std::int64_t luanti_block_pos(ChunkCoord block) {
 
 Result<ForeignPiece> decode_luanti_block(ByteView data) {
   if (data.empty()) return fail(ErrorCode::truncated, "luanti block: no bytes");
-  if (data[0] != kVersion)
-    return fail(ErrorCode::bad_version, "luanti block: serialisation version is not 29");
-  const auto plain = decompress(data.subspan(1));
-  if (!plain) return failure(plain.error());
-
-  ByteReader in(*plain);
-  in.bytes(1 + 2 + 4);  // flags, lighting, timestamp
-  NameTable table = read_names(in);
-  if (in.u8() != kNodeIdBytes)
-    in.reject(ErrorCode::bad_value, "luanti block: node ids are not of 2 bytes");
-  if (in.u8() != kNodeParamBytes)
-    in.reject(ErrorCode::bad_value, "luanti block: parameters are not of 2 bytes");
-  // This plane is the other program's dense form. It is read node by node into runs, from the place
-  // where it was decompressed, so no dense buffer of this project is made.
-  const std::uint64_t plane_at = in.offset();
-  const ByteView plane = in.bytes(kNodeCount * kNodeIdBytes);
-  in.bytes(kNodeCount);  // param1: the light
-  const ByteView param2 = in.bytes(kNodeCount);
-  if (!in.ok()) return failure(in.error());
-
-  RunBuilder runs(Extent::cube(kLuantiBlockEdge), AxisOrder::xyz);
-  std::uint32_t first = 0;  // node at which the current stretch of one id and param2 began
-  const auto id_at = [&](std::uint32_t node) {
-    return static_cast<std::uint16_t>(plane[2 * node] << 8 | plane[2 * node + 1]);
-  };
-  for (std::uint32_t node = 1; node <= kNodeCount; ++node) {
-    if (node < kNodeCount && id_at(node) == id_at(first) && param2[node] == param2[first]) continue;
-    const auto material = table.find(id_at(first), param2[first]);
-    if (!material)
-      return fail(ErrorCode::bad_value, "luanti block: a node id has no name",
-                  plane_at + 2 * first);
-    if (table.state_bytes > kLuantiBlockBytesMax)
-      return fail(ErrorCode::limit_exceeded, "luanti block: names and states take more than 1 MiB",
-                  plane_at + 2 * first);
-    runs.append(node - first, *material);
-    first = node;
-  }
-  return ForeignPiece{{}, runs.finish(), std::move(table.blocks)};
+  if (data[0] == kZstdVersion) return decode_zstd_block(data);
+  if (data[0] >= kFirstVersion && data[0] < kZstdVersion) return decode_zlib_block(data);
+  return fail(ErrorCode::bad_version,
+              data[0] < kFirstVersion ? "luanti block: of Luanti 0.4.1 or before"
+                                      : "luanti block: of a newer Luanti than this program knows");
 }
 
 Result<void> read_luanti_block(ByteView data, const PieceSink& sink) {

@@ -1,6 +1,6 @@
 // Luanti map blocks: decodes 16^3 nodes of another program's world from bytes to runs. The SQLite
 // side of such a world is in server/import. Format: Luanti's doc/world_format.md, serialisation
-// version 29. Versions 28 and older are zlib streams; the error names them.
+// versions 24 to 29.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,8 @@
 namespace runstone {
 
 inline constexpr std::int32_t kLuantiBlockEdge = 16;
-/// The maximum size of a decompressed block: 16 KiB of nodes, and the contents of chests and signs.
+/// The maximum size of the names of a block, and of what is decompressed of a zstd stream. The
+/// nodes are 16 KiB. What lies behind, the contents of chests and signs, may have any size.
 inline constexpr std::size_t kLuantiBlockBytesMax = std::size_t{1} << 20;
 
 /// Converts a row's `pos` to a block coordinate, and back. Block coordinates are -2048 .. 2047.
@@ -24,10 +25,11 @@ std::int64_t luanti_block_pos(ChunkCoord block);
 /// Decodes one block's `data` to one piece of 16^3 voxels. The blocks of the piece are the names of
 /// the block's own table in its order, at most 4096, and then each name with a state "param2=N" of
 /// which N is not 0. Nodes `ignore`, which the other program has not generated, have material 0.
-/// Every byte is untrusted: lengths, counts, ids and the zstd stream are bounded. The part behind
-/// the nodes (metadata, objects, timers) must decompress and is ignored. The offset of an error is
-/// a byte of the decompressed stream, or of `data` if the stream itself is bad. Cost: O(nodes +
-/// decompressed bytes).
+/// Every byte is untrusted: lengths, counts, ids and streams are bounded. Metadata, objects and
+/// timers are ignored, and so are bytes behind the last stream, as in Luanti. Of a zstd stream the
+/// first kLuantiBlockBytesMax bytes must decompress. The offset of an error is a byte of the
+/// decompressed nodes, or of `data` if the stream itself is bad. Cost: O(nodes + decompressed
+/// bytes).
 Result<ForeignPiece> decode_luanti_block(ByteView data);
 /// Gives the piece of decode_luanti_block() to the sink: the reader of Format.
 Result<void> read_luanti_block(ByteView data, const PieceSink& sink);

@@ -15,7 +15,8 @@ namespace runstone {
 class VisibilityTable {
  public:
   /// Entry i of `materials` is the visibility of material i. Ids without an entry are opaque, and
-  /// kEmpty is always empty. Requires at most kMaterialCountMax entries.
+  /// kEmpty is always empty. Requires at most kMaterialCountMax entries;
+  /// visibility_table() (rdm/checked_mesh.hpp) takes any number.
   explicit VisibilityTable(std::span<const Visibility> materials)
       : visibility_(kMaterialCountMax, Visibility::opaque) {
     RUNSTONE_ASSERT(materials.size() <= kMaterialCountMax);

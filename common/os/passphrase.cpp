@@ -4,8 +4,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <fstream>
-
 namespace runstone {
 namespace {
 
@@ -61,14 +59,6 @@ Result<std::string, std::string> ask_new_passphrase(const std::string& prompt) {
   if (!second) return second;
   if (*first != *second) return failure("the two lines differ");
   return first;
-}
-
-Result<std::string, std::string> read_passphrase(const std::string& file) {
-  std::ifstream in(file);
-  std::string line;
-  if (!std::getline(in, line) || line.empty())
-    return failure(file + ": cannot be read, or its first line is empty");
-  return line;
 }
 
 }  // namespace runstone

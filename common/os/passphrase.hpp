@@ -1,4 +1,4 @@
-// Passphrases: typed at the terminal without being shown, or read from a file.
+// Passphrases: typed at the terminal without being shown.
 #pragma once
 #include <string>
 
@@ -12,8 +12,5 @@ Result<std::string, std::string> ask_passphrase(const std::string& prompt);
 
 /// Asks twice for a new one. Fails also if the two differ.
 Result<std::string, std::string> ask_new_passphrase(const std::string& prompt);
-
-/// Returns the first line of a file. Fails if the file cannot be read or its first line is empty.
-Result<std::string, std::string> read_passphrase(const std::string& file);
 
 }  // namespace runstone

@@ -27,8 +27,13 @@ std::vector<Material> to_dense(const RunChunk& chunk) {
   return out;
 }
 
-RunChunk from_dense(Extent extent, AxisOrder order, std::span<const Material> voxels) {
-  RUNSTONE_ASSERT(voxels.size() == extent.volume());
+Result<RunChunk> from_dense(Extent extent, AxisOrder order, std::span<const Material> voxels) {
+  if (!extent.valid()) return fail(ErrorCode::bad_value, "chunk side outside 8..128");
+  if (static_cast<std::uint8_t>(order) >= kAxisOrderCount)
+    return fail(ErrorCode::bad_value, "unknown axis order");
+  if (voxels.size() != extent.volume())
+    return fail(ErrorCode::bad_value, "the number of voxels is not the volume of the chunk",
+                voxels.size());
   RunBuilder builder(extent, order);
   for (const Material m : voxels) builder.append(1, m);
   return builder.finish();

@@ -20,8 +20,9 @@ void count_dense_expansion();
 /// O(volume).
 std::vector<Material> to_dense(const RunChunk& chunk);
 
-/// Returns the runs of a dense buffer in index order `order`. Requires voxels.size() == volume. It
-/// is not counted, because the caller already counted its buffer. Cost: O(volume).
-RunChunk from_dense(Extent extent, AxisOrder order, std::span<const Material> voxels);
+/// Returns the runs of a dense buffer in index order `order`. Fails with bad_value if no chunk may
+/// have the extent, the order is unknown, or the number of voxels is not the volume. It is not
+/// counted, because the caller already counted its buffer. Cost: O(volume).
+Result<RunChunk> from_dense(Extent extent, AxisOrder order, std::span<const Material> voxels);
 
 }  // namespace runstone

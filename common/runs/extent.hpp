@@ -27,6 +27,7 @@ struct Extent {
   /// Returns true if a cuboid that is no chunk may have this extent, such as a part of a chunk or a
   /// clipboard: sides 1 .. kSideMax.
   constexpr bool valid_part() const { return sides_from(1); }
+  /// Requires an edge of 1 .. kSideMax. chunk_extent() (checked_runs.hpp) takes sides from data.
   static constexpr Extent cube(unsigned edge) {
     const auto side = static_cast<std::uint8_t>(edge);
     return {side, side, side};

@@ -92,7 +92,7 @@ Result<void> validate(const RunChunk& chunk) {
 }
 
 Result<void> validate_runs(const RunChunk& chunk) {
-  RUNSTONE_ASSERT(chunk.extent.valid_part());
+  if (!chunk.extent.valid_part()) return fail(ErrorCode::bad_value, "side outside 1..128");
   if (static_cast<std::uint8_t>(chunk.order) >= kAxisOrderCount)
     return fail(ErrorCode::bad_value, "unknown axis order");
   if (chunk.runs.is_narrow() != (chunk.volume() <= kNarrowVolumeMax)) {

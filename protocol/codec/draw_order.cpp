@@ -35,7 +35,7 @@ void write_key(ByteWriter& w, const ChunkKey& key) {
 ChunkKey read_key(ByteReader& r, std::int32_t edge) {
   ChunkKey key;
   key.lod = r.u8();
-  if (key.lod > kLodMax) r.reject(ErrorCode::bad_value, "draw order: level of detail is not 0");
+  if (key.lod != 0) r.reject(ErrorCode::bad_value, "draw order: level of detail is not 0");
   const std::int32_t reach = kWorldLimit / edge;
   for (std::int32_t* c : {&key.at.x, &key.at.y, &key.at.z}) {
     *c = static_cast<std::int32_t>(r.u32());

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <ostream>
 
+#include "common/os/text_file.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -63,6 +64,7 @@ void Console::take(std::string_view bytes) {
     }
     if (!is_too_long_) line_ += part;
     if (!ends) continue;
+    trim_line(line_);
     if (line_.find_first_not_of(' ') != std::string::npos) run(line_);
     line_.clear();
     is_too_long_ = false;

@@ -14,6 +14,7 @@
 
 #include "common/core/text.hpp"
 #include "common/os/passphrase.hpp"
+#include "common/os/text_file.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/control_socket.hpp"
 
@@ -54,9 +55,8 @@ std::string control_line(const std::vector<std::string>& words) {
 
 Result<std::string, std::string> read_new_password() {
   if (::isatty(STDIN_FILENO) == 1) return ask_new_passphrase("password for the world: ");
-  std::string line;
-  if (!std::getline(std::cin, line))
-    return failure("password set: standard input is no terminal and has no line");
+  std::string line = first_line_of(std::cin);
+  if (line.empty()) return failure("password set: standard input is no terminal and has no line");
   return line;
 }
 

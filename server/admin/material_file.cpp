@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
+
+#include "common/os/text_file.hpp"
 
 namespace runstone {
 namespace {
@@ -16,14 +17,9 @@ Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(file, error);
   if (!is_file) return failure(file + ": " + (error ? error.message() : "is no file"));
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return failure(file + ": cannot be read");
-  std::string toml(kMaterialFileBytesMax + 1, '\0');
-  in.read(toml.data(), static_cast<std::streamsize>(toml.size()));
-  toml.resize(static_cast<std::size_t>(in.gcount()));
-  if (toml.size() > kMaterialFileBytesMax)
-    return failure(file + ": is larger than " + std::to_string(kMaterialFileBytesMax) + " bytes");
-  auto rows = parse_material_rows(toml, file);
+  const auto toml = read_text_file(file, kMaterialFileBytesMax);
+  if (!toml) return failure(toml.error());
+  auto rows = parse_material_rows(*toml, file);
   if (!rows) return failure(rows.error().message());
   return *std::move(rows);
 }

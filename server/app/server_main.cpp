@@ -13,7 +13,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <iterator>
@@ -26,6 +25,7 @@
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/program.hpp"
+#include "common/os/text_file.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
@@ -50,10 +50,9 @@ int cannot_start(const std::string& line) {
 Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   ServerConfig config;
   if (!options.config_file.empty()) {
-    std::ifstream in(options.config_file, std::ios::binary);
-    if (!in) return failure(options.config_file + ": cannot be read");
-    const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto read = read_config_toml(config, toml, options.config_file);
+    const auto toml = read_text_file(options.config_file, kTextFileBytesMax);
+    if (!toml) return failure(toml.error());
+    const auto read = read_config_toml(config, *toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {

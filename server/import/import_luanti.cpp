@@ -11,6 +11,7 @@
 #include "common/formats/format.hpp"
 #include "common/formats/luanti_block.hpp"
 #include "common/runs/reorder.hpp"
+#include "server/import/luanti_folder.hpp"
 #include "server/import/luanti_map.hpp"
 
 namespace runstone {
@@ -47,16 +48,28 @@ class Importer {
   }
 
  private:
+  static std::optional<std::uint8_t> version_of(ByteView data) {
+    if (data.empty()) return std::nullopt;
+    return data[0];
+  }
+
   Unexpected<ImportError> error(std::string what) const {
     return {ImportError{file_, std::move(what)}};
   }
 
   /// The first pass: finds the sound blocks, the names that they use, and their bounds.
   Result<void, std::string> scan() {
-    return map_.each_row([&](std::int64_t pos, ByteView data) {
-      const ChunkCoord at = luanti_block_coord(pos);
-      const auto read = luanti_block_pos(at) == pos
-                            ? format_.read(data,
+    std::optional<std::int64_t> last;  // the position of the row before
+    return map_.each_row([&](const LuantiRow& row) {
+      const bool is_repeated = row.is_placed && last == row.pos;
+      if (row.is_placed) last = row.pos;
+      if (is_repeated) {
+        report_.repeated.push_back(row.block);
+        advance(1);
+        return;
+      }
+      const auto read = row.is_placed
+                            ? format_.read(row.data,
                                            [&](ForeignPiece&& piece) {
                                              block_materials_.note(piece);
                                              return Result<void>();
@@ -64,17 +77,17 @@ class Importer {
                             : fail(ErrorCode::bad_value, "luanti block: not a block position");
       advance(1);
       if (!read) {
-        report_.damaged.push_back({pos, at, read.error()});
+        report_.damaged.push_back({row.pos, row.block, version_of(row.data), read.error()});
         return;
       }
-      const VoxelBox box = box_of(at, kLuantiBlockEdge);
+      const VoxelBox box = box_of(row.block, kLuantiBlockEdge);
       if (positions_.empty()) report_.bounds = box;
       VoxelBox& all = report_.bounds;
       all.min = {std::min(all.min.x, box.min.x), std::min(all.min.y, box.min.y),
                  std::min(all.min.z, box.min.z)};
       all.max = {std::max(all.max.x, box.max.x), std::max(all.max.y, box.max.y),
                  std::max(all.max.z, box.max.z)};
-      positions_.push_back(pos);
+      positions_.push_back(row.pos);
       ++report_.blocks;
     });
   }
@@ -100,7 +113,7 @@ class Importer {
     const std::int64_t pos = luanti_block_pos(at);
     if (!std::binary_search(positions_.begin(), positions_.end(), pos)) return std::nullopt;
     advance(1);
-    const auto data = map_.find(pos);
+    const auto data = map_.find(at);
     std::optional<RunChunk> voxels;
     const auto read = data ? format_.read(*data,
                                           [&](ForeignPiece&& piece) {
@@ -109,7 +122,7 @@ class Importer {
                                           })
                            : fail(ErrorCode::io_failed, "luanti block: could not be read again");
     if (!read) {
-      report_.damaged.push_back({pos, at, read.error()});
+      report_.damaged.push_back({pos, at, data ? version_of(*data) : std::nullopt, read.error()});
       --report_.blocks;
     }
     return voxels;
@@ -153,8 +166,9 @@ class Importer {
   void advance(std::uint64_t blocks) {
     done_ += blocks;
     if (sink_.progress && (blocks == 0 || done_ % kProgressEvery == 0)) {
-      // Both passes read each sound block once. Only the first one reads a damaged block.
-      sink_.progress(done_, 2 * map_.row_count() - report_.damaged.size());
+      // Both passes read each sound block once. Only the first one reads the other rows.
+      sink_.progress(done_,
+                     2 * map_.row_count() - report_.damaged.size() - report_.repeated.size());
     }
   }
 
@@ -176,12 +190,19 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
                                                       const LuantiImportSink& sink) {
   RUNSTONE_ASSERT(options.edge == 16 || options.edge == 32 || options.edge == 64 ||
                   options.edge == 128);
-  const std::string file = folder + "/map.sqlite";
-  const Format* format = format_of_file(file);
+  auto found = find_luanti_map(folder);
+  if (!found) return failure(found.error());
+  const Format* format = format_of_file(found->map);
   RUNSTONE_ASSERT(format != nullptr);
-  auto map = LuantiMap::open(file);
-  if (!map) return failure(ImportError{file, map.error()});
-  return Importer(file, std::move(map).value(), *format, options, sink).run();
+  auto map = LuantiMap::open(found->map);
+  if (!map) return failure(ImportError{found->map, map.error()});
+  if (map->row_count() == 0)
+    return failure(ImportError{found->map,
+                               "has no blocks: start Luanti once with this world, so that there "
+                               "is ground, or give the folder of another world"});
+  auto report = Importer(found->map, std::move(map).value(), *format, options, sink).run();
+  if (report) report->has_seed_map = found->has_seed_map;
+  return report;
 }
 
 }  // namespace runstone

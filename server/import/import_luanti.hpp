@@ -1,7 +1,7 @@
-// Import of a Luanti world: its map.sqlite is read block by block and becomes chunks of runs. A
-// sink takes the chunks and decides where they go. There are two passes: the first finds names and
-// places, because materials must be known before the first chunk; the second makes one chunk at a
-// time.
+// Import of a Luanti world: its map.sqlite, if world.mt names no other map, is read block by block
+// and becomes chunks of runs. A sink takes the chunks and decides where they go. There are two
+// passes: the first finds names and places, because materials must be known before the first chunk;
+// the second makes one chunk at a time.
 //   LuantiImportSink sink{materials, chunk, progress}; const auto report =
 //   import_luanti("worlds/valley", {.edge = 32}, sink);
 // A damaged block is listed and left empty.
@@ -10,6 +10,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "common/core/result.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "server/import/import_error.hpp"
 
 namespace runstone {
 
@@ -38,14 +40,19 @@ struct LuantiImportSink {
 };
 
 struct DamagedBlock {
-  std::int64_t pos = 0;  // the row's key
-  ChunkCoord block;      // its position, in blocks of 16
+  std::int64_t pos = 0;                 // the row's key
+  ChunkCoord block;                     // its position, in blocks of 16
+  std::optional<std::uint8_t> version;  // of its serialisation; nullopt if it has no bytes
   Error error;
 };
 
 struct LuantiImportReport {
   std::uint64_t blocks = 0;  // without damage
   std::vector<DamagedBlock> damaged;
+  /// The blocks of rows whose position an earlier row has. The earlier row counts.
+  std::vector<ChunkCoord> repeated;
+  /// The world has a read-only map beside its own (`readonly_backend`). It is not imported.
+  bool has_seed_map = false;
   std::uint64_t chunks = 0;  // that the sink got
   std::uint64_t runs = 0;    // in all of them
   MaterialTable materials;
@@ -56,14 +63,9 @@ struct LuantiImportReport {
   VoxelPos spawn;   // on top of the middle column of the bounds; y is bounds.max.y if that is empty
 };
 
-struct ImportError {
-  std::string file;
-  std::string what;
-  std::string message() const { return file + ": " + what; }
-};
-
-/// Imports `folder`/map.sqlite, which is opened for reading only. Fails if
-///   - it cannot be read as a Luanti map;
+/// Imports the map of a world, which is opened for reading only. Fails if
+///   - world.mt says that the map is not in map.sqlite, or the folder holds no Luanti world;
+///   - map.sqlite cannot be read as a Luanti map, or has no blocks;
 ///   - it has more names than a material table can hold;
 ///   - the sink returns false.
 Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,

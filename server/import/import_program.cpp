@@ -75,9 +75,28 @@ Result<void, std::string> fill(const ImportRequest& request, const LuantiImportR
   if (!report) return failure(report.error().message());
   if (!base.flush()) return failure(base.error());
   if (report->materials != survey.materials || report->chunks != survey.chunks) {
-    return failure(request.luanti + ": changed while it was read");
+    return failure(request.luanti +
+                   ": changed while it was read: stop the Luanti server, or import a copy");
   }
   return {};
+}
+
+constexpr const char* kOtherLuanti =
+    "blocks of versions 24 to 29 are read (Luanti 0.4.2 and later). To import others, let Luanti "
+    "5.5 or later rewrite a copy of the world (luantiserver --world COPY --recompress)";
+
+std::string place_of(const DamagedBlock& block) {
+  return "pos " + std::to_string(block.pos) +
+         (block.version ? ", version " + std::to_string(*block.version) : std::string());
+}
+
+/// Returns true if a block is of a version that is not read, or is damaged and of an older version
+/// than Luanti writes today.
+bool needs_other_luanti(const std::vector<DamagedBlock>& damaged) {
+  return std::any_of(damaged.begin(), damaged.end(), [](const DamagedBlock& block) {
+    return block.error.code == ErrorCode::bad_version ||
+           (block.version && *block.version >= 24 && *block.version < 29);
+  });
 }
 
 void print(const LuantiImportReport& report, const ImportRequest& request,
@@ -89,9 +108,19 @@ void print(const LuantiImportReport& report, const ImportRequest& request,
       << " damaged blocks left empty\n";
   for (std::size_t i = 0; i < report.damaged.size() && i < kDamagedListed; ++i) {
     const DamagedBlock& block = report.damaged[i];
-    out << "damaged block " << block.block.x << "," << block.block.y << "," << block.block.z
-        << " (pos " << block.pos << "): " << block.error.what << "\n";
+    out << "damaged block " << block.block.x << "," << block.block.y << "," << block.block.z << " ("
+        << place_of(block) << "): " << block.error.what << "\n";
   }
+  if (needs_other_luanti(report.damaged)) out << kOtherLuanti << "\n";
+  if (!report.repeated.empty()) {
+    const ChunkCoord& first = report.repeated.front();
+    out << report.repeated.size()
+        << " rows have the position of an earlier row, the first at block " << first.x << ","
+        << first.y << "," << first.z
+        << ": the earlier row was imported. The map has no key, so another program changed it\n";
+  }
+  if (report.has_seed_map)
+    out << "world.mt names a readonly_backend: the blocks of that map were not imported\n";
 }
 
 }  // namespace
@@ -111,8 +140,13 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   if (survey->blocks == 0 && !survey->damaged.empty()) {
     const DamagedBlock& first = survey->damaged.front();
     return failure(request.luanti + ": each of its " + std::to_string(survey->damaged.size()) +
-                   " blocks is damaged, the first at pos " + std::to_string(first.pos) + ": " +
-                   first.error.what);
+                   " blocks is damaged, the first at " + place_of(first) + ": " + first.error.what +
+                   (needs_other_luanti(survey->damaged) ? std::string("; ") + kOtherLuanti : ""));
+  }
+  if (survey->chunks == 0) {
+    return failure(request.luanti + ": nothing but air is in its " +
+                   std::to_string(survey->blocks) + " blocks" +
+                   (request.keep_all ? "" : ". Plants are imported with --keep-all"));
   }
 
   const auto materials = materials_of(request, *survey);

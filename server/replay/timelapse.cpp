@@ -4,14 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <system_error>
 #include <vector>
 
 #include "common/os/steady_clock.hpp"
+#include "common/os/text_file.hpp"
 #include "server/draw/draw_child.hpp"
 #include "server/draw/oblique_camera.hpp"
 #include "server/replay/camera_path.hpp"
@@ -21,7 +20,6 @@ namespace runstone {
 namespace {
 
 constexpr Sequence kFramesWanted = 300;  // ten seconds of video
-constexpr std::size_t kPathBytesMax = 4 << 20;
 
 /// Returns the moments to draw, ascending, with the first and the last moment of the timelapse.
 Result<std::vector<Sequence>, std::string> moments_of(WorldReader& reader,
@@ -53,13 +51,9 @@ Result<std::vector<Sequence>, std::string> moments_of(WorldReader& reader,
 Result<std::optional<CameraPath>, std::string> path_of(const TimelapseOptions& options,
                                                        const std::vector<Sequence>& moments) {
   if (options.camera.empty()) return std::optional<CameraPath>();
-  std::ifstream in(options.camera, std::ios::binary);
-  std::string text(kPathBytesMax + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || (text.empty() && !in.eof())) return failure(options.camera + ": cannot be read");
-  if (text.size() > kPathBytesMax) return failure(options.camera + ": longer than 4 MiB");
-  auto path = CameraPath::parse(text, options.camera, moments.front(), moments.back());
+  const auto text = read_text_file(options.camera, kTextFileBytesMax);
+  if (!text) return failure(text.error());
+  auto path = CameraPath::parse(*text, options.camera, moments.front(), moments.back());
   if (!path) return failure(path.error().message());
   return std::optional<CameraPath>(*std::move(path));
 }

@@ -67,15 +67,15 @@ TEST_CASE("a Luanti block on the wire is the game's row without the fields of th
   auto map = LuantiMap::open(RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small/map.sqlite");
   REQUIRE(map);
   std::size_t rows = 0, smaller = 0;
-  const auto read = map->each_row([&](std::int64_t, ByteView row) {
+  const auto read = map->each_row([&](const LuantiRow& row) {
     LuantiNodes nodes, back;
-    REQUIRE(decode_luanti_row(row, nodes));
+    REQUIRE(decode_luanti_row(row.data, nodes));
     Bytes wire;
     encode_luanti_block(nodes, wire);
     REQUIRE(decode_luanti_wire(wire, back));
     REQUIRE(nodes == back);
     ++rows;
-    smaller += wire.size() < row.size() ? 1 : 0;
+    smaller += wire.size() < row.data.size() ? 1 : 0;
   });
   CHECK(read.has_value());
   CHECK(rows == 384);

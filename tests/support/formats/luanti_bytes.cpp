@@ -1,5 +1,6 @@
 #include "tests/support/formats/luanti_bytes.hpp"
 
+#include <zlib.h>
 #include <zstd.h>
 
 #include <map>
@@ -12,6 +13,15 @@ namespace {
 void put_u16(Bytes& out, unsigned v) {
   out.push_back(static_cast<std::uint8_t>(v >> 8));
   out.push_back(static_cast<std::uint8_t>(v & 255));
+}
+
+void put_zlib(Bytes& out, const Bytes& plain) {
+  uLongf size = compressBound(plain.size());
+  const std::size_t at = out.size();
+  out.resize(at + size);
+  const int status = compress(out.data() + at, &size, plain.data(), plain.size());
+  RUNSTONE_ASSERT(status == Z_OK);
+  out.resize(at + size);
 }
 
 }  // namespace
@@ -48,6 +58,36 @@ Bytes luanti_row(const Bytes& plain, std::uint8_t version) {
   RUNSTONE_ASSERT(left == 0);
   ZSTD_freeCStream(stream);
   out.resize(1 + target.pos);
+  return out;
+}
+
+Bytes luanti_old_row(const LuantiBlockFields& fields, std::uint8_t version, const Bytes& metadata,
+                     const Bytes& behind) {
+  Bytes out = {version, 0};
+  if (version >= 27) put_u16(out, 0xffff);  // lighting
+  out.push_back(fields.content_width);
+  out.push_back(fields.params_width);
+  Bytes nodes;
+  for (const std::uint16_t id : fields.nodes) put_u16(nodes, id);
+  nodes.insert(nodes.end(), 4096, 0x0f);  // light
+  nodes.insert(nodes.end(), fields.param2.begin(), fields.param2.end());
+  put_zlib(out, nodes);
+  put_zlib(out, metadata);
+  if (version == 24) {  // one timer: place, timeout, elapsed
+    out.insert(out.end(), {1, 0, 1, 0, 7, 0, 0, 0, 1, 0, 0, 0, 2});
+  }
+  out.insert(out.end(), {0, 0, 1, 7});  // one object: kind, place, three bytes
+  out.insert(out.end(), 12, 0x55);
+  out.insert(out.end(), {0, 3, 'o', 'b', 'j'});
+  out.insert(out.end(), {0, 0, 0, 9});  // timestamp
+  out.push_back(fields.name_table_version);
+  put_u16(out, static_cast<unsigned>(fields.names.size()));
+  for (const auto& [id, name] : fields.names) {
+    put_u16(out, id);
+    put_u16(out, static_cast<unsigned>(name.size()));
+    out.insert(out.end(), name.begin(), name.end());
+  }
+  out.insert(out.end(), behind.begin(), behind.end());
   return out;
 }
 

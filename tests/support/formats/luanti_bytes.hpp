@@ -28,6 +28,11 @@ inline Bytes luanti_row(const LuantiBlockFields& fields) {
   return luanti_row(luanti_plain(fields));
 }
 
+/// Returns a whole row of a version from 24 to 28: streams of zlib, and the names last. `metadata`
+/// is the content of the second stream, and `behind` is what follows the names.
+Bytes luanti_old_row(const LuantiBlockFields& fields, std::uint8_t version,
+                     const Bytes& metadata = {0}, const Bytes& behind = {10, 0, 0});
+
 /// Reads a row node by node: the name of every node, in node order. It is an oracle for whole
 /// worlds. Requires a valid row.
 std::vector<std::string> luanti_nodes(ByteView row);

@@ -109,7 +109,7 @@ MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent, unsigned mater
     for (Material& voxel : voxels) voxel = static_cast<Material>(rng.below(materials));
     for (std::size_t i = 1; i < voxels.size(); i += 3) voxels[i] = voxels[i - 1];
     const AxisOrder order = kAxisOrders[rng.below(kAxisOrderCount)];
-    return from_dense(extent, order, voxels);
+    return *from_dense(extent, order, voxels);
   };
   MeshScene scene;
   scene.chunk = filled();

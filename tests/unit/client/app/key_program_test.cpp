@@ -44,7 +44,7 @@ TEST_CASE("a key is shown, exported and imported", "[client][key]") {
   CHECK(shown.find("\nfingerprint ") != std::string::npos);
   SECTION("through a file") {
     CHECK(run({Verb::export_key, key, file, words}) == shown);
-    struct stat info{};
+    struct stat info {};
     REQUIRE(::stat(file.c_str(), &info) == 0);
     CHECK((info.st_mode & 0777) == 0600);
     CHECK(run({Verb::export_key, key, file, words}).starts_with("ERROR: " + file));
@@ -54,6 +54,12 @@ TEST_CASE("a key is shown, exported and imported", "[client][key]") {
     const std::string line = run({Verb::export_key, key, "", words});
     CHECK(line.starts_with("runstone-key-1:"));
     CHECK(run({Verb::import_key, copy, "", words}, line) == shown);
+  }
+  SECTION("through files of another editor") {
+    const std::string line = run({Verb::export_key, key, "", words});
+    write(words, "\xEF\xBB\xBFone two three\r\n");
+    write(file, "\xEF\xBB\xBF" + line.substr(0, line.find('\n')) + "\r\n");
+    CHECK(run({Verb::import_key, copy, file, words}) == shown);
   }
   CHECK(text_of(copy) == text_of(key));
   CHECK(run({Verb::show, copy, "", ""}) == shown);

@@ -102,6 +102,10 @@ TEST_CASE("a password comes from a file, for an identity that is kept, and encry
   std::ofstream(file) << "blue cheese 42\nnot this\n";
   CHECK(accepted({"--connect", "a", "--key", "k", "--password-file", path}).password ==
         "blue cheese 42");
+  std::ofstream(file) << "\xEF\xBB\xBF"
+                         "blue cheese 42\r\nnot this\r\n";
+  CHECK(accepted({"--connect", "a", "--key", "k", "--password-file", path}).password ==
+        "blue cheese 42");
   CHECK(refused({"--connect", "a", "--password-file", path}) == 2);
   CHECK(refused({"--connect", "a", "--key", "k", "--insecure", "--password-file", path}) == 2);
 }

@@ -25,7 +25,7 @@ struct Folder : test::TempFolder {
 TEST_CASE_METHOD(Folder, "a missing key is created with mode 0600, and read again it is the same",
                  "[client_net]") {
   const KeyPair made = load_or_create_key(file("k"));
-  struct stat info{};
+  struct stat info {};
   REQUIRE(::stat(file("k").c_str(), &info) == 0);
   CHECK((info.st_mode & 0777) == 0600);
   CHECK(load_or_create_key(file("k")).public_key == made.public_key);
@@ -38,6 +38,19 @@ TEST_CASE_METHOD(Folder, "a key file has golden text", "[client_net]") {
   KeySeed seed{};
   seed[31] = 1;
   CHECK(load_or_create_key(file("k")).public_key == key_pair_of(seed).public_key);
+}
+
+TEST_CASE_METHOD(Folder, "a key file and its pinned servers may have come through another editor",
+                 "[client_net]") {
+  const std::string mark = "\xEF\xBB\xBF", digits = std::string(62, '0') + "01";
+  KeySeed seed{};
+  seed[31] = 1;
+  for (const std::string& text : {digits + "\r\n", mark + digits + "\n", mark + digits}) {
+    write("k", text);
+    CHECK(load_key_seed(file("k")) == seed);
+  }
+  write("k.servers", mark + std::string(32, '1') + " " + std::string(64, '2') + "\r\n");
+  CHECK(load_pinned_servers(file("k")).size() == 1);
 }
 
 TEST_CASE_METHOD(Folder,

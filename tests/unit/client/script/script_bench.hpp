@@ -39,6 +39,11 @@ struct FakeScriptHost final : ScriptHost {
   std::string refusal;
 
   bool ready() const override { return open; }
+  bool is_connected = true, is_answer_lost = false;
+  std::uint64_t connection_count = 1;
+  bool connected() const override { return is_connected; }
+  std::uint64_t connections() const override { return connection_count; }
+  bool answer_lost() const override { return is_answer_lost; }
   WorldPos eye() const override { return at; }
   void move_to(const WorldPos& eye) override { at = eye; }
   void look(double y, double p) override { yaw = y, pitch = p; }

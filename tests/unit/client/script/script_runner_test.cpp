@@ -340,6 +340,81 @@ TEST_CASE(
   CHECK(again.failures()[1] == "t:3: the server refused \"undo\"");
 }
 
+TEST_CASE_METHOD(ScriptBench, "commands for the server wait for a lost connection", "[bots]") {
+  const std::string command = GENERATE(as<std::string>{}, "undo", "command list", "say hello",
+                                       "travel 7", "rollback apply");
+  CAPTURE(command);
+  host.is_connected = false;
+  load(command + "\nset 1 2 3 stone\n");
+  runner->step(1'000'000);
+  const auto sent = [&] {
+    return host.commands.size() + host.said.size() + host.travels.size() + host.input.size();
+  };
+  CHECK(sent() == 0);
+  CHECK(runner->due_us() == 121'000'000);
+  host.is_connected = true;
+  runner->step(5'000'000);
+  CHECK(sent() == 1);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+  CHECK(host.edits.size() == 1);
+
+  host.is_connected = false;
+  load(command);
+  runner->step(1'000'000);
+  runner->step(121'000'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: the connection did not come back in time"});
+}
+
+TEST_CASE_METHOD(ScriptBench,
+                 "a command whose answer is lost is a failure that says so, and is not sent again",
+                 "[bots]") {
+  host.is_commanding = true;
+  load("undo\nset 1 2 3 stone\n");
+  runner->step(1'000'000);
+  host.is_commanding = host.is_connected = host.is_command_ok = false;
+  host.is_answer_lost = true;
+  runner->step(2'000'000);
+  CHECK(host.commands.size() == 1);
+  CHECK(runner->finished());
+  CHECK(host.edits.size() == 1);
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: the connection ended before the answer to \"undo\" "
+                                 "came: the server may have carried it out or not"});
+}
+
+TEST_CASE_METHOD(ScriptBench, "a journey that a lost connection ended begins again", "[bots]") {
+  host.is_travelling = true;
+  load("travel 7\nset 1 2 3 stone\n");
+  runner->step(1'000'000);
+  host.is_travelling = host.is_connected = false;
+  runner->step(2'000'000);
+  CHECK(host.edits.empty());
+  host.is_travelling = host.is_connected = true;
+  ++host.connection_count;
+  runner->step(3'000'000);
+  CHECK(host.travels.size() == 2);
+  host.is_travelling = false;
+  runner->step(4'000'000);
+  CHECK(runner->finished());
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE_METHOD(ScriptBench, "the lowest coordinate of the world lies inside", "[bots]") {
+  run("set -536870912 2 -536870912 stone\nmove -536870912 0 536870911.5");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 1);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{-536870912, 2, -536870912}}, {}, 5});
+  for (const char* outside : {"set 536870912 2 3 stone", "set 1 ~-536870912 3 stone"}) {
+    host.at = {10, -20, 30};
+    run(outside);
+    REQUIRE(runner->failures().size() == 1);
+    CHECK(runner->failures()[0].find("lies outside the world") != std::string::npos);
+  }
+}
+
 TEST_CASE("say sends a line, and wait chat waits for one, but not for ever", "[bots]") {
   const auto script = *parse_script(
       "say hello  # all\nwait chat 2.5 <ana> hi #1\nsay bye\nwait chat 1 nothing\nsay end\n", "t");

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 namespace runstone::test {
 namespace {
@@ -115,6 +116,19 @@ TEST_CASE("a body at the border of the world does not sink by rounding", "[colli
   }
   CHECK(std::abs(y) < kTouchDepth);
   CHECK(x - far == Approx(130.1).margin(0.01));
+}
+
+TEST_CASE("a body and a move from data are checked before a sweep", "[collision]") {
+  const BodyBox body{{1, 2, 3}, {2, 4, 4}};
+  CHECK(validate_move(body, {256, -256, 0}).has_value());
+  const double none = std::numeric_limits<double>::quiet_NaN(),
+               endless = std::numeric_limits<double>::infinity();
+  for (const double bad : {256.5, -300.0, none, endless})
+    CHECK_FALSE(validate_move(body, {0, bad, 0}).has_value());
+  for (const double bad : {2.0, 5.0, none, endless, -endless, -1e9})
+    CHECK_FALSE(validate_move({{bad, 2, 3}, {2, 4, 4}}, {}).has_value());
+  CHECK_FALSE(
+      validate_move({{kWorldLimit - 2.0, 0, 0}, {kWorldLimit - 1.0, 1, 1}}, {2, 0, 0}).has_value());
 }
 
 }  // namespace runstone::test

@@ -46,6 +46,6 @@ TEST_CASE("a dense buffer and its runs convert into each other", "[runs][dense]"
       const VoxelPos p = test::dense_pos(chunk.extent, chunk.order, v);
       REQUIRE(dense[v] == oracle.at(p.x, p.y, p.z));
     }
-    REQUIRE(from_dense(chunk.extent, chunk.order, dense) == chunk);
+    REQUIRE(*from_dense(chunk.extent, chunk.order, dense) == chunk);
   }
 }

@@ -64,6 +64,14 @@ const std::string kTooLong =
 
 }  // namespace
 
+TEST_CASE("lines of a file of another editor are commands", "[server][console]") {
+  Pipe pipe;
+  ConsoleBench bench(pipe.out());
+  pipe.write("\xEF\xBB\xBFstatus\r\n\r\nplayers\r\n");
+  bench.turn();
+  CHECK(bench.lines == std::vector<std::string>{"status", "players"});
+}
+
 TEST_CASE("the console answers lines whatever pieces they arrive in", "[server][console]") {
   Pipe pipe;
   ConsoleBench bench(pipe.out());

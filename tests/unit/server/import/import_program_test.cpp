@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "common/materials/material_lookup.hpp"
@@ -9,6 +10,7 @@
 #include "server/store/store.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
+#include "tests/unit/server/import/luanti_map_file.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -63,4 +65,42 @@ TEST_CASE("an imported world has the builders' palette, unless the request says 
     CAPTURE(info.name);
     CHECK(find_material(materials, info.name).has_value());
   }
+}
+
+TEST_CASE("an import of nothing but air fails and makes no world", "[server][import]") {
+  const TempFolder folder;
+  LuantiBlockFields air = stone_block();
+  air.names[0].second = GENERATE(as<std::string>{}, "air", "default:grass_1");
+  std::filesystem::create_directory(folder / "luanti");
+  write_luanti_map(folder / "luanti/map.sqlite", {{{0, 0, 0}, luanti_row(air)}});
+  ImportRequest request;
+  request.luanti = folder / "luanti";
+  request.world = folder / "world";
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  REQUIRE_FALSE(imported.has_value());
+  CHECK(imported.error().find("nothing but air is in its 1 blocks") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(request.world));
+}
+
+TEST_CASE("the report of an import names versions, repeated rows and the second map",
+          "[server][import]") {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "luanti");
+  write_luanti_map(folder / "luanti/map.sqlite",
+                   {{{0, 0, 0}, luanti_row(stone_block())},
+                    {{0, 0, 0}, luanti_row(stone_block())},
+                    {{1, 0, 0}, Bytes{22, 0}}},
+                   "CREATE TABLE blocks (pos INT, data BLOB)");
+  std::ofstream(folder / "luanti/world.mt") << "readonly_backend = sqlite3\n";
+  ImportRequest request;
+  request.luanti = folder / "luanti";
+  request.world = folder / "world";
+  std::ostringstream out;
+  REQUIRE(import_world(request, out).has_value());
+  CAPTURE(out.str());
+  CHECK(out.str().find("damaged block 1,0,0 (pos 1, version 22)") != std::string::npos);
+  CHECK(out.str().find("--recompress") != std::string::npos);
+  CHECK(out.str().find("1 rows have the position of an earlier row") != std::string::npos);
+  CHECK(out.str().find("readonly_backend") != std::string::npos);
 }
