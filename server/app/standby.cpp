@@ -126,6 +126,7 @@ bool TakeoverWatch::look() {
   if (!owner) return true;  // the database does not answer
   if (*owner) {
     ownerless_since_.reset();
+    told_.clear();
     not_before_ = {};  // the successor has come
     // When another server has become the owner, the connection may still be with the one before.
     const bool is_same_owner = std::exchange(term_, (*owner)->term) == (*owner)->term;
@@ -134,7 +135,7 @@ bool TakeoverWatch::look() {
     return true;
   }
   if (leaves_lease()) return true;
-  logger("app").info("STANDBY: nobody owns the world: taking it over");
+  if (told_.empty()) logger("app").info("STANDBY: nobody owns the world: taking it over");
   const auto taken = server_.take_over();
   if (taken) {
     answer("handover: no other server owns the world now, and this one owns it again", false);
@@ -144,7 +145,9 @@ bool TakeoverWatch::look() {
     fail(taken.error().what);
     return false;
   }
-  logger("app").info("STANDBY: not taken over: {}", taken.error().what);
+  if (taken.error().what != told_)
+    logger("app").info("STANDBY: not taken over: {}", taken.error().what);
+  told_ = taken.error().what;
   return true;
 }
 

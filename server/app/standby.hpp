@@ -66,6 +66,7 @@ class TakeoverWatch {
   std::int64_t term_ = 0;      // of the lease of the last owner
   bool has_followed_ = false;  // this server was live with that owner
   int short_pauses_ = 0;       // that are left
+  std::string told_;           // why this server did not get the world, as the log has it
   std::mutex mutex_;
   std::condition_variable wake_;
   bool is_stopping_ = false;  // guarded by mutex_

@@ -33,6 +33,7 @@ inline ServerConfig quiet_config(const std::string& world) {
 inline WorldCreation flat_creation() {
   WorldCreation creation;
   creation.generator = "flat";
+  creation.seed = 1;
   creation.edge = 16;
   return creation;
 }
@@ -48,7 +49,8 @@ inline WorldCreation terrain_creation() {
 inline std::unique_ptr<Server> start_server(const ServerConfig& config,
                                             const WorldCreation& creation,
                                             bool accept_losses = false) {
-  auto server = Server::start(config, creation, [] {}, {}, accept_losses);
+  auto server = Server::start(
+      config, creation, [] {}, {}, accept_losses);
   INFO((server ? std::string() : server.error()));
   REQUIRE(server.has_value());
   return *std::move(server);
