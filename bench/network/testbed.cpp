@@ -70,9 +70,16 @@ Result<TestbedServer, std::string> Testbed::start_server(TestbedLink& link,
                                                          const std::string& world,
                                                          const std::vector<std::string>& flags) {
   const std::string port_file = fresh("port");
-  std::vector<std::string> words = {
-      program_file("runstone-server"), "--world",     world,    "--create", "--listen",
-      link.server_address() + ":0",    "--port-file", port_file};
+  std::vector<std::string> words = {program_file("runstone-server"),
+                                    "--world",
+                                    world,
+                                    "--create",
+                                    "--seed",
+                                    "1",
+                                    "--listen",
+                                    link.server_address() + ":0",
+                                    "--port-file",
+                                    port_file};
   words.insert(words.end(), flags.begin(), flags.end());
   if (options_.insecure) words.insert(words.end(), {"--insecure", "--i-know"});
   return wait_for_port(link, port_file,

@@ -56,7 +56,7 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(CLI::IsMember({"terrain", "flat", "empty"}))
       ->needs(local);
   app.add_option("--seed", out.local_creation.seed,
-                 "for a new world of --local: seed of the terrain; default 1")
+                 "for a new world of --local: seed of the terrain; default: a random one")
       ->needs(local);
   CLI::Option* const insecure =
       app.add_flag("--insecure", raw.insecure,

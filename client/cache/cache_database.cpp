@@ -25,6 +25,7 @@ bool CacheDatabase::is_corrupt() const {
       return true;
     case sql::Error::Kind::io:
     case sql::Error::Kind::full:
+    case sql::Error::Kind::read_only:
     case sql::Error::Kind::locked:
       break;
   }

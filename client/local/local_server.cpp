@@ -74,9 +74,12 @@ ChildProgram command_line(const LocalServerConfig& config) {
                  "--stop-with-input"};
   if (!config.creation) return child;
   for (std::string word :
-       {std::string("--create"), std::string("--generator"), config.creation->generator,
-        std::string("--seed"), std::to_string(config.creation->seed)}) {
+       {std::string("--create"), std::string("--generator"), config.creation->generator}) {
     child.words.push_back(std::move(word));
+  }
+  if (config.creation->seed) {
+    child.words.emplace_back("--seed");
+    child.words.push_back(std::to_string(*config.creation->seed));
   }
   return child;
 }

@@ -16,7 +16,7 @@ std::vector<PlayerNotice> ServerNotices::take_state() {
   }
   const bool is_read_only = session_.is_server_read_only();
   if (std::exchange(told_read_only_, is_read_only) != is_read_only) {
-    out.push_back({is_read_only ? "the server is read-only: its disk is full"
+    out.push_back({is_read_only ? "the server is read-only: it cannot write edits to its disk now"
                                 : "the server accepts edits again",
                    is_read_only ? NoticeKind::warning : NoticeKind::information});
   }

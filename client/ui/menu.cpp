@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <system_error>
 
 #include "client/ui/text_field.hpp"
 
@@ -62,10 +63,10 @@ bool first_button(const char* label) {
                         (is_pressed(ImGuiKey_Space) || is_pressed(ImGuiKey_Enter)));
 }
 
-std::uint64_t number_in(const std::string& text) {
-  std::uint64_t out = 1;
-  std::from_chars(text.data(), text.data() + text.size(), out);
-  return out;
+std::optional<std::uint64_t> number_in(const std::string& text) {
+  std::uint64_t out = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc() ? std::optional(out) : std::nullopt;
 }
 
 }  // namespace
@@ -164,7 +165,7 @@ void Menu::build_worlds(const TitleState& state) {
   if (state.worlds.empty()) {
     wrapped("One click makes a world of hills and sea, for you alone.", kQuiet);
     if (first_button("Build here"))
-      actions_.emplace_back(MakeLocalWorld{state.first_world, name_, kGenerators[0], 1});
+      actions_.emplace_back(MakeLocalWorld{state.first_world, name_, kGenerators[0], {}});
   }
   for (std::size_t i = 0; i < state.worlds.size(); ++i) {
     const ListedWorld& world = state.worlds[i];
@@ -176,7 +177,7 @@ void Menu::build_worlds(const TitleState& state) {
   ImGui::TextUnformatted("A new world");
   text_field("its name", "castle", world_);
   ImGui::Combo("ground", &generator_, kGeneratorTexts.data(), kGeneratorTexts.size());
-  if (generator_ == 0) text_field("seed", "1", seed_, ImGuiInputTextFlags_CharsDecimal);
+  if (generator_ == 0) text_field("seed", "random", seed_, ImGuiInputTextFlags_CharsDecimal);
   if (ImGui::Button("Make it")) {
     actions_.emplace_back(MakeLocalWorld{
         world_, name_, kGenerators.at(static_cast<std::size_t>(generator_)), number_in(seed_)});

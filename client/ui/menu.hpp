@@ -58,7 +58,7 @@ class Menu {
   SettingsForm form_;
   Screen shown_ = Screen::none;  // by the last frame
   bool shows_settings_ = false;
-  std::string address_, name_, password_, world_, seed_ = "1";
+  std::string address_, name_, password_, world_, seed_;
   int generator_ = 0;
   bool has_name_ = false;  // the name was taken from the state, or typed
   std::vector<MenuAction> actions_;

@@ -1,6 +1,7 @@
 // MenuAction: what the user chose in the menus around the game. The program carries it out.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -20,7 +21,7 @@ struct JoinLocalWorld {
 /// Make a world on this computer, and join it.
 struct MakeLocalWorld {
   std::string world, name, generator;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  // nullopt: a random one
 };
 /// Join the last server again with this password.
 struct GivePassword {

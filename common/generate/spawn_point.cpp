@@ -56,9 +56,13 @@ std::optional<VoxelPos> nearest_on_ring(const Columns& columns, std::int32_t rin
 
 }  // namespace
 
+bool is_origin_dry(const Generator& generator, const MaterialTable& materials) {
+  return Columns(generator, materials).top(0, 0) != Visibility::transparent;
+}
+
 VoxelPos spawn_point(const Generator& generator, const MaterialTable& materials) {
   const Columns columns(generator, materials);
-  if (columns.top(0, 0) != Visibility::transparent) return columns.spawn_at(0, 0);
+  if (is_origin_dry(generator, materials)) return columns.spawn_at(0, 0);
   for (std::int32_t ring = 1; ring <= kRings; ++ring) {
     if (const auto found = nearest_on_ring(columns, ring)) return *found;
   }

@@ -12,5 +12,8 @@ namespace runstone {
 /// axis, that is opaque on top and has opaque columns on all four sides. If there is no such
 /// column, it is the one at the origin. Cost: O(columns tried), about 66,000 if there is no land.
 VoxelPos spawn_point(const Generator& generator, const MaterialTable& materials);
+/// Returns true if spawn_point() is in the column at the origin because no transparent material
+/// covers it. Cost: one column.
+bool is_origin_dry(const Generator& generator, const MaterialTable& materials);
 
 }  // namespace runstone

@@ -13,8 +13,8 @@ constexpr std::size_t kSentMax = 1'024;  // bounds the answers that wait in memo
 Error::Kind kind_of_state(std::string_view state) {
   if (state == "53100") return Error::Kind::full;
   if (state.starts_with("23")) return Error::Kind::constraint;
-  if (state.starts_with("42") || state.starts_with("0A") || state == "25006")
-    return Error::Kind::bad_statement;
+  if (state == "25006") return Error::Kind::read_only;
+  if (state.starts_with("42") || state.starts_with("0A")) return Error::Kind::bad_statement;
   if (state == "XX001" || state == "XX002") return Error::Kind::corrupt;
   if (state == "55P03" || state.starts_with("40")) return Error::Kind::locked;
   return Error::Kind::io;
@@ -28,7 +28,7 @@ std::string connection_message(PGconn* handle) {
 }
 
 void ClearResult::operator()(PGresult* result) const { PQclear(result); }
-void PostgresConnection::Finish::operator()(PGconn* handle) const { PQfinish(handle); }
+void FinishConnection::operator()(PGconn* handle) const { PQfinish(handle); }
 
 Unexpected<Error> PostgresConnection::result_failure(const PGresult* result) const {
   const char* message =

@@ -23,6 +23,10 @@ struct ClearResult {
   void operator()(pg_result* result) const;
 };
 using PostgresResult = std::unique_ptr<pg_result, ClearResult>;
+struct FinishConnection {
+  void operator()(pg_conn* handle) const;
+};
+using ConnectionHandle = std::unique_ptr<pg_conn, FinishConnection>;
 
 /// Returns the first line of the last error of a connection. The others are advice.
 std::string connection_message(pg_conn* handle);
@@ -41,7 +45,8 @@ struct PostgresValues {
 
 class PostgresConnection final : public Connection {
  public:
-  PostgresConnection(std::string name, pg_conn* handle) : name_(std::move(name)), handle_(handle) {}
+  PostgresConnection(std::string name, ConnectionHandle handle)
+      : name_(std::move(name)), handle_(std::move(handle)) {}
 
   Dialect dialect() const override { return Dialect::postgres; }
   const std::string& file() const override { return name_; }
@@ -74,11 +79,8 @@ class PostgresConnection final : public Connection {
   /// Keeps the number of rows that a statement has changed. Fails with the error of its result.
   Result<void> take(const pg_result* result);
 
-  struct Finish {
-    void operator()(pg_conn* handle) const;
-  };
   std::string name_;
-  std::unique_ptr<pg_conn, Finish> handle_;
+  ConnectionHandle handle_;
   std::map<std::string, PreparedText, std::less<>> prepared_;  // by the text of Database::prepare()
   std::size_t sent_ = 0;  // statements without an answer so far; above 0 in pipeline mode only
   bool is_writing_ = false;

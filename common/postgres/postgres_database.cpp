@@ -12,32 +12,12 @@
 #include <vector>
 
 #include "common/postgres/postgres_connection.hpp"
+#include "common/postgres/postgres_session.hpp"
 
 namespace runstone::sql {
 namespace {
 
 void ignore_notice(void*, const PGresult*) {}
-
-/// Fails if the database stores texts otherwise than in UTF-8, or commits before the disk has the
-/// data.
-Result<void> set_up(Database& database, PostgresMode mode) {
-  const auto encoding = database.text("SELECT current_setting('server_encoding')");
-  if (!encoding) return failure(encoding.error());
-  if (*encoding != "UTF8") {
-    return failure(Error{Error::Kind::io, database.file(),
-                         "the encoding of the database is " + *encoding + ", not UTF8"});
-  }
-  const auto commits = database.text("SELECT current_setting('synchronous_commit')");
-  if (!commits) return failure(commits.error());
-  if (*commits == "off") {
-    if (auto set = database.run("SET synchronous_commit = on"); !set) return set;
-  }
-  if (mode == PostgresMode::read) return database.run("SET default_transaction_read_only = on");
-  // The server, too, notices that this machine vanished, and gives its locks back.
-  return database.run(
-      "SET tcp_keepalives_idle = 5; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 2; "
-      "SET tcp_user_timeout = 15000");
-}
 
 std::vector<std::string> parts_of(const std::string& list) {
   std::vector<std::string> parts;
@@ -56,6 +36,15 @@ std::string hosts_of(const std::string& hosts, const std::string& ports) {
     ++i;
   }
   return text;
+}
+
+/// Returns why a connection was not made.
+std::string refusal_of(PGconn* handle) {
+  const std::string message = connection_message(handle);
+  // PostgreSQL itself knows all parameters that libpq sends, so a pooler answers.
+  if (message.find("unsupported startup parameter") == std::string::npos) return message;
+  return message +
+         " (a pooler such as pgbouncer answers here: give the address of PostgreSQL itself)";
 }
 
 }  // namespace
@@ -83,6 +72,30 @@ std::string without_password(const std::string& url) {
          part(is_socket ? "&options=" : "?options=", "options", "");
 }
 
+bool is_readable_url(const std::string& url) {
+  PQconninfoOption* const options = PQconninfoParse(url.c_str(), nullptr);
+  const bool is_readable = options != nullptr;
+  PQconninfoFree(options);
+  return is_readable;
+}
+
+std::optional<std::string> url_of_keywords(const std::string& text) {
+  constexpr const char* kBlanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  const std::size_t equals = text.find('=');
+  if (begin == std::string::npos || equals == std::string::npos || equals < begin)
+    return std::nullopt;
+  const std::string word = text.substr(begin, equals - begin);
+  const std::string keyword = word.substr(0, word.find_first_of(kBlanks));
+  PQconninfoOption* const options = PQconndefaults();
+  bool is_known = false;
+  for (const PQconninfoOption* option = options; option != nullptr && option->keyword != nullptr;
+       ++option)
+    is_known = is_known || keyword == option->keyword;
+  PQconninfoFree(options);
+  return is_known ? std::optional(without_password(text)) : std::nullopt;
+}
+
 Result<Database> open_postgres(const std::string& url, PostgresMode mode) {
   // These are defaults: libpq replaces them by the settings in the address, because that comes later
   // in the list. A connection to a machine that does not answer any more ends after 15 seconds.
@@ -95,21 +108,22 @@ Result<Database> open_postgres(const std::string& url, PostgresMode mode) {
                              "UTF8", url.c_str(), static_cast<const char*>(nullptr)};
   const std::string name = without_password(url);
   // libpq's message about an address that it cannot read quotes it, with its password.
-  if (PQconninfoOption* const options = PQconninfoParse(url.c_str(), nullptr)) {
-    PQconninfoFree(options);
-  } else {
+  if (!is_readable_url(url)) {
     return failure(
         Error{Error::Kind::io, name, "is no address like postgresql://USER@HOST:PORT/DATABASE"});
   }
-  PGconn* const handle = PQconnectdbParams(kKeys.data(), values.data(), 1);
-  if (handle == nullptr) return failure(Error{Error::Kind::io, name, "out of memory"});
-  Database database(std::make_unique<PostgresConnection>(name, handle));
-  if (PQstatus(handle) != CONNECTION_OK) {
-    return failure(Error{Error::Kind::io, name, connection_message(handle)});
-  }
-  PQsetNoticeReceiver(handle, &ignore_notice, nullptr);
-  if (auto ready = set_up(database, mode); !ready) return failure(ready.error());
-  return database;
+  const auto connect = [&] {
+    return ConnectionHandle(PQconnectdbParams(kKeys.data(), values.data(), 1));
+  };
+  ConnectionHandle handle = connect();
+  if (!handle) return failure(Error{Error::Kind::io, name, "out of memory"});
+  if (PQstatus(handle.get()) != CONNECTION_OK)
+    return failure(Error{Error::Kind::io, name, refusal_of(handle.get())});
+  PQsetNoticeReceiver(handle.get(), &ignore_notice, nullptr);
+  if (auto kept = refuse_shared_session(handle.get(), name, connect); !kept)
+    return failure(kept.error());
+  if (auto ready = set_up_session(handle.get(), name, mode); !ready) return failure(ready.error());
+  return Database(std::make_unique<PostgresConnection>(name, std::move(handle)));
 }
 
 }  // namespace runstone::sql

@@ -10,6 +10,7 @@ struct Error {
   enum class Kind {
     io,            // the disk, the file system or the connection failed, or any other failure
     full,          // the disk is full
+    read_only,     // the database takes no writes, perhaps for a while
     corrupt,       // the file is damaged, or is no database
     locked,        // another connection holds a lock
     constraint,    // a row breaks a constraint of its table

@@ -116,8 +116,9 @@ void CommandCall::answer_when_durable(Sequence record, const std::string& text) 
                      "written any more");
        },
        [call = *this, text] {
+         const Order& order = call.world().order();
          const std::string why =
-             call.world().order().is_disk_full() ? ": the world's disk is full" : "";
+             order.is_disk_full() ? std::string(": ") + order.disk_reason() : "";
          call.reply(CommandAnswer::unsaved(text + "; in force, not on disk yet" + why));
        },
        now.steady_us + kAnswerUnsavedUs, false});

@@ -6,13 +6,15 @@
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
 #include "common/core/tile_keys.hpp"
-#include "common/os/host_port.hpp"
 #include "protocol/codec/server_list.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
+#include "server/settings/address_check.hpp"
 #include "server/settings/settings_table.hpp"
+#include "server/store/place_rule.hpp"
+#include "server/store/store.hpp"
 
 namespace runstone {
 namespace {
@@ -95,31 +97,41 @@ FormField builder_budget_field() {
           [](const ServerConfig& config) { return text_of(config.builder_budget); }};
 }
 
-FormField peer_address_field() {
+/// A folder of this machine.
+FormField world_field() {
   return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
-            if (!text.empty()) {
-              const auto address = parse_host_port(text, kDefaultPort);
-              if (!address) return failure(address.error());
-            }
-            config.peer_address = text;
+            if (text.empty()) return failure("must not be empty");
+            if (is_database(text))
+              return failure("must be a folder: the address of a database belongs into `store`");
+            if (auto checked = check_folder(text); !checked) return checked;
+            config.world = text;
             return {};
           },
-          [](const ServerConfig& config) { return config.peer_address; }};
+          [](const ServerConfig& config) { return config.world; }};
 }
 
-FormField player_address_field() {
-  return {
-      [](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
-        if (!text.empty()) {
-          const auto address = parse_host_port(text, kDefaultPort);
-          if (!address) return failure(address.error());
-          if (!is_player_address(to_string(*address)))
-            return failure("must be HOST, HOST:PORT or [V6]:PORT, with a host of ASCII characters");
-        }
-        config.player_address = text;
-        return {};
-      },
-      [](const ServerConfig& config) { return config.player_address; }};
+FormField store_field() {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+            if (!text.empty()) {
+              if (auto checked = check_database_address(text); !checked) return checked;
+            }
+            config.store = text;
+            return {};
+          },
+          [](const ServerConfig& config) { return config.store; }};
+}
+
+/// An address that other programs connect to, or an empty text.
+template <auto Member, auto Check>
+FormField address_field() {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+            if (!text.empty()) {
+              if (auto checked = Check(text); !checked) return checked;
+            }
+            config.*Member = text;
+            return {};
+          },
+          [](const ServerConfig& config) { return config.*Member; }};
 }
 
 FormField page_address_field() {
@@ -170,12 +182,18 @@ const SettingsTable<ServerConfig>& settings() {
   const auto form = [](const char* name, const std::string& help, const FormField& field) {
     return Setting<C>{name, help, SettingType::text, field.set, field.print};
   };
+  // A place may hold a password, also a mistyped one.
+  const auto secret = [&form](const char* name, const std::string& help, const FormField& field) {
+    Setting<C> out = form(name, help, field);
+    out.has_secret = true;
+    return out;
+  };
   static const SettingsTable<C> all(
       "RUNSTONE_",
       {
-          text("world", "folder of the world", &C::world),
-          optional("store", "address of a PostgreSQL database for the world: postgresql://...",
-                   &C::store),
+          secret("world", "folder of the world", world_field()),
+          secret("store", "address of a PostgreSQL database for the world: postgresql://...",
+                 store_field()),
           flag(
               "standby",
               "follow the server that owns the world of `store`, and take the world over when it ends",
@@ -184,11 +202,11 @@ const SettingsTable<ServerConfig>& settings() {
                  "seconds without an answer of `store` until another server may take over"),
           form("peer_address",
                "HOST or HOST:PORT at which other servers of the world of `store` reach this one",
-               peer_address_field()),
+               address_field<&C::peer_address, &check_peer_address>()),
           form("player_address",
                "HOST or HOST:PORT at which players reach this server of the world of `store`; "
                "empty: players are not told of it",
-               player_address_field()),
+               address_field<&C::player_address, &check_public_address>()),
           form(
               "page_address",
               "https://HOST/PATH of the pages of runstone-web for this server; empty: browsers are "
@@ -202,9 +220,8 @@ const SettingsTable<ServerConfig>& settings() {
           flag("insecure", "connections are not encrypted; for 127.0.0.1 and [::1] only",
                &C::insecure),
           flag("i_know", "allow insecure on every address", &C::i_know),
-          optional("public_address",
-                   "HOST or HOST:PORT at which players reach the server, for invites",
-                   &C::public_address),
+          form("public_address", "HOST or HOST:PORT at which players reach the server, for invites",
+               address_field<&C::public_address, &check_public_address>()),
           optional("gateway_socket", "path of a Unix socket for runstone-web; empty: none",
                    &C::gateway_socket),
           flag("gateway_group", "programs of the socket's group may use it as well, mode 0660",
@@ -306,7 +323,8 @@ const SettingsTable<ServerConfig>& settings() {
                  "digests per check, 0: none"),
           number("counters_s", &C::counters_s, 0, 86'400,
                  "seconds between two lines of activity, 0: never"),
-      });
+      },
+      "RUNSTONE_WEB_");
   return all;
 }
 
@@ -334,10 +352,9 @@ Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view 
   return settings().read_toml(config, toml, file);
 }
 
-Result<void, std::string> read_config_environment(
-    ServerConfig& config,
-    const std::function<std::optional<std::string>(const std::string&)>& look_up) {
-  return settings().read_environment(config, look_up);
+Result<void, std::string> read_config_environment(ServerConfig& config,
+                                                  const Environment& environment) {
+  return settings().read_environment(config, environment);
 }
 
 std::string to_toml(const ServerConfig& config) { return settings().to_toml(config); }

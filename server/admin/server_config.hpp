@@ -4,8 +4,6 @@
 // reference. docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -146,11 +144,10 @@ Result<void, std::string> set_config(ServerConfig& config, const std::string& fi
 /// wrong values, with their line; `config` is then unchanged.
 Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml,
                                          std::string_view file);
-/// Sets the fields that the environment names. `look_up` returns the value of a variable, or
-/// nullopt.
-Result<void, std::string> read_config_environment(
-    ServerConfig& config,
-    const std::function<std::optional<std::string>(const std::string&)>& look_up);
+/// Sets the fields that the environment names, see SettingsTable::read_environment(). Variables that
+/// begin with RUNSTONE_WEB_ are for runstone-web.
+Result<void, std::string> read_config_environment(ServerConfig& config,
+                                                  const Environment& environment);
 /// Returns all fields as TOML, which read_config_toml() reads back to an equal configuration.
 std::string to_toml(const ServerConfig& config);
 

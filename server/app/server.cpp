@@ -214,8 +214,9 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
         parts->world.store->file());
   }
   if (parts->world.is_new) {
-    logger("app").info("NEW WORLD: made world={} generator={} seed={}", config.world,
-                       creation.generator, creation.seed);
+    const GeneratorPin& pin = parts->world.store->meta().generator;
+    logger("app").info("NEW WORLD: made world={} generator={} seed={}", config.world, pin.name,
+                       pin.seed);
   }
   logger("app").info(
       "fingerprint={} of this world's key: players compare it at first contact",

@@ -55,12 +55,7 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
     const auto read = read_config_toml(config, *toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
-  const auto look_up = [](const std::string& name) -> std::optional<std::string> {
-    const char* text = std::getenv(name.c_str());
-    if (text == nullptr) return std::nullopt;
-    return text;
-  };
-  const auto environment = read_config_environment(config, look_up);
+  const auto environment = read_config_environment(config, program_environment());
   if (!environment) return failure(environment.error());
   for (const auto& [field, text] : options.settings) {
     const auto set = set_config(config, field, text);

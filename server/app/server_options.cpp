@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <iostream>
 #include <string_view>
+#include <vector>
 
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
+#include "server/store/place_rule.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -37,7 +39,8 @@ void add_flags(CLI::App& app, ServerOptions& out) {
                  "new world: empty, flat, terrain or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters,
                  "new world: TOML text");
-  app.add_option("--seed", out.creation.seed, "new world: seed of the generator");
+  app.add_option("--seed", out.creation.seed,
+                 "new world: seed of the generator; default: a random one");
   app.add_option("--edge", out.creation.edge,
                  "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
   app.add_option("--materials", out.creation.materials_file, "new world: TOML file of materials");
@@ -45,17 +48,18 @@ void add_flags(CLI::App& app, ServerOptions& out) {
 }
 
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {
-  CLI::App* const import = app.add_subcommand("import", "make a new world from a Luanti world");
-  import->add_option("--luanti", out.luanti, "folder that holds map.sqlite")->required();
-  import->add_option("--world", out.world, "folder of the new world")->required();
-  import->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
-  import
-      ->add_option_function<std::string>(
+  CLI::App* const made = app.add_subcommand("import", "make a new world from a Luanti world");
+  made->add_option("--luanti", out.luanti, "folder that holds map.sqlite")->required();
+  made->add_option("--world", out.world, "folder of the new world")
+      ->required()
+      ->check(folder_refusal);
+  made->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
+  made->add_option_function<std::string>(
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
-  import->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
-  return import;
+  made->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
+  return made;
 }
 
 CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
@@ -64,7 +68,8 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   compact
       ->add_option("--world", out.world,
                    "folder of the world, or postgresql://...; no server may run it")
-      ->required();
+      ->required()
+      ->check(place_refusal);
   compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
       ->check(CLI::Range(0, 36'500));
@@ -79,9 +84,12 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
 CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
   CLI::App* const copy = app.add_subcommand(
       "copy", "copy a world from a folder to a PostgreSQL database, or back, and verify it");
-  copy->add_option("--from", out.from, "folder of the world, or postgresql://...")->required();
+  copy->add_option("--from", out.from, "folder of the world, or postgresql://...")
+      ->required()
+      ->check(place_refusal);
   copy->add_option("--to", out.to, "the new folder, or postgresql://... without a world")
-      ->required();
+      ->required()
+      ->check(place_refusal);
   copy->add_flag("--progress", out.progress,
                  "print progress even if standard error is no terminal");
   return copy;
@@ -90,8 +98,12 @@ CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
 CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
   CLI::App* const backup = app.add_subcommand(
       "backup", "copy a world, also while a server runs it, and verify the copy");
-  backup->add_option("--world", out.world, "folder of the world")->required();
-  backup->add_option("--to", out.to, "the new folder; empty, or not there")->required();
+  backup->add_option("--world", out.world, "folder of the world")
+      ->required()
+      ->check(folder_refusal);
+  backup->add_option("--to", out.to, "the new folder; empty, or not there")
+      ->required()
+      ->check(folder_refusal);
   backup->add_flag("--progress", out.progress,
                    "print progress even if standard error is no terminal");
   return backup;
@@ -99,9 +111,12 @@ CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
 
 CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
   CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
-  restore->add_option("--from", out.from, "folder of the backup")->required();
+  restore->add_option("--from", out.from, "folder of the backup")
+      ->required()
+      ->check(folder_refusal);
   restore->add_option("--world", out.world, "folder of the new world; empty, or not there")
-      ->required();
+      ->required()
+      ->check(folder_refusal);
   restore->add_flag("--progress", out.progress,
                     "print progress even if standard error is no terminal");
   return restore;
@@ -110,7 +125,7 @@ CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
 CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   CLI::App* const control =
       app.add_subcommand("control", "give a running server a command, such as `control help`");
-  control->add_option("--world", out.world, "folder of the server's world");
+  control->add_option("--world", out.world, "folder of the server's world")->check(folder_refusal);
   control->prefix_command();  // the other arguments are the command, also words such as -4
   return control;
 }
@@ -129,9 +144,12 @@ int arguments_before_command(int argc, const char* const* argv) {
 /// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
 /// order.
 void print_unknown_argument(const CLI::App& app) {
-  std::cerr
-      << "runstone-server: \"" << app.remaining(true).front()
-      << "\" is no subcommand (import, compact, copy, backup, restore, control) and no flag; --help lists the flags\n";
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  const std::string argument = app.remaining(true).front();
+  std::cerr << "runstone-server: \"" << argument
+            << "\" is no subcommand (import, compact, copy, backup, restore, control) and no flag"
+            << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
+            << "; --help lists the flags\n";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace runstone {
 void declare_copy(SubcommandOptions& command_line, CopyOptions& options) {
   command_line.common(options.common, "folder of the world; a server may be running it");
-  command_line.text("FOLDER", options.folder, "folder of the new world; empty, or not there");
+  command_line.folder("FOLDER", options.folder, "folder of the new world; empty, or not there");
   command_line.moment("--at", options.at, "the moment to copy");
 }
 

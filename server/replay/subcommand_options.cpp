@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/os/output_file.hpp"
+#include "server/store/place_rule.hpp"
 
 namespace runstone {
 namespace {
@@ -17,7 +18,7 @@ void set_presence(CLI::Option* option, const std::string& name,
 }  // namespace
 
 void SubcommandOptions::common(CommonOptions& out, const std::string& world_help) {
-  text("--world", out.world, world_help, Presence::required);
+  place("--world", out.world, world_help, Presence::required);
   output_file("--json", out.json, "write the report as JSON to this file");
   flag("--progress", out.progress, "print progress even if standard error is no terminal");
 }
@@ -29,6 +30,19 @@ void SubcommandOptions::flag(const std::string& name, bool& out, const std::stri
 void SubcommandOptions::text(const std::string& name, std::string& out, const std::string& help,
                              Presence presence) {
   set_presence(app_.add_option(name, out, help), name, presence);
+}
+
+void SubcommandOptions::place(const std::string& name, std::string& out, const std::string& help,
+                              Presence presence) {
+  CLI::Option* option = app_.add_option(name, out, help);
+  option->check(place_refusal);
+  set_presence(option, name, presence);
+}
+
+void SubcommandOptions::folder(const std::string& name, std::string& out, const std::string& help) {
+  CLI::Option* option = app_.add_option(name, out, help);
+  option->check(folder_refusal);
+  set_presence(option, name, Presence::optional);
 }
 
 void SubcommandOptions::existing_file(const std::string& name, std::string& out,

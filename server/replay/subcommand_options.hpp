@@ -38,6 +38,11 @@ class SubcommandOptions {
   void flag(const std::string& name, bool& out, const std::string& help);
   void text(const std::string& name, std::string& out, const std::string& help,
             Presence presence = Presence::optional);
+  /// Declares the place of a world: a folder, or the address of a database.
+  void place(const std::string& name, std::string& out, const std::string& help,
+             Presence presence = Presence::optional);
+  /// Declares a folder, which is no database.
+  void folder(const std::string& name, std::string& out, const std::string& help);
   void existing_file(const std::string& name, std::string& out, const std::string& help);
   /// Declares a file to write. It may not be what output_refusal() refuses.
   void output_file(const std::string& name, std::string& out, const std::string& help);

@@ -55,7 +55,7 @@ nlohmann::ordered_json report_json(const Store& store, const TimelapseReport& re
 void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions& options) {
   TimelapseOptions& timelapse = options.timelapse;
   command_line.common(options.common, "folder of the world; a server may be running it");
-  command_line.text("FOLDER", timelapse.folder, "folder for the frames; it must hold none yet");
+  command_line.folder("FOLDER", timelapse.folder, "folder for the frames; it must hold none yet");
   command_line.parsed(
       "--from",
       [&timelapse](const std::string& text) -> std::string {

@@ -20,10 +20,10 @@ constexpr std::size_t kHandshakesMax = 64;
 constexpr std::size_t kKib = 1024;
 constexpr TimeUs kUsPerMs = 1'000, kUsPerSecond = 1'000'000;
 
-/// Returns the address in links. Without a public one, only that of a server for this machine is
-/// known.
+/// Returns the address in links. A public address without a port gets that of the server. Without a
+/// public address, only that of a server for this machine is known.
 std::string link_address(const ServerConfig& config, std::uint16_t port) {
-  if (!config.public_address.empty()) return config.public_address;
+  if (const auto set = parse_host_port(config.public_address, port)) return to_string(*set);
   const auto listen = parse_listen_address(config.listen, kDefaultPort);
   if (!listen) return "HOST";
   asio::error_code error;

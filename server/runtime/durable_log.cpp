@@ -62,10 +62,10 @@ void DurableLog::on_failed(const StoreError& error) {
 }
 
 void DurableLog::on_space(DiskSpace space, const std::string& reason) {
-  is_full_.store(space == DiskSpace::full);
+  is_full_.store(space == DiskSpace::full || space == DiskSpace::read_only);
   switch (space) {
     case DiskSpace::enough:
-      logger("store").info("the world's disk has space again: edits are accepted");
+      logger("store").info("the world can be written again: edits are accepted");
       break;
     case DiskSpace::low:
       logger("store").warn("READ-ONLY: {}: edits are rejected until there is space", reason);
@@ -73,6 +73,12 @@ void DurableLog::on_space(DiskSpace space, const std::string& reason) {
     case DiskSpace::full:
       logger("store").error(
           "READ-ONLY: {}: edits are rejected, and accepted ones are written when there is space",
+          reason);
+      break;
+    case DiskSpace::read_only:
+      logger("store").error(
+          "READ-ONLY: {}: edits are rejected, and accepted ones are written when the database takes "
+          "writes again",
           reason);
       break;
   }

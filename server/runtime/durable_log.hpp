@@ -58,7 +58,8 @@ class DurableLog {
   bool has_failed() const { return has_failed_.load(); }
   /// Returns false while another program may own the world. Thread: any.
   bool is_owned() const { return store_.is_owned(); }
-  /// Returns true while writes wait because the disk is full. Thread: any.
+  /// Returns true while writes wait because the disk is full or the database takes none. Thread:
+  /// any.
   bool is_full() const { return is_full_.load(); }
   /// Returns the last edit that is on disk. Thread: any.
   Sequence durable() const { return durable_.load(); }

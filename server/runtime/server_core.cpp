@@ -253,7 +253,8 @@ DurableLog::Events ServerCore::log_events() {
   };
   events.on_snapshots_saved = [this] { world_->snapshots_saved(read_clocks()); };
   events.on_space = [this](DiskSpace space) {
-    world_->set_disk_is_full(space != DiskSpace::enough, read_clocks());
+    world_->set_disk_is_full(space != DiskSpace::enough, read_clocks(),
+                             space == DiskSpace::read_only ? kDatabaseIsReadOnly : kDiskIsFull);
     commands_->tick(read_clocks());
   };
   events.on_failed = [this] {

@@ -21,6 +21,7 @@ struct Setting {
   std::function<Result<void, std::string>(Config& config, const std::string& text)> set;
   /// Returns a text that sets an equal value.
   std::function<std::string(const Config& config)> print;
+  bool has_secret = false;  // the text may hold a password: error messages do not quote it
 };
 
 /// A number without an upper limit that a host could reach.

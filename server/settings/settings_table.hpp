@@ -2,17 +2,18 @@
 //   file         sessions_max = 64
 //   environment  RUNSTONE_SESSIONS_MAX=64    (with the program's prefix)
 //   flag         --sessions-max 64
-// The order of precedence is flag, environment, file, default. Thread: any.
+// The order of precedence is flag, environment, file, default. An unknown name is an error in all
+// three, which names the nearest setting. Thread: any.
 #pragma once
 #include <algorithm>
-#include <functional>
-#include <optional>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/core/nearest_name.hpp"
 #include "common/core/result.hpp"
 #include "server/settings/setting.hpp"
 #include "server/settings/setting_names.hpp"
@@ -22,14 +23,19 @@ namespace runstone {
 template <class Config>
 class SettingsTable {
  public:
-  using LookUp = std::function<std::optional<std::string>(const std::string& variable)>;
-
-  /// `prefix`: of variables of the environment, such as "RUNSTONE_".
-  SettingsTable(std::string prefix, std::vector<Setting<Config>> settings)
-      : prefix_(std::move(prefix)), settings_(std::move(settings)) {
+  /// `prefix`: of variables of the environment, such as "RUNSTONE_". `other_prefix`: of those among
+  /// them that belong to another program, such as "RUNSTONE_WEB_"; empty: there are none.
+  SettingsTable(std::string prefix, std::vector<Setting<Config>> settings,
+                std::string other_prefix = {})
+      : prefix_(std::move(prefix)),
+        other_prefix_(std::move(other_prefix)),
+        settings_(std::move(settings)) {
     fields_.reserve(settings_.size());
-    for (const Setting<Config>& setting : settings_)
+    for (const Setting<Config>& setting : settings_) {
       fields_.push_back({setting.name, setting.help, setting.type == SettingType::flag});
+      names_.push_back(setting.name);
+      variables_.push_back(variable(setting.name));
+    }
   }
 
   /// Returns all settings, in the order of the table. They live as long as the table.
@@ -48,9 +54,10 @@ class SettingsTable {
   Result<void, std::string> set(Config& config, const std::string& name,
                                 const std::string& text) const {
     const Setting<Config>* setting = find(name);
-    if (setting == nullptr) return failure(name + ": no such setting");
+    if (setting == nullptr) return failure(name + ": no such setting" + did_you_mean(name, names_));
     if (const auto done = setting->set(config, text); !done)
-      return failure(name + " = \"" + text + "\": " + done.error());
+      return failure(name + (setting->has_secret ? "" : " = \"" + text + "\"") + ": " +
+                     done.error());
     return {};
   }
   /// Sets the values that a TOML file names; `file` is only for messages. Fails on unknown names
@@ -74,7 +81,7 @@ class SettingsTable {
       const auto wrong = [&](std::string why) {
         return failure(TextError{std::string(file), value.line, value.key, std::move(why)});
       };
-      if (setting == nullptr) return wrong("no such setting");
+      if (setting == nullptr) return wrong("no such setting" + did_you_mean(value.key, names_));
       if (!can_be(value, setting->type))
         return wrong(type_rule(setting->type) + ": " + setting->help);
       if (const auto done = setting->set(read, value.text); !done) return wrong(done.error());
@@ -82,13 +89,21 @@ class SettingsTable {
     config = std::move(read);
     return {};
   }
-  /// Sets the values that the environment names. The error names the variable.
-  Result<void, std::string> read_environment(Config& config, const LookUp& look_up) const {
-    for (const Setting<Config>& setting : settings_) {
-      const std::string name = variable(setting.name);
-      const auto value = look_up(name);
-      if (!value) continue;
-      const auto done = set(config, setting.name, *value);
+  /// Sets the values that the environment names. Fails if a value is wrong, and if a variable with
+  /// the prefix is of no setting; is_foreign_variable() says which ones do not count. The error
+  /// names the variable.
+  Result<void, std::string> read_environment(Config& config, const Environment& environment) const {
+    for (const auto& [name, value] : environment) {
+      if (!name.starts_with(prefix_)) continue;
+      const auto found = std::find(variables_.begin(), variables_.end(), name);
+      if (found == variables_.end()) {
+        if (!other_prefix_.empty() && name.starts_with(other_prefix_)) continue;
+        if (is_foreign_variable(name, value)) continue;
+        return failure(name + ": no setting has this variable of the environment" +
+                       nearest_variable(name));
+      }
+      const auto done =
+          set(config, names_[static_cast<std::size_t>(found - variables_.begin())], value);
       if (!done) return failure(name + ": " + done.error());
     }
     return {};
@@ -102,6 +117,12 @@ class SettingsTable {
   }
 
  private:
+  /// Returns "; did you mean VARIABLE?" or an empty text. The prefix is no part of the comparison.
+  std::string nearest_variable(std::string_view name) const {
+    const std::string_view nearest = nearest_name(name.substr(prefix_.size()), names_);
+    return nearest.empty() ? std::string()
+                           : "; did you mean " + variable(std::string(nearest)) + "?";
+  }
   const Setting<Config>* find(std::string_view name) const {
     const auto found =
         std::find_if(settings_.begin(), settings_.end(),
@@ -109,9 +130,10 @@ class SettingsTable {
     return found == settings_.end() ? nullptr : &*found;
   }
 
-  const std::string prefix_;
+  const std::string prefix_, other_prefix_;
   const std::vector<Setting<Config>> settings_;
   std::vector<SettingField> fields_;
+  std::vector<std::string> names_, variables_;  // in the order of settings_
 };
 
 }  // namespace runstone

@@ -135,7 +135,7 @@ void LogWriter::run() {
     StoreResult<void> written = write(group);
     // One slice per round: records that were queued meanwhile are written before the next slice.
     if (written && job) written = write_slice(*job);
-    if (!written && written.error().kind == StoreError::Kind::full) {
+    if (!written && can_be_repeated(written.error())) {
       if (!wait_for_room(written.error(), group, job)) return;
       continue;
     }
@@ -225,7 +225,8 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
 
 void LogWriter::check_space() {
   const TimeUs now_us = steady_now_us();
-  const bool was_full = space_ == DiskSpace::full;  // only this thread writes it
+  // Only this thread writes it.
+  const bool was_full = space_ == DiskSpace::full || space_ == DiskSpace::read_only;
   const TimeUs interval_us = std::chrono::microseconds(limits_.space_interval).count();
   if (!was_full && looked_us_ != 0 && now_us - looked_us_ < interval_us) return;
   looked_us_ = now_us;
@@ -251,7 +252,8 @@ void LogWriter::set_space(DiskSpace space, const std::string& reason) {
 
 bool LogWriter::wait_for_room(const StoreError& error, const Batch& group,
                               std::optional<Job>& job) {
-  set_space(DiskSpace::full, error.message());
+  const bool is_read_only = error.kind == StoreError::Kind::read_only;
+  set_space(is_read_only ? DiskSpace::read_only : DiskSpace::full, error.message());
   end_optional_jobs(error, job);
   std::unique_lock lock(mutex_);
   if (stopping_) {

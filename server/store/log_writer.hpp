@@ -9,11 +9,10 @@
 //     is not offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
-//   - A full disk: what was to be written stays queued and is written again once a second, until
-//     there is room. has_room() returns false meanwhile. It also returns false while less space is
+//   - A full disk, or a database that takes no writes: what was to be written stays queued and is written again once a second, until
+//     it can be written. has_room() returns false meanwhile. It also returns false while less space is
 //     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and
-//     tiles end with an error while the disk is full, because they hold nothing that the log does
-//     not.
+//     tiles end with an error meanwhile, because they hold nothing that the log does not.
 //   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
 //     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
@@ -43,8 +42,9 @@ namespace runstone {
 /// The room for more edits on the disk of a world.
 enum class DiskSpace : std::uint8_t {
   enough,
-  low,  // less is free than the reserve: queued edits are written, new ones are rejected
-  full  // a write found no room: it is repeated, and new edits are rejected
+  low,       // less is free than the reserve: queued edits are written, new ones are rejected
+  full,      // a write found no room: it is repeated, and new edits are rejected
+  read_only  // the database takes no writes, and it is as for a full disk
 };
 
 class LogWriter {

@@ -283,12 +283,12 @@ void PostgresLease::watch(std::function<void(const StoreError&)> on_lost) {
 std::optional<milliseconds> PostgresLease::renew() {
   if (!connection_) {
     auto opened = sql::open_postgres(url_, sql::PostgresMode::write);
-    if (!opened) return try_again();
+    if (!opened) return try_again(failed(opened.error()).error);
     connection_ = *std::move(opened);
   }
   const TimeUs asked_us = boot_now_us();
   const auto term = renewed_term(*connection_, term_, terms_.length);
-  if (!term) return try_again();
+  if (!term) return try_again(term.error());
   if (!*term) {
     const auto row = read_row(*connection_, kRead);
     on_lost(taken_by(*connection_, row ? row->owner : "another program"));
@@ -297,7 +297,7 @@ std::optional<milliseconds> PostgresLease::renew() {
   const auto has_writer = number_of(*connection_, kHasWriter, [this](sql::Statement& statement) {
     statement.bind(1, kWriterLock).bind(2, writer_);
   });
-  if (!has_writer) return try_again();
+  if (!has_writer) return try_again(has_writer.error());
   if (*has_writer == 0) {
     on_lost({StoreError::Kind::io, connection_->file(), "lease",
              "the connection that writes this world has ended"});
@@ -307,8 +307,10 @@ std::optional<milliseconds> PostgresLease::renew() {
   return terms_.length / 3;
 }
 
-std::optional<milliseconds> PostgresLease::try_again() {
+std::optional<milliseconds> PostgresLease::try_again(const StoreError& error) {
   connection_.reset();
+  // A database that takes no writes gives the lease to nobody else.
+  if (error.kind == StoreError::Kind::read_only) return terms_.length / 20;
   const TimeUs alone_us = boot_now_us() - renewed_us_;
   if (terms_.alone_max.count() == 0 || alone_us < us_of(terms_.alone_max))
     return terms_.length / 20;

@@ -71,7 +71,7 @@ class PostgresLease {
   /// Renews once and returns the time until the next renewal, or nullopt if the lease is lost.
   std::optional<std::chrono::milliseconds> renew();
   /// Returns the time until the next try, or nullopt if the database was away for too long.
-  std::optional<std::chrono::milliseconds> try_again();
+  std::optional<std::chrono::milliseconds> try_again(const StoreError& error);
   void on_renewed(TimeUs asked_us);
   void on_lost(const StoreError& error);
 

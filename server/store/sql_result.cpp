@@ -7,6 +7,8 @@ StoreError::Kind kind_of(sql::Error::Kind kind) {
   switch (kind) {
     case sql::Error::Kind::full:
       return StoreError::Kind::full;
+    case sql::Error::Kind::read_only:
+      return StoreError::Kind::read_only;
     case sql::Error::Kind::corrupt:
       return StoreError::Kind::corrupt;
     case sql::Error::Kind::locked:

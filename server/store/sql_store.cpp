@@ -54,8 +54,9 @@ StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body
   if (!committed) {
     forget_uncommitted();
     // A full disk fails a write to the WAL, before the fsync. SQLite knows then that nothing was
-    // committed, and the next transaction overwrites what was written.
-    broken_ = committed.error().kind != StoreError::Kind::full;
+    // committed, and the next transaction overwrites what was written. A database that takes no
+    // writes has rolled the transaction back.
+    broken_ = !can_be_repeated(committed.error());
   }
   return committed;
 }

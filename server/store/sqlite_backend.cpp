@@ -11,6 +11,7 @@
 #include "common/sql/transaction.hpp"
 #include "common/sqlite/sqlite_file.hpp"
 #include "server/store/new_world.hpp"
+#include "server/store/place_rule.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
 #include "server/store/world_schema.hpp"
@@ -24,6 +25,11 @@ std::string file_in(const std::string& folder) { return folder + "/world.sqlite"
 Unexpected<StoreError> store_failure(StoreError::Kind kind, const std::string& file,
                                      std::string what) {
   return {{kind, file, "", std::move(what)}};
+}
+
+/// The place is no folder. Its name is left out, because a mistyped address may hold a password.
+Unexpected<StoreError> no_folder(const std::string& why) {
+  return store_failure(StoreError::Kind::bad_request, "the place of the world", why);
 }
 
 /// Takes FOLDER/world.lock, so that at most one process writes the world. `file` names the world in
@@ -203,6 +209,7 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
 StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
                                                         const FillWorld& fill,
                                                         const SqliteOptions& options) {
+  if (const auto checked = check_folder(folder); !checked) return no_folder(checked.error());
   const std::string file = file_in(folder);
   if (const auto made = make_folder(folder, file); !made) return failed(made.error());
   auto lock = take_lock(folder, file);
@@ -236,6 +243,7 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
 
 StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
                                                       const SqliteOptions& options) {
+  if (const auto checked = check_folder(folder); !checked) return no_folder(checked.error());
   const std::string file = file_in(folder);
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());

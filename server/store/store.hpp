@@ -73,7 +73,7 @@ class Store : public WorldReader, public WorldSink, public ImportSink {
 };
 
 // A place is a folder, for a world in an SQLite file, or the address of a PostgreSQL database:
-// postgresql://...
+// postgresql://... (place_rule.hpp)
 bool is_database(const std::string& place);
 /// Returns the place for messages. It has no password.
 std::string place_name(const std::string& place);

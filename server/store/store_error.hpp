@@ -13,7 +13,8 @@ struct StoreError {
     newer_version,
     corrupt,
     exists,
-    full,
+    full,       // the disk is full: a later try may succeed
+    read_only,  // the database takes no writes: a later try may succeed
     bad_request,
     locked,
     cancelled
@@ -26,6 +27,12 @@ struct StoreError {
   /// Returns one line: "FILE: WHERE: WHAT".
   std::string message() const;
 };
+
+/// Returns true if nothing was written and a later try may succeed: the disk is full, or the
+/// database takes no writes.
+inline bool can_be_repeated(const StoreError& error) {
+  return error.kind == StoreError::Kind::full || error.kind == StoreError::Kind::read_only;
+}
 
 template <class T>
 using StoreResult = Result<T, StoreError>;

@@ -12,6 +12,8 @@
 namespace runstone {
 namespace {
 
+constexpr int kSeedDraws = 64;
+
 Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   if (creation.edge != 16 && creation.edge != 32 && creation.edge != 64 && creation.edge != 128) {
     return failure("--edge " + std::to_string(creation.edge) +
@@ -22,10 +24,18 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   WorldMeta meta;
   meta.chunk_edge = creation.edge;
   meta.generator.name = creation.generator;
-  meta.generator.seed = creation.seed;
+  meta.generator.seed = creation.seed.value_or(0);
   meta.generator.parameters = creation.generator_parameters;
   meta.materials = *std::move(materials);
-  const auto generator = make_generator(meta.generator, meta.materials);
+  auto generator = make_generator(meta.generator, meta.materials);
+  // A seed that is drawn gives dry ground at the origin, where players then arrive, if the generator
+  // has such ground at all.
+  for (int i = 0; generator && !creation.seed && i < kSeedDraws; ++i) {
+    if (i > 0 && is_origin_dry(**generator, meta.materials)) break;
+    // 32 bits, so that people can read it out and type it.
+    meta.generator.seed = randombytes_random();
+    generator = make_generator(meta.generator, meta.materials);
+  }
   if (!generator)
     return failure("--generator " + meta.generator.name + ": " + generator.error().what);
   const VoxelPos spawn = spawn_point(**generator, meta.materials);

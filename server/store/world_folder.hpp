@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,10 @@ namespace runstone {
 /// The properties of a new world. An existing world ignores them.
 struct WorldCreation {
   std::string generator = "terrain";
-  std::string generator_parameters;  // TOML, empty for the generator's defaults
-  std::uint64_t seed = 1;
-  std::uint16_t edge = 32;     // 16, 32, 64 or 128
-  std::string materials_file;  // TOML; empty: the built-in table
+  std::string generator_parameters;   // TOML, empty for the generator's defaults
+  std::optional<std::uint64_t> seed;  // nullopt: a random one
+  std::uint16_t edge = 32;            // 16, 32, 64 or 128
+  std::string materials_file;         // TOML; empty: the built-in table
   friend bool operator==(const WorldCreation&, const WorldCreation&) = default;
 };
 

@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "common/core/text.hpp"
+#include "server/settings/address_check.hpp"
+#include "server/store/place_rule.hpp"
 
 namespace runstone {
 namespace {
@@ -26,20 +28,45 @@ Setting<Config> line_setting(const char* name, const char* help, std::string Con
   return out;
 }
 
+/// Makes a setting that is empty or has a form of its own.
+template <class Config>
+Setting<Config> with_check(Setting<Config> setting,
+                           Result<void, std::string> (*check)(const std::string& text)) {
+  setting.set = [set = setting.set, check](Config& config,
+                                           const std::string& value) -> Result<void, std::string> {
+    if (!value.empty()) {
+      if (auto fits = check(value); !fits) return fits;
+    }
+    return set(config, value);
+  };
+  return setting;
+}
+
+template <class Config>
+Setting<Config> public_address_setting(const char* help, std::string Config::* member) {
+  return with_check(line_setting("public_address", help, member, true), check_public_address);
+}
+
+template <class Config>
+Setting<Config> world_setting(const char* help, std::string Config::* member) {
+  Setting<Config> out = with_check(line_setting("world", help, member, true), check_place);
+  out.has_secret = true;  // the password of a database
+  return out;
+}
+
 const SettingsTable<WebServer>& server_settings() {
   using S = WebServer;
   static const SettingsTable<S> all(
-      "", {
-              line_setting<S>("gateway_socket", "path of the server's setting gateway_socket",
-                              &S::gateway_socket, false),
-              line_setting<S>("title", "name of the world on the pages", &S::title, true),
-              line_setting<S>("public_address",
-                              "HOST or HOST:PORT at which desktop clients reach the server",
-                              &S::public_address, true),
-              line_setting<S>("world",
-                              "folder or database of the world, to show its map; empty: no map",
-                              &S::world, true),
-          });
+      "",
+      {
+          line_setting<S>("gateway_socket", "path of the server's setting gateway_socket",
+                          &S::gateway_socket, false),
+          line_setting<S>("title", "name of the world on the pages", &S::title, true),
+          public_address_setting<S>("HOST or HOST:PORT at which desktop clients reach the server",
+                                    &S::public_address),
+          world_setting<S>("folder or database of the world, to show its map; empty: no map",
+                           &S::world),
+      });
   return all;
 }
 
@@ -126,9 +153,9 @@ const SettingsTable<WebConfig>& web_settings() {
           text("gateway_socket", "path of the server's setting gateway_socket", &C::gateway_socket,
                false),
           text("title", "name of the world on the pages", &C::title, false),
-          text("public_address",
-               "HOST or HOST:PORT at which desktop clients reach the server, for the page",
-               &C::public_address, true),
+          public_address_setting<C>(
+              "HOST or HOST:PORT at which desktop clients reach the server, for the page",
+              &C::public_address),
           text("client_files",
                "folder with the files of the client for browsers; empty: the pages have none",
                &C::client_files, true),
@@ -136,8 +163,8 @@ const SettingsTable<WebConfig>& web_settings() {
                "origins of pages that may open a WebSocket, such as https://play.example.org, "
                "separated by blanks or commas; empty: only pages of this gateway",
                &C::origins, true),
-          text("world", "folder or database of the world, to show its map at /map; empty: no map",
-               &C::world, true),
+          world_setting<C>(
+              "folder or database of the world, to show its map at /map; empty: no map", &C::world),
           number("map_memory_mib", &C::map_memory_mib, 8, 65'536,
                  "MiB of memory for what the map has drawn"),
           number(

@@ -3,7 +3,6 @@
 // Exit codes: 0 stopped by SIGINT or SIGTERM, 2 could not start (docs/server-reference.md).
 #include <signal.h>
 
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <iterator>
@@ -35,12 +34,7 @@ Result<WebConfig, std::string> read_config(const WebOptions& options) {
     const auto read = read_web_toml(config, *toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
-  const auto look_up = [](const std::string& name) -> std::optional<std::string> {
-    const char* text = std::getenv(name.c_str());
-    if (text == nullptr) return std::nullopt;
-    return text;
-  };
-  const auto environment = web_settings().read_environment(config, look_up);
+  const auto environment = web_settings().read_environment(config, program_environment());
   if (!environment) return failure(environment.error());
   for (const auto& [field, text] : options.settings) {
     const auto set = web_settings().set(config, field, text);

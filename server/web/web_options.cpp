@@ -1,6 +1,8 @@
 #include "server/web/web_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
+#include <string>
 
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
@@ -23,6 +25,11 @@ ParsedWebOptions parse_web_options(int argc, const char* const* argv) {
   add_setting_flags(app, web_settings().fields(), out.settings);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    const std::string argument = app.remaining(true).front();
+    std::cerr << "runstone-web: \"" << argument << "\" is no flag" << nearest_flag(app, argument)
+              << "; --help lists the flags\n";
+    return {std::nullopt, 2};
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }

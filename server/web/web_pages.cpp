@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/os/host_port.hpp"
+#include "protocol/default_port.hpp"
 #include "server/web/page_files.hpp"
 
 namespace runstone {
@@ -174,7 +176,9 @@ std::string world_page(const WebConfig& config, bool has_client, const ServerSta
           "<p>Ask the host of this world for its address, and join with the desktop client.</p>\n";
     }
   } else {
-    const std::string link = html_text("runstone://" + config.public_address);
+    const auto address = parse_host_port(config.public_address, kDefaultPort);
+    const std::string link =
+        html_text("runstone://" + (address ? to_string(*address) : config.public_address));
     body += "<p>Join with the desktop client: <a href=\"" + link + "\">" + link +
             "</a>. In a terminal:</p>\n<pre>runstone-client --connect '" + link + "'</pre>\n";
   }

@@ -300,8 +300,8 @@ void WorldServer::snapshots_saved(const Clocks& now) {
   step_checkpointer(now);
 }
 
-void WorldServer::set_disk_is_full(bool is_full, const Clocks& now) {
-  rooms_->order.set_disk_is_full(is_full);
+void WorldServer::set_disk_is_full(bool is_full, const Clocks& now, const char* why) {
+  rooms_->order.set_disk_is_full(is_full, why);
   rooms_->receipts.hurry_durable();  // the watermark tells every session
   rooms_->cluster.send_durable_to_followers();
   rooms_->people.joining().open_authenticated(now);

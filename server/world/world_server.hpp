@@ -92,8 +92,8 @@ class WorldServer {
   /// Reports that the oldest unanswered save_snapshots() is on disk.
   void snapshots_saved(const Clocks& now);
   /// Reports that the disk has no space for new edits, or has space again. Edits are rejected busy
-  /// meanwhile.
-  void set_disk_is_full(bool is_full, const Clocks& now);
+  /// meanwhile, with the reason `why`.
+  void set_disk_is_full(bool is_full, const Clocks& now, const char* why = kDiskIsFull);
   /// Reports that the log cannot be written any more. Edits are rejected busy from now on.
   void log_failed();
 

@@ -44,7 +44,7 @@ class GameServer:
 
     def create(self):
         """Makes the world, with this server as its first owner."""
-        self._start("--create", "--generator", "flat")
+        self._start("--create", "--generator", "flat", "--seed", "1")
 
     def _start(self, *more):
         self.sent = set()

@@ -41,7 +41,7 @@ class Server:
         with open(folder / f"{number}.log", "wb") as log:
             self.process = subprocess.Popen(
                 ["setpriv", "--pdeathsig=KILL", programs / "runstone-server", "--world", folder / f"{number}",
-                 "--store", url, "--standby", "--create", "--generator", "flat", "--listen", "127.0.0.1:0",
+                 "--store", url, "--standby", "--create", "--generator", "flat", "--seed", "1", "--listen", "127.0.0.1:0",
                  "--peer-address", "127.0.0.1", "--port-file", self.port_file, "--sessions-per-address", "0",
                  "--sessions-max", "1000",
                  "--budgets-per-address", "0", "--connections-per-second", "0"],

@@ -58,7 +58,7 @@ std::optional<std::string> Handover::refusal(std::optional<SessionId> successor)
   if (!order_.log_accepts()) return "the server stops, or its log cannot be written";
   if (!environment_.owns_world())
     return "the database does not answer: another server may own the world";
-  if (order_.is_disk_full()) return kDiskIsFull;
+  if (order_.is_disk_full()) return order_.disk_reason();
   if (!order_.feed().has_served()) return "no other server follows this one";
   if (!successor) return std::nullopt;
   if (followers_.contains(*successor) && order_.feed().is_served(*successor)) return std::nullopt;

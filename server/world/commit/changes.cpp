@@ -68,8 +68,8 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
     if (need == DiskNeed::space ? !order_.log_has_room() : !order_.log_has_queue_room()) {
-      out.reason =
-          order_.is_disk_full() ? kDiskIsFull : "the log has no room now (log_queue_records)";
+      out.reason = order_.is_disk_full() ? order_.disk_reason()
+                                         : "the log has no room now (log_queue_records)";
       break;
     }
     if (order_.is_memory_full()) {

@@ -26,9 +26,10 @@
 
 namespace runstone {
 
-/// Why edits are rejected, for players and operators: while the disk is full, and while
-/// Order::is_memory_full().
+/// Why edits are rejected, for players and operators: while the disk is full, while the database
+/// takes no writes, and while Order::is_memory_full().
 inline constexpr const char* kDiskIsFull = "the world's disk is full";
+inline constexpr const char* kDatabaseIsReadOnly = "the world's database is read-only";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 
 /// The large edits that a commit may have.
@@ -100,9 +101,14 @@ class Order {
   Sequence durable() const { return durable_; }
   /// Sets the durable watermark. Returns false if it is not higher than before.
   bool set_durable(Sequence seq);
-  /// Edits are rejected busy until there is space again.
+  /// Edits are rejected busy, with the reason disk_reason(), until there is space again. A database
+  /// that takes no writes counts as a full disk.
   bool is_disk_full() const { return disk_is_full_; }
-  void set_disk_is_full(bool is_full) { disk_is_full_ = is_full; }
+  const char* disk_reason() const { return disk_reason_; }
+  void set_disk_is_full(bool is_full, const char* why = kDiskIsFull) {
+    disk_is_full_ = is_full;
+    disk_reason_ = why;
+  }
   /// Returns false if the server stops, or the log has failed.
   bool log_accepts() const { return !is_stopping() && !ownership_.is(OwnershipState::log_lost); }
   /// Returns true if another server orders the edits, or is to do so.
@@ -169,6 +175,7 @@ class Order {
   LogFeed feed_;
   Sequence durable_ = 0;
   bool disk_is_full_ = false;
+  const char* disk_reason_ = kDiskIsFull;
   std::optional<TimeUs> stop_due_us_;
   ClientInstance own_instance_ = 0;  // of the server's own edits of this run
   ClientSequence own_seq_ = 0;       // of the last one

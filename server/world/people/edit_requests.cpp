@@ -100,7 +100,7 @@ std::optional<EditRequests::Refusal> EditRequests::check_and_enqueue(const Attem
 
 /// Returns the reason for a rejection as busy, for the player. It is empty if it passes soon.
 const char* EditRequests::why_busy(const Attempt& attempt) const {
-  if (order_.is_disk_full()) return kDiskIsFull;
+  if (order_.is_disk_full()) return order_.disk_reason();
   if (order_.is_memory_full()) return kMemoryIsFull;
   return order_.authority().queue().has_room_for(attempt.request.edit, attempt.session.author)
              ? ""

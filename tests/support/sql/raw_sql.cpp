@@ -11,7 +11,13 @@ std::string raw_postgres(const std::string& url, std::string sql) {
   const bool wants_changes = sql.ends_with(kChanges);
   if (wants_changes) sql.resize(sql.size() - kChanges.size());
   PGconn* const database = PQconnectdb(url.c_str());
-  PQclear(PQexec(database, "SET client_min_messages = warning"));
+  // The role of a test may have settings that a world must bear.
+  PQclear(PQexec(database,
+                 "SET client_min_messages = warning; SET client_encoding = 'UTF8'; "
+                 "SET statement_timeout = 0; SET lock_timeout = 0"));
+  PQclear(PQexec(database,
+                 "SELECT set_config(name, 'off', false) FROM pg_settings WHERE name = "
+                 "'default_transaction_read_only' AND source <> 'configuration file'"));
   PGresult* const result = PQexec(database, sql.c_str());
   std::string out;
   const ExecStatusType status = PQresultStatus(result);

@@ -123,7 +123,7 @@ TEST_CASE("a client that is killed takes its local server with it, and the world
   ChildProgram child;
   child.words = {"/bin/sh", "-c",
                  "exec env XDG_DATA_HOME=" + folder / "data" + " RUNSTONE_SERVER=" + kServer + " " +
-                     kClient + " --local home --generator flat --no-render --script " +
+                     kClient + " --local home --generator flat --seed 1 --no-render --script " +
                      folder / "script" + " >" + folder / "out" + " 2>&1"};
   const auto pid = start_program(std::move(child));
   REQUIRE(pid);

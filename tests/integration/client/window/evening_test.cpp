@@ -28,7 +28,13 @@ using test::wait_for;
 /// The bench with the hands of a player in a world whose server answers control commands.
 struct Evening : TitleBench {
   explicit Evening(std::string world_folder) : world(std::move(world_folder)) {}
-  Evening() : world(folder / "data/runstone/worlds/home") {}
+  /// The world is there, with a seed of its own, so that each evening has the same ground.
+  Evening() : world(folder / "data/runstone/worlds/home") {
+    std::filesystem::create_directories(std::filesystem::path(world).parent_path());
+    WorldCreation creation;
+    creation.seed = 1;
+    REQUIRE(open_or_create_world(world, creation).has_value());
+  }
 
   void hand(std::vector<std::string> words) { REQUIRE(display.hand(std::move(words))); }
   void focus(const std::string& title) {

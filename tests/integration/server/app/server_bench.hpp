@@ -33,6 +33,7 @@ inline ServerConfig quiet_config(const std::string& world) {
 inline WorldCreation flat_creation() {
   WorldCreation creation;
   creation.generator = "flat";
+  creation.seed = 1;
   creation.edge = 16;
   return creation;
 }

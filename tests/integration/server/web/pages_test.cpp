@@ -26,7 +26,7 @@ TEST_CASE("the pages show who is in the world", "[integration]") {
   const HttpReply world = peer.get("/");
   CHECK(world.status == 200);
   CHECK(has(world, "The &lt;valley&gt;"));
-  CHECK(has(world, "runstone://play.example.org"));
+  CHECK(has(world, "runstone://play.example.org:4747"));
   const HttpReply status = peer.get("/status");
   CHECK(has(status, "The server is running."));
   CHECK(has(status, "<th scope=\"row\">sessions now</th><td>1</td>"));

@@ -68,6 +68,7 @@ TEST_CASE("terrain in messages of many frames passes, in messages of whole frame
   const TempFolder folder;
   WorldCreation hills;
   hills.generator = "terrain";
+  hills.seed = 1;
   hills.edge = 128;
   const auto server = start_server(server_config_of(folder), hills);
   const auto gateway = start_gateway(web_config_of(folder));

@@ -55,6 +55,7 @@ TEST_CASE_METHOD(MenuBench, "the first button of the title makes a world if ther
   CHECK(made.world == "home");
   CHECK(made.name == "ana");
   CHECK(made.generator == "terrain");
+  CHECK(made.seed == std::nullopt);
 }
 
 TEST_CASE_METHOD(MenuBench, "the first button of the title joins the newest world", "[client_ui]") {

@@ -51,6 +51,20 @@ TEST_CASE("an address is shown without its password", "[postgres]") {
   CHECK(wrong.error().what == "is no address like postgresql://USER@HOST:PORT/DATABASE");
 }
 
+TEST_CASE("keywords of libpq are written as an address", "[postgres]") {
+  using sql::url_of_keywords;
+  CHECK(url_of_keywords("host=localhost dbname=x") == "postgresql://localhost/x");
+  CHECK(url_of_keywords(" user = ana password=secret host=h port=1 dbname=d") ==
+        "postgresql://ana@h:1/d");
+  CHECK(url_of_keywords("host=localhost dbname") == "postgresql://...");
+  for (const char* other : {"", "world", "a=b", "my host=x", "/srv/host=x", "./host=x", "=x"}) {
+    CAPTURE(other);
+    CHECK_FALSE(url_of_keywords(other).has_value());
+  }
+  CHECK(sql::is_readable_url("postgresql://ana:x@h:1/d"));
+  CHECK_FALSE(sql::is_readable_url("postgresql://ana:secre%t@h/d"));
+}
+
 TEST_CASE("a database that does not answer is an error with its address", "[postgres]") {
   const auto database =
       sql::open_postgres("postgresql://ana:secret@127.0.0.1:1/d", sql::PostgresMode::read);

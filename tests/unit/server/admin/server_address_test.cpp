@@ -81,6 +81,33 @@ TEST_CASE("without player_address, players are not told of the server", "[config
   CHECK(player_address_of(config, 5000).empty());
 }
 
+TEST_CASE("an address of the web is no address of a server, and the error says what to write",
+          "[config]") {
+  for (const char* setting : {"public_address", "player_address", "peer_address"}) {
+    CAPTURE(setting);
+    ServerConfig config;
+    for (const char* bad :
+         {"https://play.example.org/", "http://play.example.org", "runstone://play.example.org/#x",
+          "play.example.org/", "play.example.org/client", "play.example.org?x"}) {
+      CAPTURE(bad);
+      const auto set = set_config(config, setting, bad);
+      REQUIRE_FALSE(set.has_value());
+      CHECK(set.error().find("; write play.example.org") != std::string::npos);
+    }
+    for (const char* bad : {"play example.org", " play.example.org", "play.example.org\n", ":4747",
+                            "play.example.org:x", "play.example.org:0", "https://", "//x"}) {
+      CAPTURE(bad);
+      CHECK_FALSE(set_config(config, setting, bad).has_value());
+    }
+    CHECK(config == ServerConfig{});
+    for (const char* good : {"play.example.org", "play.example.org:443", "192.0.2.7", "2001:db8::7",
+                             "[2001:db8::7]:443", "xn--hst-sna.example", ""}) {
+      CAPTURE(good);
+      CHECK(set_config(config, setting, good).has_value());
+    }
+  }
+}
+
 TEST_CASE("a player_address or page_address of a wrong form is an error", "[config]") {
   ServerConfig config;
   for (const char* bad : {":5000", "one.example:", "one.example:0", "one.example:65536",

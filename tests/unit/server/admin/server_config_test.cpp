@@ -108,23 +108,56 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
 }
 
 TEST_CASE("the environment sets fields and its errors name the variable", "[admin]") {
-  std::map<std::string, std::string> environment{{"RUNSTONE_IO_THREADS", "8"},
-                                                 {"RUNSTONE_OTHER", "x"}};
-  const auto look_up = [&](const std::string& name) -> std::optional<std::string> {
-    const auto found = environment.find(name);
-    if (found == environment.end()) return std::nullopt;
-    return found->second;
-  };
+  Environment environment{{"RUNSTONE_IO_THREADS", "8"}};
+  // They are for other programs.
+  for (const char* other : {"RUNSTONE_WEB_TITLE", "RUNSTONE_WEB_TITEL", "RUNSTONE_SERVER",
+                            "RUNSTONE_CLIENT", "RUNSTONE_BOT", "RUNSTONE_TEST_POSTGRES"})
+    environment[other] = "x";
   ServerConfig config;
-  REQUIRE(read_config_environment(config, look_up).has_value());
+  REQUIRE(read_config_environment(config, environment).has_value());
   CHECK(config.io_threads == 8);
   for (const char* bad : {"", "0", "65", "8x", "-8", "99999999999999999999999"}) {
     environment["RUNSTONE_IO_THREADS"] = bad;
-    const auto read = read_config_environment(config, look_up);
+    const auto read = read_config_environment(config, environment);
     REQUIRE_FALSE(read.has_value());
     CHECK(read.error().find("RUNSTONE_IO_THREADS") != std::string::npos);
     CHECK(config.io_threads == 8);
   }
+}
+
+TEST_CASE("a variable with a typing mistake is refused", "[admin]") {
+  ServerConfig config;
+  const auto read = read_config_environment(config, {{"RUNSTONE_SESIONS_MAX", "3"}});
+  REQUIRE_FALSE(read.has_value());
+  CHECK(read.error() ==
+        "RUNSTONE_SESIONS_MAX: no setting has this variable of the environment; did you mean "
+        "RUNSTONE_SESSIONS_MAX?");
+  CHECK(config == ServerConfig{});
+}
+
+TEST_CASE("the place of the world is a folder, and the store a database", "[admin]") {
+  ServerConfig config;
+  for (const char* bad : {"postgre://ana:secret@h/d", "Postgresql://ana:secret@h/d",
+                          "mysql://ana:secret@h/d", "host=localhost password=secret", "valley"}) {
+    CAPTURE(bad);
+    const auto set = set_config(config, "store", bad);
+    REQUIRE_FALSE(set.has_value());
+    CHECK(set.error().starts_with("store: "));
+    CHECK(set.error().find("secret") == std::string::npos);
+    const auto read =
+        read_config_toml(config, std::string("store = \"") + bad + "\"\n", "server.toml");
+    REQUIRE_FALSE(read.has_value());
+    CHECK(read.error().message().find("secret") == std::string::npos);
+  }
+  for (const char* bad : {"postgre://h/d", "postgresql://h/d", "host=localhost", ""}) {
+    CAPTURE(bad);
+    CHECK_FALSE(set_config(config, "world", bad).has_value());
+  }
+  CHECK(config == ServerConfig{});
+  CHECK(set_config(config, "store", "postgresql://ana:secret@h/d").has_value());
+  CHECK(set_config(config, "world", "valley").has_value());
+  CHECK(set_config(config, "store", "").has_value());
+  CHECK(config.store.empty());
 }
 
 TEST_CASE("a choice is set by its name", "[admin]") {

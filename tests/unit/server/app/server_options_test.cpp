@@ -77,6 +77,42 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
       "--help lists the flags\n");
 }
 
+TEST_CASE("an unknown flag leads to the nearest one, also of a subcommand", "[server_options]") {
+  const auto error_of = [](const std::vector<const char*>& arguments) {
+    std::ostringstream text;
+    std::streambuf* const before = std::cerr.rdbuf(text.rdbuf());
+    const auto parsed = parse(arguments);
+    std::cerr.rdbuf(before);
+    CHECK(parsed.exit_code == 2);
+    return text.str();
+  };
+  CHECK(error_of({"--sesions-max", "3"}).find("did you mean --sessions-max?") != std::string::npos);
+  CHECK(error_of({"backup", "--world", "a", "--to", "b", "--progres"})
+            .find("did you mean --progress?") != std::string::npos);
+}
+
+TEST_CASE("a mistyped address of a database is no folder", "[server_options]") {
+  for (const char* bad : {"postgre://h/d", "mysql://h/d", "host=localhost dbname=x"}) {
+    CAPTURE(bad);
+    for (const std::vector<const char*>& line :
+         std::vector<std::vector<const char*>>{{"copy", "--from", "a", "--to", bad},
+                                               {"copy", "--from", bad, "--to", "a"},
+                                               {"compact", "--world", bad, "--keep", "1"},
+                                               {"backup", "--world", bad, "--to", "a"},
+                                               {"backup", "--world", "a", "--to", bad},
+                                               {"restore", "--from", bad, "--world", "a"},
+                                               {"restore", "--from", "a", "--world", bad},
+                                               {"import", "--luanti", "a", "--world", bad},
+                                               {"control", "--world", bad, "status"}})
+      CHECK(parse(line).exit_code == 2);
+  }
+  constexpr const char* kDatabase = "postgresql://h/d";
+  CHECK(parse({"copy", "--from", "a", "--to", kDatabase}).options);
+  CHECK(parse({"compact", "--world", kDatabase, "--keep", "1"}).options);
+  CHECK(parse({"backup", "--world", kDatabase, "--to", "a"}).exit_code == 2);
+  CHECK(parse({"restore", "--from", "a", "--world", kDatabase}).exit_code == 2);
+}
+
 TEST_CASE("losses are accepted on request", "[server_options]") {
   CHECK_FALSE(parse({"--world", "a"}).options->accept_losses);
   CHECK(parse({"--world", "a", "--accept-losses"}).options->accept_losses);

@@ -56,6 +56,23 @@ TEST_CASE("a flag of the old command line fails and names its subcommand", "[ser
   }
 }
 
+TEST_CASE("a mistyped address of a database is neither a world nor a folder", "[server][replay]") {
+  for (const std::string& bad :
+       {std::string("postgre://ana:secret@h/d"), std::string("host=localhost dbname=x")}) {
+    CAPTURE(bad);
+    for (const std::vector<std::string>& line :
+         std::vector<std::vector<std::string>>{{"verify", "--world", bad},
+                                               {"import", "--world", bad, "f.rlog"},
+                                               {"copy", "--world", "w", bad},
+                                               {"timelapse", "--world", "w", bad}}) {
+      const ReplayOutcome outcome = run_replay(line);
+      CHECK(outcome.code == 2);
+      CHECK(outcome.err.find("postgresql://") != std::string::npos);
+      CHECK(outcome.err.find("secret") == std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("a subcommand that does not exist, or lacks its world, exits with 2",
           "[server][replay]") {
   const ReplayOutcome unknown = run_replay({"verfy", "--world", "w"});

@@ -65,7 +65,11 @@ TEST_CASE("links have the public address, or that of a server for its machine al
     CHECK(link_address() == "HOST:5000");
   }
   config.public_address = "example.org";
-  CHECK(link_address() == "example.org");
+  CHECK(link_address() == "example.org:5000");
+  config.public_address = "example.org:443";
+  CHECK(link_address() == "example.org:443");
+  config.public_address = "2001:db8::7";
+  CHECK(link_address() == "[2001:db8::7]:5000");
 }
 
 TEST_CASE("only a server of a world in a database has an address in the list of servers",

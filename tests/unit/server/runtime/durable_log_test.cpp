@@ -21,6 +21,7 @@ struct LogBench {
     start_logging(LogLevel::error);
     WorldCreation creation;
     creation.generator = "flat";
+    creation.seed = 1;
     creation.edge = kSampleEdge;
     auto opened = open_or_create_world(folder / "world", creation);
     REQUIRE(opened.has_value());

@@ -70,7 +70,58 @@ TEST_CASE("an error in a later line leaves the values of earlier lines as they w
   CHECK(error.line == 3);
   CHECK(error.key == "is_on");
   CHECK(error_of("colour = \"red\"").what == "no such setting");
+  CHECK(error_of("wats = 7").what == "no such setting; did you mean watts?");
   CHECK(error_of("watts = 7\nwatts = 8\n").line == 2);
+}
+
+TEST_CASE("a variable that no setting has is an error with the nearest one", "[settings]") {
+  const auto error_of = [](const Environment& environment) {
+    Lamp lamp;
+    const auto read = lamp_settings().read_environment(lamp, environment);
+    return read ? std::string() : read.error();
+  };
+  CHECK(error_of({{"LAMP_WATTS", "7"}, {"PATH", "/bin"}, {"LAMPS", "x"}}).empty());
+  CHECK(error_of({{"LAMP_WATS", "7"}}) ==
+        "LAMP_WATS: no setting has this variable of the environment; did you mean LAMP_WATTS?");
+  CHECK(error_of({{"LAMP_OIL_LITRES", "7"}}) ==
+        "LAMP_OIL_LITRES: no setting has this variable of the environment");
+  CHECK(error_of({{"LAMP_", ""}}) == "LAMP_: no setting has this variable of the environment");
+  CHECK(error_of({{"LAMP_PORT", "25565"}}).starts_with("LAMP_PORT: no setting"));
+  Lamp lamp;
+  CHECK_FALSE(lamp_settings().read_environment(lamp, {{"LAMP_WATTS", "0"}}).has_value());
+  CHECK(lamp == Lamp{});
+}
+
+TEST_CASE("variables that container software sets for a service are no mistakes", "[settings]") {
+  Lamp lamp;
+  CHECK(lamp_settings()
+            .read_environment(lamp, {{"LAMP_SERVICE_HOST", "10.0.0.1"},
+                                     {"LAMP_SERVICE_PORT", "4747"},
+                                     {"LAMP_SERVICE_PORT_GAME", "4747"},
+                                     {"LAMP_PORT", "tcp://10.0.0.1:4747"},
+                                     {"LAMP_PORT_4747_TCP", "tcp://10.0.0.1:4747"},
+                                     {"LAMP_PORT_4747_TCP_ADDR", "10.0.0.1"}})
+            .has_value());
+  CHECK(lamp == Lamp{});
+}
+
+TEST_CASE("the text of a setting with a secret is in no error", "[settings]") {
+  Setting<Lamp> secret = number_setting("watts", &Lamp::watts, 1, 60, "power");
+  secret.has_secret = true;
+  const SettingsTable<Lamp> table("LAMP_", {secret});
+  Lamp lamp;
+  CHECK(table.set(lamp, "watts", "pass").error() == "watts: must be a whole number: power, 1..60");
+}
+
+TEST_CASE("an unknown flag leads to the nearest one", "[settings]") {
+  CLI::App app;
+  std::map<std::string, std::string> texts;
+  const SettingsTable<Lamp> table = lamp_settings();
+  add_setting_flags(app, table.fields(), texts);
+  CHECK(nearest_flag(app, "--wats") == "; did you mean --watts?");
+  CHECK(nearest_flag(app, "--labell=x") == "; did you mean --label?");
+  CHECK(nearest_flag(app, "--colour").empty());
+  CHECK(nearest_flag(app, "label").empty());
 }
 
 TEST_CASE("a flag without a value is true, and the last of two values counts", "[settings]") {

@@ -13,6 +13,7 @@
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
+#include "tests/unit/server/store/comes_true.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -63,11 +64,6 @@ sql::Database stuck_owner(const std::string& place) {
                    "INSERT INTO edit_log SELECT 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, '', 0")
               .has_value());
   return stuck;
-}
-
-bool comes_true(const std::function<bool()>& ask) {
-  for (int i = 0; i < 6'000 && !ask(); ++i) std::this_thread::sleep_for(milliseconds(10));
-  return ask();
 }
 
 }  // namespace

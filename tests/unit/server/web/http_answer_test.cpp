@@ -47,6 +47,8 @@ TEST_CASE("the page of the world names it, its players and the way in", "[web]")
   CHECK(has(answer, "<h1>Valley &amp; town</h1>"));
   CHECK(has(answer, "<li>ana</li>"));
   CHECK(has(answer, "href=\"runstone://play.example.org:4747\""));
+  config.public_address = "play.example.org";
+  CHECK(has(get("/", running_server(), config), "href=\"runstone://play.example.org:4747\""));
   CHECK(has(answer, "href=\"status\""));
   CHECK(has(answer, "no client for the browser"));
 }

@@ -77,15 +77,45 @@ TEST_CASE("settings of the gateway come from variables and flags", "[web]") {
   CHECK(flag_name("sockets_per_address") == "--sockets-per-address");
   CHECK(web_settings().variable("idle_s") == "RUNSTONE_WEB_IDLE_S");
   WebConfig config;
-  const auto look_up = [](const std::string& name) -> std::optional<std::string> {
-    if (name == "RUNSTONE_WEB_IDLE_S") return "90";
-    return std::nullopt;
-  };
-  REQUIRE(web_settings().read_environment(config, look_up).has_value());
+  // The others are those of the server.
+  REQUIRE(web_settings()
+              .read_environment(config, {{"RUNSTONE_WEB_IDLE_S", "90"},
+                                         {"RUNSTONE_IDLE_S", "x"},
+                                         {"RUNSTONE_IDEL_S", "x"}})
+              .has_value());
   CHECK(config.idle_s == 90);
   CHECK_FALSE(web_settings().set(config, "idle_s", "9 0").has_value());
   CHECK_FALSE(web_settings().set(config, "no_such_setting", "x").has_value());
   REQUIRE(web_settings().set(config, "i_know", "true").has_value());
   CHECK(config.i_know);
   for (const SettingField& field : web_settings().fields()) CHECK_FALSE(field.help.empty());
+}
+
+TEST_CASE("a variable of the gateway with a typing mistake is refused", "[web]") {
+  WebConfig config;
+  const auto read = web_settings().read_environment(config, {{"RUNSTONE_WEB_TITEL", "x"}});
+  REQUIRE_FALSE(read.has_value());
+  CHECK(read.error() ==
+        "RUNSTONE_WEB_TITEL: no setting has this variable of the environment; did you mean "
+        "RUNSTONE_WEB_TITLE?");
+}
+
+TEST_CASE("the public address is that of a server, and the world a place", "[web]") {
+  WebConfig config;
+  const auto address = web_settings().set(config, "public_address", "https://play.example.org/");
+  REQUIRE_FALSE(address.has_value());
+  CHECK(address.error().find("; write play.example.org") != std::string::npos);
+  const auto world = web_settings().set(config, "world", "postgre://ana:secret@h/d");
+  REQUIRE_FALSE(world.has_value());
+  CHECK(world.error().find("secret") == std::string::npos);
+  for (const char* wrong : {"public_address = \"https://h/\"", "world = \"mysql://h/d\""}) {
+    CAPTURE(wrong);
+    const std::string toml = std::string("[server.a]\ngateway_socket = \"a\"\n") + wrong;
+    CHECK_FALSE(read_web_toml(config, toml, "web.toml").has_value());
+  }
+  CHECK(config == WebConfig());
+  CHECK(web_settings().set(config, "public_address", "play.example.org").has_value());
+  CHECK(web_settings().set(config, "public_address", "").has_value());
+  CHECK(web_settings().set(config, "world", "postgresql://h/d").has_value());
+  CHECK(web_settings().set(config, "world", "valley").has_value());
 }
