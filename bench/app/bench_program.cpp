@@ -2,9 +2,9 @@
 
 #include <fmt/ostream.h>
 
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "bench/app/program_options.hpp"
 #include "bench/client/client_bench.hpp"
@@ -25,6 +25,7 @@
 #include "bench/view/view_bench.hpp"
 #include "bench/wire/bytes_bench.hpp"
 #include "bench/wire/bytes_to_quads.hpp"
+#include "common/os/output_file.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -33,12 +34,11 @@ namespace {
 bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write,
                 std::ostream& err) {
   if (file.empty()) return true;
-  std::ofstream out(file);
+  std::ostringstream out;
   write(out);
-  out.flush();
-  if (out) return true;
-  fmt::print(err, "runstone-bench: cannot write {}\n", file);
-  return false;
+  const auto written = write_output_file(file, out.str());
+  if (!written) fmt::print(err, "runstone-bench: {}\n", written.error());
+  return written.has_value();
 }
 
 /// Prints a result and writes its CSV (if it has one) and its JSON to the files that the options

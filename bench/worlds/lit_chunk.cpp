@@ -131,7 +131,7 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   if (!map) return failure(map.error());
   LuantiNodes nodes;
   std::optional<std::string> damaged;
-  const auto trouble = map->each_row([&](std::int64_t pos, ByteView data) {
+  const auto read_all = map->each_row([&](std::int64_t pos, ByteView data) {
     const auto place = place_of(luanti_block_coord(pos), box);
     if (!place || damaged) return;
     if (const auto read = decode_luanti_row(data, nodes); !read) {
@@ -147,7 +147,7 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
       }
     }
   });
-  if (trouble) return failure(*trouble);
+  if (!read_all) return failure(read_all.error());
   if (damaged) return failure(*damaged);
   return out;
 }

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -27,6 +26,7 @@
 #include "client/display/draw_program.hpp"
 #include "client/report/exit_code.hpp"
 #include "client/settings/settings_file.hpp"
+#include "common/os/program.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
@@ -80,9 +80,6 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
     script = std::move(*parsed);
   }
   if (options.list_materials) return list_materials(options, stop);
-  // A write to the connection of a lost display must fail, so that Xlib notices the loss. The
-  // signal would end the process.
-  std::signal(SIGPIPE, SIG_IGN);
   if (options.has_window() && !script) return run_in_window(std::move(options), stop);
   if (!options.local_world.empty()) use_kept_key({}, options);
   std::unique_ptr<LocalServer> local;
@@ -106,9 +103,7 @@ int key_program(int argc, const char* const* argv) {
   return runstone::kExitNoStart;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int client_program(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "key") return key_program(argc - 1, argv + 1);
   auto parsed = runstone::parse_options(argc, argv);
   if (!parsed.options) return parsed.exit_code;
@@ -121,12 +116,14 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("client"));
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
   const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();
-  int code = runstone::kExitNoStart;
-  try {
-    code = run(std::move(*parsed.options), stop);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "runstone-client: %s\n", error.what());
-  }
+  const int code = run(std::move(*parsed.options), stop);
   spdlog::shutdown();
   return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runstone::run_program("runstone-client", runstone::kExitNoStart,
+                               [&] { return client_program(argc, argv); });
 }

@@ -83,15 +83,17 @@ class DrawService {
         world_->draw(camera_of(picture.camera), picture.size.width, picture.size.height);
     if (!write_png(picture.file, screen_.read_image())) {
       code_ = kExitFailed;
-      send(PictureUnwritten{picture.file});
-      return {};
+      return answer(PictureUnwritten{picture.file});
     }
     const auto took = static_cast<std::uint64_t>(steady_now_us() - start);
-    send(PictureDrawn{stats.quads_drawn, stats.chunks_drawn, took, picture.file});
-    return {};
+    return answer(PictureDrawn{stats.quads_drawn, stats.chunks_drawn, took, picture.file});
   }
   Result<void> take_one(const DrawEnd&) { return {}; }
 
+  Result<void> answer(const DrawAnswer& answer) {
+    if (send(answer)) return {};
+    return fail(ErrorCode::io_failed, "draw order: nobody reads the answers");
+  }
   int refuse(const std::string& why) {
     send(DrawFailed{why});
     return kExitNoStart;

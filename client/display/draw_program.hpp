@@ -13,13 +13,13 @@
 namespace runstone {
 
 /// Handles the orders of the descriptor `orders` until the last one, and answers on the descriptor
-/// `answers`. `workers` is the number of mesh threads. If the reader of the answers closes its end,
-/// SIGPIPE ends the process. Returns an exit code:
+/// `answers`. `workers` is the number of mesh threads. It ends if the reader of the answers closes
+/// its end. Returns an exit code:
 ///   kExitOk       all pictures were written
 ///   kExitFailed   a picture could not be written; its answer named it, and later orders were
 ///                 handled
-///   kExitNoStart  OpenGL is missing or failed, or an order is wrong; the last answer gives the
-///                 reason
+///   kExitNoStart  OpenGL is missing or failed, or an order is wrong, and the last answer gives the
+///                 reason; or nobody reads the answers
 int draw_program(int orders, int answers, unsigned workers,
                  const std::function<std::unique_ptr<Screen>()>& make_screen);
 

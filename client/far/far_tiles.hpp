@@ -35,7 +35,8 @@ class FarTiles {
   void set_view(const View& view, std::int32_t edge);
   void clear();
   /// Begins a new connection. The tiles stay. Those whose version `trusts` accepts can be claimed,
-  /// if the server's `rules` of tiles are not 0 and the same as before. Cost: O(tiles).
+  /// if the server's `rules` of tiles are not 0 and equal those of the last connection. Cost:
+  /// O(tiles).
   void reopen(std::uint32_t rules, const std::function<bool(const Version&)>& trusts);
 
   /// Takes a tile. Returns false and ignores it if the view does not have it or its extent is
@@ -61,8 +62,8 @@ class FarTiles {
   /// Returns true if take_for_cache() has tiles to return. Cost: O(tiles).
   bool has_for_cache() const;
   /// Returns the keys of tiles of the view that a cache may have, ascending: those that are not
-  /// held, and not below a held tile that is empty. Levels whose tiles are the same as in the call
-  /// before, on the same connection, are left out. It is empty if the server takes no claims of
+  /// held, and not below a held tile that is empty. Levels whose tiles have not changed since the
+  /// last call on this connection are left out. It is empty if the server takes no claims of
   /// tiles. Cost: O(tiles of these levels * log tiles).
   std::vector<ChunkKey> take_not_held();
 

@@ -4,7 +4,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <exception>
 
 #include "client/fleet/behaviour_fleet.hpp"
 #include "client/fleet/play_fleet.hpp"
@@ -12,6 +11,7 @@
 #include "client/report/exit_code.hpp"
 #include "client/report/report.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/program.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
@@ -54,20 +54,20 @@ int run(const runstone::BotOptions& options, const volatile std::sig_atomic_t& s
   return finish(report, options, code);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int bot_program(int argc, char** argv) {
   const auto parsed = runstone::parse_bot_options(argc, argv);
   if (!parsed.options) return parsed.exit_code;
   spdlog::set_default_logger(spdlog::stderr_logger_mt("bot"));  // standard output is for the table
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
   const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();
-  int code = runstone::kExitNoStart;
-  try {
-    code = run(*parsed.options, stop);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "runstone-bot: %s\n", error.what());
-  }
+  const int code = run(*parsed.options, stop);
   spdlog::shutdown();
   return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runstone::run_program("runstone-bot", runstone::kExitNoStart,
+                               [&] { return bot_program(argc, argv); });
 }

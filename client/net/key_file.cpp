@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "common/core/hex.hpp"
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 namespace {
@@ -120,12 +121,10 @@ std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
 
 void save_pinned_servers(const std::string& key_file, const std::map<WorldId, PublicKey>& pinned) {
   const std::string file = key_file + kPinsSuffix;
-  // A new file is renamed into place, so that after a crash the old list or the new one is there.
-  const std::string fresh = file + ".new";
-  std::ofstream out(fresh, std::ios::trunc);
-  for (const auto& [world, key] : pinned) out << to_hex(world) << ' ' << to_hex(key) << '\n';
-  out.close();
-  if (!out || ::rename(fresh.c_str(), file.c_str()) != 0) throw_error(file, "cannot be written");
+  std::string text;
+  for (const auto& [world, key] : pinned) text += to_hex(world) + ' ' + to_hex(key) + '\n';
+  const auto written = write_private_file(file, text);
+  if (!written) throw std::runtime_error(written.error());
 }
 
 }  // namespace runstone

@@ -18,8 +18,8 @@ class DisplayPace {
 
   /// The time between two frames in which nothing has moved.
   static constexpr TimeUs kStillFrameUs = 1'000'000;
-  /// The same while waves or the ghosts of a preview are in sight. They move slowly, so that few
-  /// frames suffice.
+  /// The time between two frames while only waves or the ghosts of a preview move. They move slowly,
+  /// so that few frames suffice.
   static constexpr TimeUs kAnimatedFrameUs = 200'000;
   /// The least time between two frames of a window without focus.
   static constexpr TimeUs kBackgroundFrameUs = 100'000;

@@ -20,13 +20,14 @@ enum class ChunkState : std::uint8_t {
   /// Commits that continue its version are applied. A commit that does not follow waits in the
   /// inbox, and no snapshot is requested: the answer closes the gap.
   expected,
-  /// As expected, but a snapshot was requested. Nothing but a snapshot is applied.
+  /// The server has not answered, and a snapshot was requested. A copy from a cache or an earlier
+  /// connection may be shown. Nothing but a snapshot is applied.
   requested,
   /// The server has vouched for the confirmed chunk. Commits are applied to it, and a gap makes it
   /// request a snapshot.
   current,
-  /// As current, but edits got lost or the digest differs, and a snapshot was requested. Nothing
-  /// but a snapshot is applied.
+  /// The server has vouched for the confirmed chunk, but edits got lost or the digest differs, and a
+  /// snapshot was requested. Nothing but a snapshot is applied.
   repairing,
   /// The server cannot send the chunk. Nothing is held, shown or held back.
   unavailable,

@@ -5,7 +5,7 @@
 //   add --> pending --confirm--> confirmed --retire--> (removed, durable)
 //                 |   --reject----> (removed, rejected)
 //                 |   --reject "already resolved"--> unseen --retire--> (removed, unseen)
-//                 |   --resume, at most the server's mark--> asking --> as pending
+//                 |   --resume, at most the server's mark--> asking --> the transitions of pending
 //   resume, above the server's mark: every state --> pending, and the edit is offered again
 //
 // An edit may be offered again at any time: its operation id makes sure that it is applied once.
@@ -39,7 +39,7 @@ enum class LocalEditState : std::uint8_t {
   unseen,
 };
 
-/// As the action of a new edit: the edit is the first one of an action.
+/// The value of `action` for the first edit of a new action.
 inline constexpr ClientSequence kBeginsAction = UINT64_MAX;
 
 struct LocalEdit {

@@ -51,7 +51,7 @@ class ReplicaChunks {
   /// Returns the memory of all chunks.
   std::size_t bytes() const { return bytes_; }
 
-  /// Cost: O(1), as the counts below.
+  /// Return numbers of chunks. Cost: O(1).
   std::size_t count(ChunkState state) const { return counts_[static_cast<std::size_t>(state)]; }
   std::size_t vouched_count() const {
     return count(ChunkState::current) + count(ChunkState::repairing);

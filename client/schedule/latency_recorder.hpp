@@ -88,7 +88,8 @@ class LatencyRecorder {
   /// Records that a local edit was submitted. Call it before take() gets the changes that contain
   /// the edit.
   void submitted(ClientSequence seq, TimeUs scheduled_us) { local_[seq] = scheduled_us; }
-  /// Records that a local edit was due and submit() failed. The edit counts as infinitely late.
+  /// Records that a local edit was due and the session did not accept it. The edit counts as
+  /// infinitely late.
   void not_submitted();
   void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
 

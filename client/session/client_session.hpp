@@ -151,7 +151,7 @@ class ClientSession {
   /// Returns the world as its server describes it now, or nullopt unless open.
   std::optional<CachedWorld> cached_world() const;
   void set_pose(const Pose& pose) { connection_.set_pose(pose); }
-  /// See ServerConnection.
+  /// Sets the password, which is sent from the next connection on.
   void set_password(std::shared_ptr<PasswordKeys> password) {
     connection_.set_password(std::move(password));
   }
@@ -160,9 +160,9 @@ class ClientSession {
   SessionState state() const { return connection_.state(); }
   bool is_open() const { return connection_.is_open(); }
   const std::optional<SessionEnd>& end() const { return connection_.end(); }
-  /// As ServerConnection::welcome().
+  /// Returns the welcome of the current or last connection, or nullopt before the first.
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
-  /// As ServerConnection::servers().
+  /// Returns the newest list of the servers of the world.
   const Servers& servers() const { return connection_.servers(); }
   std::uint64_t servers_number() const { return connection_.servers_number(); }
   AuthorId author() const { return connection_.author(); }

@@ -1,5 +1,5 @@
 // EditAllowance: what is left of the player's edit budget, as far as this client knows. It predicts
-// the server's EditLedger, so that the client does not show edits that the server will reject. The
+// the Quotas of the server, so that the client does not show edits that the server will reject. The
 // server may reject an edit nevertheless: other sessions of the same key use the same budget, and
 // all players of an address share another one.
 // Thread: one. Times are arguments (microseconds of the client's steady clock).

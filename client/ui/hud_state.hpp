@@ -36,7 +36,7 @@ struct NamePlate {
   double alpha = 1;     // 0 .. 1
 };
 
-/// The state of the timeline. Its marks are filled only while Hud::shows_timeline().
+/// The state of the timeline. Its marks are filled only while the timeline is shown.
 struct TimelineState {
   Sequence newest = 0;  // of the live world, at most kSequenceShownMax
   Sequence shown = 0;   // equal to `newest` in the live world

@@ -44,11 +44,11 @@ struct Unexpected {
   E error;
 };
 
-/// Makes the error that a function returns: `return failure(opened.error());`. Its type is that of
-/// the argument, or std::string, a line of text, for everything that converts to one.
+/// Makes the error that a function returns: `return failure(opened.error());`. Its type is that of the
+/// argument, or std::string, a line of text, for everything that converts to one.
 template <class E>
-requires(!std::is_convertible_v<E, std::string>)
-    Unexpected<std::remove_cvref_t<E>> failure(E&& error) {
+  requires(!std::is_convertible_v<E, std::string>)
+Unexpected<std::remove_cvref_t<E>> failure(E&& error) {
   return {std::forward<E>(error)};
 }
 inline Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
@@ -63,9 +63,8 @@ class [[nodiscard]] Result {
  public:
   /// Both constructors are implicit, so that a function can return a value or failure(...).
   template <class U = T>
-  requires std::is_convertible_v<U, T> &&
-      (!std::is_same_v<std::remove_cvref_t<U>, Result>)Result(U&& value)
-      : state_(std::in_place_index<0>, std::forward<U>(value)) {}
+    requires std::is_convertible_v<U, T> && (!std::is_same_v<std::remove_cvref_t<U>, Result>)
+  Result(U&& value) : state_(std::in_place_index<0>, std::forward<U>(value)) {}
   Result(Unexpected<E> error) : state_(std::in_place_index<1>, std::move(error.error)) {}
 
   bool has_value() const { return state_.index() == 0; }

@@ -8,11 +8,9 @@
 namespace runstone {
 namespace {
 
-using Written = Result<void, std::string>;
-
 constexpr std::string_view kDatabaseBegins{"SQLite format 3\0", 16};
-constexpr std::array<std::string_view, 4> kKeptNames = {".sqlite", ".sqlite-wal", ".sqlite-shm",
-                                                        ".key"};
+constexpr std::array<std::string_view, 7> kKeptNames = {
+    ".sqlite", ".sqlite-wal", ".sqlite-shm", ".sqlite-journal", ".durable", ".lock", ".key"};
 
 bool is_database(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -22,39 +20,55 @@ bool is_database(const std::string& file) {
          std::string_view(begin.data(), begin.size()) == kDatabaseBegins;
 }
 
+/// Returns true for what cannot be replaced: a device, a pipe, a descriptor of this process.
+bool is_written_in_place(const std::string& file) {
+  if (file.starts_with("/dev/") || file.starts_with("/proc/")) return true;
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+std::string with_name(const std::string& file, const std::string& why) {
+  return file + ": cannot be written: " + why;
+}
+
 }  // namespace
 
 std::string output_refusal(const std::string& file) {
+  const std::string target = without_links(file);
   for (const std::string_view name : kKeptNames) {
-    if (file.ends_with(name)) {
+    if (target.ends_with(name)) {
       return "is not overwritten: files called *" + std::string(name) + " hold a world or a key";
     }
   }
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) return "is a folder";
-  if (is_database(file)) return "is not overwritten: it is a database";
+  if (std::filesystem::is_directory(target, ignored)) return "is a folder";
+  // Reading a pipe could wait for ever.
+  if (std::filesystem::is_regular_file(target, ignored) && is_database(target))
+    return "is not overwritten: it is a database";
   return "";
 }
 
-Written write_output_file(const std::string& file, std::string_view bytes) {
-  const auto fail = [&](const std::string& why) { return Written(failure(file + ": " + why)); };
-  if (const std::string refusal = output_refusal(file); !refusal.empty()) return fail(refusal);
-  // A device or a pipe is written in place.
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  const bool in_place =
-      std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  const std::string fresh = in_place ? file : file + ".new";
-  {
-    std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) return fail("cannot be written");
-  }
-  if (in_place) return {};
-  std::filesystem::rename(fresh, file, error);
-  if (error) return fail("cannot be written: " + error.message());
+Result<FileWriter, std::string> open_output_file(const std::string& file, mode_t mode) {
+  if (const std::string refusal = output_refusal(file); !refusal.empty())
+    return failure(file + ": " + refusal);
+  auto opened =
+      is_written_in_place(file) ? FileWriter::in_place(file) : FileWriter::replace(file, mode);
+  if (!opened) return failure(with_name(file, opened.error()));
+  return opened;
+}
+
+Result<void, std::string> write_output_file(const std::string& file, std::string_view bytes) {
+  auto out = open_output_file(file);
+  if (!out) return failure(out.error());
+  out->write(bytes);
+  if (const auto done = out->finish(); !done) return failure(with_name(file, done.error()));
   return {};
+}
+
+Result<void, std::string> empty_output_file(const std::string& file) {
+  if (is_written_in_place(file)) return {};
+  return write_output_file(file, "");
 }
 
 }  // namespace runstone

@@ -1,6 +1,5 @@
 #include "common/os/private_file.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,28 +10,12 @@
 #include <fstream>
 #include <system_error>
 
+#include "common/os/file_writer.hpp"
+
 namespace runstone {
 namespace {
 
 using Written = Result<void, std::string>;
-
-bool write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
-}
-
-/// Puts the name of a renamed file on disk. A file system that cannot is no error.
-void sync_folder(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  static_cast<void>(::fsync(descriptor));
-  ::close(descriptor);
-}
 
 }  // namespace
 
@@ -43,25 +26,15 @@ bool make_private_folder(const std::string& folder) {
 }
 
 Written write_private_file(const std::string& file, std::string_view bytes) {
-  const auto fail = [&file](int error) {
-    return Written(failure(file + ": cannot be written: " + std::strerror(error)));
+  const auto fail = [&file](const std::string& why) {
+    return Written(failure(file + ": cannot be written: " + why));
   };
   const std::string folder = std::filesystem::absolute(file).parent_path().string();
-  if (!make_private_folder(folder)) return fail(errno);
-  const std::string fresh = file + ".new";
-  ::unlink(fresh.c_str());  // of a crash; it may have another mode
-  const int descriptor = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0) return fail(errno);
-  errno = 0;
-  const bool is_written = write_all(descriptor, bytes) && ::fsync(descriptor) == 0;
-  const int error = errno;
-  const bool is_closed = ::close(descriptor) == 0;
-  if (!is_written || !is_closed || ::rename(fresh.c_str(), file.c_str()) != 0) {
-    const int why = is_written ? errno : error;
-    ::unlink(fresh.c_str());
-    return fail(why);
-  }
-  sync_folder(folder);
+  if (!make_private_folder(folder)) return fail(std::strerror(errno));
+  auto out = FileWriter::replace(file, 0600);
+  if (!out) return fail(out.error());
+  out->write(bytes);
+  if (const auto done = out->finish(); !done) return fail(done.error());
   return {};
 }
 

@@ -8,7 +8,8 @@
 
 namespace runstone {
 
-/// Replaces `file` by one with these bytes, mode 0600, and makes the folders above it, mode 0700.
+/// Replaces `file` by one with these bytes, mode 0600, and makes the folders above it, mode 0700. If
+/// `file` is a symbolic link, the file to which it leads is replaced, and the link stays.
 /// After a crash the old file or the new one is there, complete. It is on disk on return. Fails
 /// with a line that begins with the name of the file. Waits for the disk.
 Result<void, std::string> write_private_file(const std::string& file, std::string_view bytes);

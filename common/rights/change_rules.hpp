@@ -4,7 +4,7 @@
 //     `administer`.
 //   - A player gives only what lies within the player's own rights, and gives roles and
 //     restrictions to, and takes them from, only players who have fewer rights. Administrators act
-//     on everybody. No player acts on itself.
+//     on everybody. No player acts on itself, and a banned player makes no change.
 //   - The last administrator stays: a change after which no key that is not banned would have the
 //     right `administer` is refused, whoever makes it. If the default role has this right, every
 //     key has it.

@@ -91,16 +91,36 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
   return "this command needs the right " + names + "; your role is " + state.role_of(key).name;
 }
 
-void CommandServices::tick() {
+void CommandServices::tick(const Clocks& now) {
   for (Waiting& each : std::exchange(waiting, {})) {
-    if (world.order().durable() >= each.needed) {
+    const Order& order = world.order();
+    if (order.durable() >= each.needed) {
       each.begin();
-    } else if (!world.order().accepts_edits()) {
+    } else if (each.is_work ? !order.accepts_edits()
+                            : order.ownership().is(OwnershipState::log_lost)) {
       each.refuse();
     } else {
+      const bool is_late = order.is_disk_full() || now.steady_us >= each.report_us;
+      if (is_late && each.report) std::exchange(each.report, {})();
       waiting.push_back(std::move(each));
     }
   }
+}
+
+void CommandCall::answer_when_durable(Sequence record, const std::string& text) const {
+  services.waiting.push_back(
+      {record, [call = *this, text] { call.answer(text); },
+       [call = *this, text] {
+         call.refuse(text +
+                     "; in force until the server stops, but NOT on disk: the log cannot be "
+                     "written any more");
+       },
+       [call = *this, text] {
+         const std::string why =
+             call.world().order().is_disk_full() ? ": the world's disk is full" : "";
+         call.reply(CommandAnswer::unsaved(text + "; in force, not on disk yet" + why));
+       },
+       now.steady_us + kAnswerUnsavedUs, false});
 }
 
 void CommandCall::with_players(const std::vector<std::string>& words,
@@ -121,7 +141,7 @@ void CommandCall::change_rights(const RightsChange& change, const std::string& t
   std::string line = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world().session_count();
   if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
-  answer(line);
+  answer_when_durable(*seq, line);
 }
 
 }  // namespace runstone

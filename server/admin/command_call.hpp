@@ -46,17 +46,27 @@ struct CommandServices {
   /// Returns true if the server's settings name the key as an operator's.
   const std::function<bool(const PublicKey&)> is_operator;
 
-  /// A command that begins when the log is on disk up to a sequence. `refuse` answers it if the log
-  /// cannot be written any more.
+  /// A command that goes on when the log is on disk up to a sequence.
   struct Waiting {
     Sequence needed = 0;
-    std::function<void()> begin, refuse;
+    std::function<void()> begin;
+    /// Is called instead of `begin` if the log cannot be written any more and, for work, if the
+    /// server orders no edits.
+    std::function<void()> refuse;
+    /// Is called once if the disk is full or this time of the steady clock has passed. May be empty.
+    std::function<void()> report = {};
+    TimeUs report_us = 0;
+    bool is_work = true;  // otherwise an answer to what is done
   };
   std::vector<Waiting> waiting = {};
 
-  /// Begins the work that waited for the disk. Call it when the log became durable or failed.
-  void tick();
+  /// Lets the commands go on that wait for the disk. Call it on every tick, and when the log became
+  /// durable or failed.
+  void tick(const Clocks& now);
 };
+
+/// The time after which a command whose record is not on disk is answered that it is in force.
+inline constexpr TimeUs kAnswerUnsavedUs = 1'000'000;
 
 struct CommandCall {
   CommandServices& services;  // must outlive the call
@@ -86,8 +96,11 @@ struct CommandCall {
   /// or refuses the command if a word means nobody or several players.
   void with_players(const std::vector<std::string>& words,
                     std::function<void(const KnownPlayers&, const Keys&)> go_on) const;
-  /// Orders a change of rights, if the caller may make it. Answers with "text (record N)" and the
-  /// number of sessions that it ended, or with why it was refused.
+  /// Answers a command whose record is ordered, and in force, when it is on disk. If that takes
+  /// kAnswerUnsavedUs, or the disk is full, an answer that is_unsaved comes before.
+  void answer_when_durable(Sequence record, const std::string& text) const;
+  /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
+  /// (record N)" and the number of sessions that it ended, or with why it was refused.
   void change_rights(const RightsChange& change, const std::string& text) const;
 };
 

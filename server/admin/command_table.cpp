@@ -21,7 +21,7 @@ constexpr const char* kBoxHelp =
 constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME or author #N (several: any of them), "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials";
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;
@@ -166,10 +166,12 @@ void give_command(const CommandCall& call, const std::string& line) {
 }
 
 void give_command(const FollowerCall& call, const std::string& line) {
-  for (const CommandRow& row : command_table()) {
-    if (row.words == line && row.run_at_follower != nullptr) return row.run_at_follower(call);
-  }
-  refuse(call.reply, kGiveThere);
+  const auto words = command_words(line);
+  if (!words) return refuse(call.reply, words.error());
+  const CommandRow* row = find_command(*words);
+  const bool is_alone = row != nullptr && words->size() == naming_words(*row);
+  if (!is_alone || row->run_at_follower == nullptr) return refuse(call.reply, kGiveThere);
+  row->run_at_follower(call);
 }
 
 }  // namespace runstone

@@ -67,8 +67,8 @@ Result<std::string, std::string> completed_line(const std::string& line,
   return command->row->complete(line, command->meaning, read_password);
 }
 
-Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out,
-                                         const ReadPassword& read_password) {
+Result<ControlEnd, std::string> control_server(const ControlRequest& request, std::ostream& out,
+                                               const ReadPassword& read_password) {
   auto completed = completed_line(control_line(with_whole_path(request.words)), read_password);
   if (!completed) return failure(completed.error());
   std::string line = *std::move(completed);
@@ -91,8 +91,9 @@ Result<bool, std::string> control_server(const ControlRequest& request, std::ost
     if (error) break;
     const std::string answer = in.substr(0, bytes - 1);
     in.erase(0, bytes);
-    if (answer == "=ok") return true;
-    if (answer == "=error") return false;
+    if (answer == "=ok") return ControlEnd::done;
+    if (answer == "=error") return ControlEnd::refused;
+    if (answer == "=unsaved") return ControlEnd::unsaved;
     out << (answer.starts_with('|') ? answer.substr(1) : answer) << std::endl;
   }
   return failure(*path + ": the server ended before its answer was complete");

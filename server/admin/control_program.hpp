@@ -27,10 +27,18 @@ Result<std::string, std::string> read_new_password();
 Result<std::string, std::string> completed_line(const std::string& line,
                                                 const ReadPassword& read_password);
 
-/// Sends the command and prints each line of the answer to `out` as it arrives. Returns true if the
-/// command succeeded. The error is one line: the command has control characters such as a newline,
-/// or no server runs that world. Blocks until the answer is complete.
-Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out,
-                                         const ReadPassword& read_password = read_new_password);
+/// How a command of `runstone-server control` ended.
+enum class ControlEnd {
+  done,     // it succeeded, and its record is on disk if it made one
+  refused,  // it did not succeed
+  unsaved,  // it is in force, but not on disk yet
+};
+
+/// Sends the command and prints each line of the answer to `out` as it arrives. The error is one line: the command has control characters such as a newline,
+/// or no server runs that world. Blocks until the answer is complete, or is that the command is in
+/// force and not on disk yet.
+Result<ControlEnd, std::string> control_server(
+    const ControlRequest& request, std::ostream& out,
+    const ReadPassword& read_password = read_new_password);
 
 }  // namespace runstone

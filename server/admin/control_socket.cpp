@@ -76,6 +76,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       at = end + 1;
     }
     if (answer.is_done) out += answer.is_ok ? "=ok\n" : "=error\n";
+    if (answer.is_unsaved) out += "=unsaved\n";
     is_done_ = answer.is_done;
     out_.push_back(std::move(out));
     if (out_.size() == 1) write();

@@ -1,7 +1,8 @@
 // ControlSocket: receives commands from other programs of the same user, through a Unix domain
 // socket in the world's folder ("control.sock", mode 0600, removed when the server stops). A
 // command is one line of text. The answer is lines that begin with "|", followed by "=ok" or
-// "=error". A connection may send several commands, one after another. Thread: everything runs on
+// "=error". The line "=unsaved" says that the command is in force and not on disk yet, and that
+// more follows. A connection may send several commands, one after another. Thread: everything runs on
 // one strand of the I/O context. The handler is called there; it may reply from any thread.
 #pragma once
 #include <asio/io_context.hpp>
@@ -29,8 +30,9 @@ class ControlSocket {
   static Result<std::unique_ptr<ControlSocket>, std::string> listen(asio::io_context& io,
                                                                     const std::string& world,
                                                                     Handler handler);
-  /// The same at any path, with the mode 0660 if `is_for_group`. Requires that no program listens
-  /// there, and that a file there is a socket.
+  /// Starts listening at any path, with the mode 0660 if `is_for_group`. Requires that no program
+  /// listens there, and that a file there is a socket. Fails if the path is too long or the folder
+  /// cannot be written.
   static Result<std::unique_ptr<ControlSocket>, std::string> listen_at(asio::io_context& io,
                                                                        const std::string& path,
                                                                        bool is_for_group,

@@ -47,7 +47,7 @@ void add_materials(const CommandCall& call, const std::string& file) {
         std::vector<MaterialRow> rows;
         for (const MaterialFileRow& each : read) rows.push_back(each.row);
         const auto added = call.world().changes().add_materials(rows, call.now);
-        if (added) return call.answer(added_text(*added, rows));
+        if (added) return call.answer_when_durable(added->seq, added_text(*added, rows));
         TextError wrong{file, 0, "", added.error().what};
         if (const auto row = added.error().row) {
           wrong.line = read[*row].line;

@@ -45,7 +45,8 @@ class KnownPlayers {
 
   /// Returns "ana #3 9M1Q-Z7CR-04KD", as far as name and author number are known.
   std::string text_of(const PublicKey& key) const;
-  /// The same for an author of the log: "#3" if the key is not known, "the server" for author 0.
+  /// Returns name, number and fingerprint of an author of the log: "#3" if the key is not known,
+  /// "the server" for author 0.
   std::string text_of(AuthorId author) const;
 
  private:

@@ -161,10 +161,10 @@ const SettingsTable<ServerConfig>& settings() {
   using C = ServerConfig;
   const auto number = number_setting<C>;
   const auto flag = flag_setting<C>;
-  const auto text = [](const char* name, const char* help, std::string C::*member) {
+  const auto text = [](const char* name, const char* help, std::string C::* member) {
     return text_setting(name, help, member, false);
   };
-  const auto optional = [](const char* name, const char* help, std::string C::*member) {
+  const auto optional = [](const char* name, const char* help, std::string C::* member) {
     return text_setting(name, help, member, true);
   };
   const auto form = [](const char* name, const std::string& help, const FormField& field) {

@@ -56,7 +56,7 @@ class Server {
   bool is_unclaimed() const;
   /// Connects a server that follows to the owner at HOST:PORT, unless it is connected.
   void connect_to(const std::string& owner);
-  /// How a server that follows gets on.
+  /// Returns the state of the connection with the owner, for a server that follows.
   ServerCore::FollowState follow_state() const;
   /// Takes the lease of the world, and makes a server that follows its owner. Players stay. Blocks
   /// on the database. Requires that it follows.

@@ -1,7 +1,8 @@
 // runstone-server: runs a world, imports, compacts, backs up or restores one, or gives a running
 // server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
-// while running, 2 could not start (docs/server-reference.md).
+// while running, 2 could not start, 3 control: the command is in force and not on disk yet
+// (docs/server-reference.md).
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -12,7 +13,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -25,6 +25,7 @@
 
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/program.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
@@ -39,7 +40,7 @@
 namespace runstone {
 namespace {
 
-enum ExitCode { kStopped = 0, kFailed = 1, kCannotStart = 2 };
+enum ExitCode { kStopped = 0, kFailed = 1, kCannotStart = 2, kUnsaved = 3 };
 
 int cannot_start(const std::string& line) {
   std::cerr << "runstone-server: " << line << "\n";
@@ -161,13 +162,19 @@ void log_stop(const StopReport& report, const ServerConfig& config) {
   if (!report.error.empty()) logger("store").error("{}", report.error);
 }
 
+/// Prints a line of a server that runs. Standard output may be gone by now, such as a pipe whose
+/// reader has ended. This does not make the server fail. Returns true if the line is written.
+bool print_line(const std::string& line) {
+  std::cout << line << "\n";
+  const auto written = flush_standard_output();
+  if (!written) logger("app").warn("{}", written.error());
+  return written.has_value();
+}
+
 /// Prints the link for the first administrator, but not into a journal, which others may read.
 void welcome_administrator(Server& server) {
-  if (!is_journal(STDOUT_FILENO)) {
-    std::cout << make_first_invite(server) << std::endl;
-  } else {
+  if (is_journal(STDOUT_FILENO) || !print_line(make_first_invite(server)))
     logger("app").info("this world has no administrator: control invite role administrator");
-  }
 }
 
 int run(const ServerOptions& options) {
@@ -191,7 +198,7 @@ int run(const ServerOptions& options) {
   }
   start_logging(config->log_level, config->log_format);
   if (!options.port_file.empty()) {  // before the world is opened
-    if (const auto written = write_output_file(options.port_file, ""); !written) {
+    if (const auto written = empty_output_file(options.port_file); !written) {
       return cannot_start(written.error());
     }
   }
@@ -267,8 +274,8 @@ int run(const ServerOptions& options) {
   const OwnershipState part = running->ownership();
   const StopReport report = running->stop();
   if (!owns(part)) {
-    std::cout << (has_failed(part) ? "stopped, because the server could not go on: see the log\n"
-                                   : "stopped, and another server owns the world\n");
+    print_line(has_failed(part) ? "stopped, because the server could not go on: see the log"
+                                : "stopped, and another server owns the world");
     return has_failed(part) ? kFailed : kStopped;
   }
   log_stop(report, *config);
@@ -278,7 +285,7 @@ int run(const ServerOptions& options) {
     is_written = written.has_value();
     if (!is_written) logger("app").error("{}", written.error());
   }
-  std::cout << stop_line(report) << " dense expansions: " << dense_expansions() << "\n";
+  print_line(stop_line(report) + " dense expansions: " + std::to_string(dense_expansions()));
   return report.state.is_durable() && report.error.empty() && is_written ? kStopped : kFailed;
 }
 
@@ -305,7 +312,7 @@ int server_program(int argc, char** argv) {
   if (options->control) {
     const auto done = control_server(*options->control, std::cout);
     if (!done) return cannot_start(done.error());
-    return *done ? kStopped : kFailed;
+    return *done == ControlEnd::done ? kStopped : *done == ControlEnd::unsaved ? kUnsaved : kFailed;
   }
   if (!options->import) return run(*options);
   return exit_code_of(import_world(*options->import, std::cout));
@@ -316,11 +323,9 @@ int server_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::set_new_handler(runstone::end_without_memory);
-  try {
+  return runstone::run_program("runstone-server", runstone::kCannotStart, [&] {
     const int code = runstone::server_program(argc, argv);
     spdlog::shutdown();  // writes the queued lines
     return code;
-  } catch (const std::exception& error) {
-    return runstone::cannot_start(error.what());
-  }
+  });
 }

@@ -8,23 +8,23 @@
 namespace runstone {
 namespace {
 
-constexpr std::chrono::milliseconds kPause{250};
+constexpr std::chrono::milliseconds kStartLookPause{250};
 // A server that follows may have edits that the database lacks. So a server that starts waits for a
 // second before it takes a world without an owner. A server that follows takes it earlier, unless it
 // has not noticed yet that the owner is gone.
 constexpr int kLooksWithoutOwner = 4;
 // A start can fail because of something that passes: another server was faster, or the database takes no
-// further connection. So it is tried several times, kPause apart.
+// further connection. So it is tried several times, kStartLookPause apart.
 constexpr int kStartsMax = 20;
 // Between two looks of a server that follows. When a world is handed over to another server, this one
 // connects to the next owner about so much later.
-constexpr std::chrono::milliseconds kLookPause{50};
+constexpr std::chrono::milliseconds kWatchPause{50};
 // An owner that stops lets go of the connection first, and of the lease a moment later. Edits of players
 // wait meanwhile.
-constexpr std::chrono::milliseconds kShortPause{4};
-constexpr int kShortPauses = 500;
-// A server that the owner has chosen, or that has followed an owner that is gone, takes the world over
-// within some 0.1 s.
+constexpr std::chrono::milliseconds kOwnerlessPause{4};
+constexpr int kOwnerlessLooksMax = 500;
+// Other servers leave a free lease alone for so long. A server that the owner has chosen, or that has
+// followed an owner that is gone, takes the lease within some 0.1 s.
 constexpr std::chrono::microseconds kSuccessorTime{kFollowersKeptUs};
 
 }  // namespace
@@ -55,7 +55,7 @@ Result<std::unique_ptr<Server>, std::string> start_as_standby(
     }
     if (reason != told) logger("app").info("STANDBY: waiting, because {}", reason);
     told = reason;
-    if (stops_within(kPause)) return std::unique_ptr<Server>();
+    if (stops_within(kStartLookPause)) return std::unique_ptr<Server>();
   }
 }
 
@@ -68,7 +68,7 @@ TakeoverWatch::TakeoverWatch(const std::string& place, Server& server,
       not_before_(std::chrono::steady_clock::now()) {
   if (handed_over_) {
     not_before_ += kSuccessorTime;
-    short_pauses_ = kShortPauses;
+    ownerless_looks_left_ = kOwnerlessLooksMax;
   }
   thread_ = std::thread([this] { run(); });
 }
@@ -83,26 +83,28 @@ TakeoverWatch::~TakeoverWatch() {
   answer("the server stops", false);
 }
 
+/// Looks every kWatchPause. While there is no owner, or the connection with it is not live, looks every
+/// kOwnerlessPause instead, at most kOwnerlessLooksMax times.
 void TakeoverWatch::run() {
   const auto stops_within = [this](std::chrono::milliseconds pause) {
     std::unique_lock lock(mutex_);
     return wake_.wait_for(lock, pause, [this] { return is_stopping_; });
   };
   while (look()) {
-    auto left = kLookPause;
+    auto left = kWatchPause;
     do {
       const bool is_live = server_.follow_state().is_live;
       if (is_live) {
-        short_pauses_ = kShortPauses;
+        ownerless_looks_left_ = kOwnerlessLooksMax;
         answer("another server owns the world now, and this one follows it", true);
       }
-      if (stops_within(kShortPause)) return;
-      left -= kShortPause;
-      if ((!is_live || ownerless_since_) && short_pauses_ > 0) {
-        --short_pauses_;
+      if (stops_within(kOwnerlessPause)) return;
+      left -= kOwnerlessPause;
+      if ((!is_live || ownerless_since_) && ownerless_looks_left_ > 0) {
+        --ownerless_looks_left_;
         break;
       }
-    } while (left > kShortPause);
+    } while (left > kOwnerlessPause);
   }
 }
 
@@ -123,8 +125,12 @@ bool TakeoverWatch::look() {
     return false;
   }
   const auto owner = lease_.owner();
-  if (!owner) return true;  // the database does not answer
+  if (!owner) {
+    warn(owner.error().message());
+    return true;
+  }
   if (*owner) {
+    told_.clear();
     ownerless_since_.reset();
     not_before_ = {};  // the successor has come
     // When another server has become the owner, the connection may still be with the one before.
@@ -134,7 +140,7 @@ bool TakeoverWatch::look() {
     return true;
   }
   if (leaves_lease()) return true;
-  logger("app").info("STANDBY: nobody owns the world: taking it over");
+  if (told_.empty()) logger("app").info("STANDBY: nobody owns the world: taking it over");
   const auto taken = server_.take_over();
   if (taken) {
     answer("handover: no other server owns the world now, and this one owns it again", false);
@@ -144,8 +150,14 @@ bool TakeoverWatch::look() {
     fail(taken.error().what);
     return false;
   }
-  logger("app").info("STANDBY: not taken over: {}", taken.error().what);
+  warn("the world cannot be taken over: " + taken.error().what);
   return true;
+}
+
+/// Logs why this server can neither follow nor own the world, once for each reason.
+void TakeoverWatch::warn(const std::string& why) {
+  if (why != told_) logger("app").warn("STANDBY: waiting, because {}", why);
+  told_ = why;
 }
 
 void TakeoverWatch::fail(const std::string& why) {

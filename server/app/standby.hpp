@@ -54,6 +54,7 @@ class TakeoverWatch {
   bool leaves_lease();
   void answer(const std::string& outcome, bool is_ok);
   void fail(const std::string& why);
+  void warn(const std::string& why);
 
   LeaseWatch lease_;
   Server& server_;
@@ -65,7 +66,8 @@ class TakeoverWatch {
       ownerless_since_;        // nullopt: there is an owner
   std::int64_t term_ = 0;      // of the lease of the last owner
   bool has_followed_ = false;  // this server was live with that owner
-  int short_pauses_ = 0;       // that are left
+  int ownerless_looks_left_ = 0;
+  std::string told_;  // the reason that warn() has logged last; empty if all is well
   std::mutex mutex_;
   std::condition_variable wake_;
   bool is_stopping_ = false;  // guarded by mutex_

@@ -8,8 +8,8 @@
 
 #include "common/core/hex.hpp"
 #include "common/os/low_priority.hpp"
+#include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
-#include "server/backup/partial_folder.hpp"
 #include "server/backup/world_backup.hpp"
 
 namespace runstone {
@@ -42,15 +42,15 @@ Result<WorldBackup, std::string> copy_folder(const std::string& from, SourceUse 
                                              std::ostream& out) {
   // A target in the world's folder would be lost together with it, and fill the same disk.
   if (is_inside(to, from)) return failure(to + ": lies in " + from);
-  auto partial = PartialFolder::make(to, out);
-  if (!partial) return failure(partial.error());
+  auto folder = NewFolder::make(to, out);
+  if (!folder) return failure(folder.error());
   auto backup = [&] {
     ProgressLine line("pages copied", always_progress);
-    return back_up_world(from, use, partial->path(), now_us, pace,
+    return back_up_world(from, use, folder->path(), now_us, pace,
                          [&](std::uint64_t done, std::uint64_t all) { line.show(done, all); });
   }();
   if (!backup) return backup;
-  if (auto finished = partial->finish(); !finished) return failure(finished.error());
+  if (auto finished = folder->finish("world.sqlite"); !finished) return failure(finished.error());
   return backup;
 }
 

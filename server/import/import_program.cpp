@@ -2,12 +2,12 @@
 
 #include <sodium.h>
 
-#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "common/materials/palette.hpp"
+#include "common/os/new_folder.hpp"
 #include "server/import/import_luanti.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
@@ -97,16 +97,12 @@ void print(const LuantiImportReport& report, const ImportRequest& request,
 }  // namespace
 
 Result<void, std::string> import_world(const ImportRequest& request, std::ostream& out) {
-  namespace fs = std::filesystem;
   if (sodium_init() < 0) return failure("libsodium cannot start");
   if (request.edge != 16 && request.edge != 32 && request.edge != 64 && request.edge != 128) {
     return failure("--edge " + std::to_string(request.edge) +
                    ": chunks have an edge of 16, 32, 64 or 128");
   }
-  std::error_code error;
-  if (fs::exists(request.world, error) && !fs::is_empty(request.world, error)) {
-    return failure(request.world + ": exists and is not empty");
-  }
+  if (const auto free = NewFolder::check(request.world); !free) return failure(free.error());
   LuantiImportSink survey_sink;
   survey_sink.materials = [](const MaterialTable&) {};
   survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
@@ -121,15 +117,12 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
 
   const auto materials = materials_of(request, *survey);
   if (!materials) return failure(materials.error());
-  const std::string unfinished = request.world + ".importing";
-  fs::remove_all(unfinished, error);  // of an interrupted import
-  if (const auto filled = fill(request, *survey, *materials, unfinished); !filled) {
-    fs::remove_all(unfinished, error);
+  auto folder = NewFolder::make(request.world, out);
+  if (!folder) return failure(folder.error());
+  if (const auto filled = fill(request, *survey, *materials, folder->path()); !filled)
     return failure(filled.error());
-  }
-  fs::remove(request.world, error);  // only an empty folder can be here
-  fs::rename(unfinished, request.world, error);
-  if (error) return failure(request.world + ": " + error.message());
+  if (const auto finished = folder->finish("world.sqlite"); !finished)
+    return failure(finished.error());
   print(*survey, request, *materials, out);
   return {};
 }

@@ -17,8 +17,7 @@ struct ImportRequest {
 };
 
 /// Imports a world and prints a short report. The error is one line.
-///   - The world is made in the folder WORLD.importing, which is renamed when it is complete: an
-///     interrupted import leaves no incomplete world.
+///   - The world is made as a NewFolder: an interrupted import leaves no incomplete world.
 ///   - The built-in materials that the world lacks are appended (append_palette()). If they do not
 ///     fit, the import fails and names the option that leaves them out.
 ///   - The source is read twice: a world pins its spawn when it is created, and the spawn is known

@@ -26,7 +26,7 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
   const Sequence at = std::min(world->end, *last);
   const auto copy = [&] {
     ProgressLine line("chunks written", options.common.progress);
-    return copy_world(store, *world->generator, at, options.folder,
+    return copy_world(store, *world->generator, at, options.folder, out,
                       [&](std::uint64_t done, std::uint64_t all) {
                         line.show(done, all);
                         return true;
@@ -37,6 +37,9 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
   row(out, "moment") << "after sequence " << at << '\n';
   row(out, "written") << options.folder << ", " << copy->chunks << " chunks\n";
   row(out, "digest") << to_hex(copy->world_digest) << '\n';
+  row(out, "left out")
+      << "the log, players, names, rights and the server's key: it is a new world. "
+         "To keep them, use `runstone-server backup` or `runstone-server copy`\n";
   const nlohmann::ordered_json json = {{"world_id", to_hex(store.meta().world_id)},
                                        {"seq", at},
                                        {"written", options.folder},

@@ -25,28 +25,17 @@ constexpr mode_t kFileMode = 0600;  // the file has names and keys of players
 
 std::string system_error_text() { return std::generic_category().message(errno); }
 
-/// An open file. The destructor closes it.
+/// A file that is open for reading. The destructor closes it.
 class File {
  public:
-  File(const std::string& name, int flags)
-      : descriptor_(::open(name.c_str(), flags | O_CLOEXEC, kFileMode)) {}
+  explicit File(const std::string& name)
+      : descriptor_(::open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   bool is_open() const { return descriptor_ >= 0; }
-
-  bool write(ByteView bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(done));
-    }
-    return true;
-  }
-  bool sync() const { return ::fsync(descriptor_) == 0; }
 
   /// Reads as an RlogSource does.
   std::optional<std::size_t> read(std::uint64_t position, std::span<std::uint8_t> out) const {
@@ -96,7 +85,7 @@ Result<std::vector<RlogPlayer>, std::string> players_of(WorldReader& store) {
   return players;
 }
 
-Result<RlogExport, std::string> write_rlog(WorldReader& store, const File& out,
+Result<RlogExport, std::string> write_rlog(WorldReader& store, FileWriter& out,
                                            const std::string& file, Sequence at,
                                            RlogOptions options) {
   const auto bad = [&](const RlogError& error) { return failure(file + ": " + error.message()); };
@@ -256,27 +245,18 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& place,
 
 Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
                                             Sequence at, RlogOptions options) {
-  if (const std::string refusal = output_refusal(file); !refusal.empty())
-    return failure(file + ": " + refusal);
-  const std::string unfinished = file + ".exporting";
-  const auto written = [&]() -> Result<RlogExport, std::string> {
-    const File out(unfinished, O_WRONLY | O_CREAT | O_TRUNC);
-    if (!out.is_open()) return failure(file + ": cannot be written: " + system_error_text());
-    auto done = write_rlog(store, out, file, at, options);
-    if (done && !out.sync()) return failure(file + ": cannot be written: " + system_error_text());
-    return done;
-  }();
-  if (!written) {
-    ::unlink(unfinished.c_str());
-  } else if (::rename(unfinished.c_str(), file.c_str()) != 0) {
-    return failure(file + ": cannot be written: " + system_error_text());
-  }
-  return written;
+  auto out = open_output_file(file, kFileMode);
+  if (!out) return failure(out.error());
+  auto done = write_rlog(store, *out, file, at, options);
+  if (!done && out->error().empty()) return done;
+  if (const auto finished = out->finish(); !finished)
+    return failure(file + ": cannot be written: " + finished.error());
+  return done;
 }
 
 Result<RlogImport, std::string> import_rlog(const std::string& place, const std::string& file) {
   if (sodium_init() < 0) return failure("libsodium cannot start");
-  const File in(file, O_RDONLY);
+  const File in(file);
   if (!in.is_open()) return failure(file + ": cannot be read: " + system_error_text());
   auto reader = RlogReader::open([&in](std::uint64_t position, std::span<std::uint8_t> out) {
     return in.read(position, out);

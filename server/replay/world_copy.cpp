@@ -2,13 +2,12 @@
 
 #include <sodium.h>
 
-#include <filesystem>
 #include <memory>
 #include <set>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "common/os/new_folder.hpp"
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
@@ -52,27 +51,18 @@ Result<WorldCopy, std::string> fill(WorldReader& source, WorldAt& world, const s
 }  // namespace
 
 Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator,
-                                          Sequence at, const std::string& folder,
+                                          Sequence at, const std::string& folder, std::ostream& out,
                                           const WorldAt::Progress& progress) {
-  namespace fs = std::filesystem;
   if (sodium_init() < 0) return failure("libsodium cannot start");
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-    return failure(folder + ": exists and is not empty");
+  if (const auto free = NewFolder::check(folder); !free) return failure(free.error());
   auto world = WorldAt::open(source, generator, at);
   if (!world) return failure(world.error().message());
-  auto whole = fs::absolute(folder, error).lexically_normal();
-  if (!whole.has_filename()) whole = whole.parent_path();  // of "valley/"
-  const std::string unfinished = whole.string() + ".unfinished";
-  fs::remove_all(unfinished, error);  // left by an interrupted copy
-  auto copy = fill(source, *world, unfinished, progress);
-  if (!copy) {
-    fs::remove_all(unfinished, error);
-    return copy;
-  }
-  fs::remove(whole, error);  // it is an empty folder or does not exist
-  fs::rename(unfinished, whole, error);
-  if (error) return failure(folder + ": " + error.message());
+  auto made = NewFolder::make(folder, out);
+  if (!made) return failure(made.error());
+  auto copy = fill(source, *world, made->path(), progress);
+  if (!copy) return copy;
+  if (const auto finished = made->finish("world.sqlite"); !finished)
+    return failure(finished.error());
   return copy;
 }
 

@@ -1,6 +1,7 @@
 // WorldCopy: writes the world of a moment as a new world.
 #pragma once
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 
 #include "common/generate/generator.hpp"
@@ -14,13 +15,12 @@ struct WorldCopy {
   Digest world_digest;       // over them
 };
 
-/// Makes a new world in `folder`, which must be empty or must not exist. Generator, materials, edge
+/// Makes a new world in `folder` (NewFolder), which must be empty or must not exist. Generator, materials, edge
 /// and spawn are those of the source. World id and server key are new, and the log is empty. The
 /// base holds the source's base chunks and all edited chunks, as they were at `at`. Memory: one
-/// slice of chunks. Until the copy is complete, the folder's name ends with ".unfinished". The
-/// error is one line.
+/// slice of chunks. The error is one line.
 Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator,
-                                          Sequence at, const std::string& folder,
+                                          Sequence at, const std::string& folder, std::ostream& out,
                                           const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

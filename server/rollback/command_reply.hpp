@@ -17,6 +17,8 @@ struct CommandAnswer {
   bool is_ok = true;  // of the last answer
   /// The last answer to a preview of a rollback, as far as a client shows it.
   std::shared_ptr<const RestorePreview> restore = nullptr;
+  /// An answer that others follow: what the command does is in force, but not on disk yet.
+  bool is_unsaved = false;
 
   /// The last answer, to a command that succeeded or, unless `is_ok`, that did not.
   static CommandAnswer last(std::string text, bool is_ok = true) {
@@ -24,6 +26,9 @@ struct CommandAnswer {
   }
   /// An answer that others follow.
   static CommandAnswer progress(std::string text) { return {std::move(text), false, true}; }
+  static CommandAnswer unsaved(std::string text) {
+    return {std::move(text), false, true, nullptr, true};
+  }
 };
 using CommandReply = std::function<void(const CommandAnswer&)>;
 

@@ -117,7 +117,7 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
     return;
   }
   if (planned_.empty()) return;
-  world.commit(now);  // no version changes from here to order_server_edits()
+  world.commit(now);  // no version changes from here to Changes::order_edits()
   std::vector<EditOffer> offers;
   std::vector<RestoredChunk> slice;
   std::uint64_t voxels = 0;

@@ -40,7 +40,7 @@ class CommandRunner final : private RollbackService::Workers {
   /// every tick, and when the log became durable or failed.
   void tick(const Clocks& now) {
     rollback_.tick(now);
-    services_.tick();
+    services_.tick(now);
   }
   /// Returns false while rollbacks, undos or redos are under way.
   bool is_idle() const { return rollback_.is_idle(); }

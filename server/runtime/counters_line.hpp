@@ -14,6 +14,7 @@ struct RuntimeCounters {
   std::uint64_t snapshots_encoded = 0;
   std::int64_t commit_enqueue_us = 0;  // processor time that queueing commits took
   std::uint64_t memory_bytes = 0;      // of the process
+  std::uint64_t log_lines_dropped = 0;
 };
 
 /// Returns one line of fields. Thread: the world strand.

@@ -38,7 +38,8 @@ class DurableLog {
     /// Reports, at most once, that the log cannot be written any more, or that another program owns
     /// the world.
     std::function<void()> on_failed;
-    /// Reports the same, at once and on any thread.
+    /// Reports, at once and on any thread, that the log cannot be written any more, or that another
+    /// program owns the world.
     std::function<void()> on_failed_in_writer;
   };
 

@@ -312,7 +312,7 @@ void ServerCore::log_counters() {
 
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
-                                memory_bytes};
+                                memory_bytes, dropped_log_lines()};
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
 }
 

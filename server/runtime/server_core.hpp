@@ -68,8 +68,8 @@ class ServerCore final : public NetEvents {
   /// Reads what the store remembers, raises the epoch, replays the log above the checkpoint, and
   /// starts the log writer.
   Result<void, std::string> recover();
-  /// Reads the same, and follows the owner of the world instead. Whoever calls it tells where the
-  /// owner is: connect_to().
+  /// Reads what the store remembers, and follows the owner of the world. Then call connect_to() with
+  /// the address of the owner.
   Result<void, std::string> follow();
   /// Connects to the owner at HOST:PORT, unless there is a connection. Thread: any.
   void connect_to(const std::string& address) { owner_.connect_to(address); }
@@ -88,7 +88,7 @@ class ServerCore final : public NetEvents {
   Result<void, std::string> end_handover();
   /// Returns the part that this server plays in its world. Thread: any.
   OwnershipState ownership() const { return world_->order().ownership().state(); }
-  /// How a server that follows gets on.
+  /// The state of the connection with the owner, for a server that follows.
   struct FollowState {
     bool is_live = false;      // it has reached the owner
     bool hears_owner = false;  // it is connected with an owner that does not stand still
@@ -146,7 +146,7 @@ class ServerCore final : public NetEvents {
  private:
   /// Makes the world of what `store` remembers, and adds the chat to `start`.
   Result<void, std::string> make_world(WorldStart& start);
-  /// Makes what the owner of the world has.
+  /// Makes the log writer and, the first time, the commands.
   void make_log(Store& store, Sequence durable);
   LogWriter::Counters log_counters_now() const;
   /// Reads how far the owner's snapshots reach.
@@ -197,10 +197,10 @@ class ServerCore final : public NetEvents {
   OwnerConnection owner_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
-  asio::steady_timer tile_resends_;   // WorldServer::resend_tiles()
+  asio::steady_timer tile_resends_;   // Ground::resend_tiles()
   bool is_resend_scheduled_ = false;  // used on the world strand
   PeriodicTask ticks_, stalls_, activity_, chat_retention_, checkpoints_;
-  // Written by the world strand. The time is WorldServer::owner_heard_us(), 0 without a connection.
+  // Written by the world strand. The time is Cluster::owner_heard_us(), 0 without a connection.
   std::atomic<bool> is_live_{false};
   std::atomic<TimeUs> owner_heard_us_{0};
   ActivitySample sampled_;  // at the last write_activity(). Used on the world strand

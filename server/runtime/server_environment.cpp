@@ -89,6 +89,10 @@ bool ServerEnvironment::log_has_room(std::size_t records) const {
   return log_ != nullptr && log_->writer().has_room(records);
 }
 
+bool ServerEnvironment::log_has_queue_room(std::size_t records) const {
+  return log_ != nullptr && log_->writer().has_queue_room(records);
+}
+
 std::size_t ServerEnvironment::log_queued_bytes() const {
   return log_ == nullptr ? 0 : log_->writer().queued_bytes();
 }

@@ -74,6 +74,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void read_log(Sequence first) override;
   bool owns_world() const override;
   bool log_has_room(std::size_t records) const override;
+  bool log_has_queue_room(std::size_t records) const override;
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void log_names(std::vector<NameChange> changes) override;

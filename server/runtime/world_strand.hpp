@@ -63,7 +63,8 @@ class WorldStrand {
   }
   /// Waits until `question()`, which returns an optional, returns a value: it runs as for ask(),
   /// and again behind every later task of the strand. Fails if there is no value within `longest`.
-  /// The question does not run any more then. Requires the same as ask().
+  /// The question does not run any more then. Requires that the calling thread does not run the
+  /// I/O context.
   template <class Question>
   AnswerOf<typename std::invoke_result_t<Question&>::value_type> ask_until(
       Question question, std::chrono::milliseconds longest = kAnswerTime) {

@@ -28,7 +28,7 @@ inline constexpr std::uint64_t kNoSettingMax = 1'000'000'000'000'000ULL;
 
 /// A number in min..max. `what` says what is counted.
 template <class Config>
-Setting<Config> number_setting(std::string name, std::uint64_t Config::*member, std::uint64_t min,
+Setting<Config> number_setting(std::string name, std::uint64_t Config::* member, std::uint64_t min,
                                std::uint64_t max, const std::string& what) {
   std::string help = what + ", " + std::to_string(min);
   help += max == kNoSettingMax ? " or more" : ".." + std::to_string(max);
@@ -47,7 +47,7 @@ Setting<Config> number_setting(std::string name, std::uint64_t Config::*member, 
 
 /// A text, which may be empty if it is optional.
 template <class Config>
-Setting<Config> text_setting(std::string name, std::string help, std::string Config::*member,
+Setting<Config> text_setting(std::string name, std::string help, std::string Config::* member,
                              bool is_optional) {
   const auto set = [=](Config& config, const std::string& text) -> Result<void, std::string> {
     if (text.empty() && !is_optional) return failure("must not be empty");
@@ -59,7 +59,7 @@ Setting<Config> text_setting(std::string name, std::string help, std::string Con
 }
 
 template <class Config>
-Setting<Config> flag_setting(std::string name, std::string help, bool Config::*member) {
+Setting<Config> flag_setting(std::string name, std::string help, bool Config::* member) {
   const auto set = [=](Config& config, const std::string& text) -> Result<void, std::string> {
     if (text != "true" && text != "false") return failure("must be true or false: " + help);
     config.*member = text == "true";

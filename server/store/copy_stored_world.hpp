@@ -23,7 +23,7 @@ using CopyProgress = std::function<void(std::uint64_t rows, std::uint64_t all)>;
 /// Fails
 ///   - as open_world() of `from`;
 ///   - as create_world() of `to`. A copy that is interrupted leaves nothing in a database. In a
-///     folder it leaves a file that is no world;
+///     folder it may leave a file;
 ///   - as WorldReader::check() if the original is damaged. The copy then stays, with the same
 ///     damage.
 /// `progress` is called with the rows so far and the number of all. Blocks.

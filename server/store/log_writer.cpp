@@ -27,10 +27,15 @@ LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
 LogWriter::~LogWriter() { stop(); }
 
 bool LogWriter::has_room(std::size_t records) const {
+  if (!has_queue_room(records)) return false;
+  const std::lock_guard guard(mutex_);
+  return space_ == DiskSpace::enough;
+}
+
+bool LogWriter::has_queue_room(std::size_t records) const {
   if (!world_.is_owned()) return false;
   const std::lock_guard guard(mutex_);
-  return !failed_ && !stopping_ && space_ == DiskSpace::enough &&
-         room_taken_ + records <= limits_.queued_records_max;
+  return !failed_ && !stopping_ && room_taken_ + records <= limits_.queued_records_max;
 }
 
 void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {

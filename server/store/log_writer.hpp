@@ -95,8 +95,11 @@ class LogWriter {
   /// changes before it appends. Returns false after a failure, after stop(), and while another
   /// program may own the world.
   bool has_room(std::size_t records) const;
+  /// Returns what has_room() returns, but also true while the disk has no space: the records wait in
+  /// the queue, and are lost if there is none until stop().
+  bool has_queue_room(std::size_t records) const;
   /// Queues one batch. It becomes durable as a whole. It takes room for its records; a batch of
-  /// players only takes room for one record. Requires has_room() for that. A writer that has failed
+  /// players only takes room for one record. Requires has_queue_room() for that. A writer that has failed
   /// or stopped drops the batch.
   void append(std::vector<PlayerRow> players, std::vector<EditRecord> records);
   /// Queues changes of names. Requires has_room() for one record. A writer that has failed or

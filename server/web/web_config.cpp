@@ -13,7 +13,7 @@ constexpr std::size_t kServerNameBytesMax = 32;
 
 /// Makes a setting that is one line of text.
 template <class Config>
-Setting<Config> line_setting(const char* name, const char* help, std::string Config::*member,
+Setting<Config> line_setting(const char* name, const char* help, std::string Config::* member,
                              bool is_optional) {
   Setting<Config> out = text_setting(name, help, member, is_optional);
   // The texts stand on pages and in log lines.

@@ -12,6 +12,7 @@
 
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/program.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_gateway.hpp"
 #include "server/web/web_options.hpp"
@@ -91,7 +92,6 @@ int web_program(int argc, char** argv) {
   sigaddset(&stops, SIGTERM);
   sigaddset(&stops, SIGHUP);
   ::pthread_sigmask(SIG_BLOCK, &stops, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
   const auto gateway = WebGateway::start(*config);
   if (!gateway) return cannot_start(gateway.error());
   const std::uint16_t port = (*gateway)->port();
@@ -117,9 +117,6 @@ int web_program(int argc, char** argv) {
 }  // namespace runstone
 
 int main(int argc, char** argv) {
-  try {
-    return runstone::web_program(argc, argv);
-  } catch (const std::exception& error) {
-    return runstone::cannot_start(error.what());
-  }
+  return runstone::run_program("runstone-web", runstone::kCannotStart,
+                               [&] { return runstone::web_program(argc, argv); });
 }

@@ -1,12 +1,16 @@
-// WorldServer: the world strand: it takes what sessions, workers, the log and other servers say, in
-// order, and passes it to the rooms of the world. Time and bytes are arguments; everything that it
-// wants done is a call of WorldEnvironment. It uses no clock, socket, disk or thread, so a test
-// runs it in virtual time. Call received() for each message that arrived, then commit() once: edits
-// that were queued together become one commit. Call tick() some 20 times a second.
-// Threads: all
-// calls on one strand. WorldEnvironment must not call in; its answers come as later calls. Sessions
-// that are closed in a call are removed at its end, or at the end of the next one if the call went
-// to a room.
+// WorldServer: the entry to the world strand. It passes messages of sessions and answers of workers,
+// of the log and of other servers to the rooms of the world. Time and bytes are arguments, and all
+// effects are calls of WorldEnvironment. It uses no clock, socket, disk or thread, so a test runs it
+// in virtual time.
+//   - Call received() for each message that arrived. has_ready_edits() then tells whether
+//     commit_one() has something to do. CommitScheduler decides when it is called, and edits that
+//     were queued together become one commit. A test may call commit(), which orders all that may be
+//     ordered.
+//   - Call tick() some 20 times a second.
+//   - Sessions that are closed in a call are removed at its end, or at the end of the next one if the
+//     call went to a room.
+// Threads: all calls on one strand. WorldEnvironment must not call in; its answers come as later
+// calls.
 #pragma once
 #include <memory>
 #include <optional>

@@ -45,7 +45,8 @@ void Cluster::owner_disconnected() {
 }
 
 void Cluster::log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
-  if (is_following()) following_.log_read(read, now);
+  // The answer may come when this server has become the owner. It ends the read in any case.
+  following_.log_read(read, now);
 }
 
 void Cluster::checkpoint_moved(Sequence checkpoint) {
@@ -79,7 +80,7 @@ bool Cluster::take_over(const Takeover& start, const Clocks& now) {
 
 void Cluster::forget(const Session& session) {
   followers_.forget_session(session);
-  players_.forget(session);
+  following_.forget(session);
   resumes_.forget(session.id);
   servers_.forget(session.id);
 }

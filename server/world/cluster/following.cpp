@@ -165,7 +165,7 @@ void Following::on_relayed_accept(Session& session, const SessionAccepted& accep
 
 void Following::on_relayed_reject(Session& session, Reject reject) {
   if (!session.is_open()) return;
-  world_.receipts.await(session, reject.seq);
+  world_.receipts.expect_durable(session, reject.seq);
   world_.players.rejected({session.author, session.instance, reject.client_seq});
   world_.receipts.reject(session, std::move(reject));
 }
@@ -270,6 +270,10 @@ void Following::tick(const Clocks& now) {
 
 void Following::join(Session& session, const ClientAuth& auth) {
   if (!world_.players.join(session, auth)) leave_slow();
+}
+
+void Following::forget(const Session& session) {
+  if (!world_.players.forget(session)) leave_slow();
 }
 
 bool Following::on_message(Session& session, const Message& message, const Clocks& now) {

@@ -84,6 +84,8 @@ class Following {
   // Players of this server.
   /// Takes an authenticated player to the owner, now or when there is one.
   void join(Session& session, const ClientAuth& auth);
+  /// Reports the end of a session of a player to the owner, if it knows of the session.
+  void forget(const Session& session);
   /// Handles a message of a player that is for the owner. Returns false if it is for this server.
   bool on_message(Session& session, const Message& message, const Clocks& now);
 

@@ -91,14 +91,15 @@ void PlayersAtOwner::disconnected() {
   forwarded_.clear();
 }
 
-void PlayersAtOwner::forget(const Session& session) {
+bool PlayersAtOwner::forget(const Session& session) {
   joins_.erase(session.id);
   auto edit = forwarded_.lower_bound({session.author, session.instance, 0});
   while (edit != forwarded_.end() && edit->first.author == session.author &&
          edit->first.instance == session.instance)
     edit = forwarded_.erase(edit);
-  if (known_.erase(session.id) == 0 || !link_.is_live()) return;
-  static_cast<void>(link_.send(RelayClose{session.id, 1, ""}));
+  if (known_.erase(session.id) == 0 || !link_.is_live()) return true;
+  constexpr auto kClosing = static_cast<std::uint8_t>(GoodbyeReason::closing);
+  return link_.send(RelayClose{session.id, kClosing, ""});
 }
 
 std::vector<std::pair<Session*, JoinCredentials>> PlayersAtOwner::take_joining() {

@@ -50,8 +50,9 @@ class PlayersAtOwner {
   void rejected(const OperationId& op) { forwarded_.erase(op); }
   /// The connection with the owner has ended.
   void disconnected();
-  /// Tells the owner that a session has ended.
-  void forget(const Session& session);
+  /// Reports the end of a session to the owner, if it knows of the session. Returns false if the
+  /// owner takes nothing.
+  [[nodiscard]] bool forget(const Session& session);
   /// Returns the players who wait for an owner, and forgets them here, because this server has
   /// become the owner.
   std::vector<std::pair<Session*, JoinCredentials>> take_joining();

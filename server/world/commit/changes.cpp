@@ -14,6 +14,19 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
   return {{std::move(what), row}};
 }
 
+/// Returns why a change is not in the log, as a sentence for the one who makes it. Requires that it is
+/// not ordered.
+std::string why_not_ordered(const ServerEditsResult& result) {
+  switch (result.state) {
+    case ServerEditsResult::State::closed:
+      return "the world takes no changes any more";
+    case ServerEditsResult::State::taken:
+      return "the player's client uses sequence numbers of the server: join again";
+    default:
+      return std::string(result.reason) + ": try again later";
+  }
+}
+
 }  // namespace
 
 /// Returns who pays for edits of an author: its key, and the address of its first session. Returns
@@ -37,6 +50,11 @@ bool Changes::has_power(const RightsActor& actor) const {
 
 ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now) {
+  return order(offers, payer, DiskNeed::space, now);
+}
+
+ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId payer,
+                                 DiskNeed need, const Clocks& now) {
   using State = ServerEditsResult::State;
   commits_.commit_all(LargeEdits::paced, now);
   if (!order_.accepts_edits()) return {State::closed};
@@ -49,7 +67,7 @@ ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, Aut
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
-    if (!order_.log_has_room()) {
+    if (need == DiskNeed::space ? !order_.log_has_room() : !order_.log_has_queue_room()) {
       out.reason =
           order_.is_disk_full() ? kDiskIsFull : "the log has no room now (log_queue_records)";
       break;
@@ -81,14 +99,14 @@ Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
   if (author != 0 && !order_.players().key_of(author)) return failure("the player has left");
   // What waits was allowed, and is ordered before the change that may forbid it. A claim does not
   // hurry: players could use it to send large edits faster than others.
-  if (has_power(actor)) commits_.commit_all(LargeEdits::all, now);
+  const bool is_powerful = has_power(actor);
+  if (is_powerful) commits_.commit_all(LargeEdits::all, now);
   const OperationId op = order_.next_own_operation(author);
   const EditOffer offer{op, Cause::rights, now.steady_us, rights_edit(change), 0};
-  const ServerEditsResult ordered = order_edits({offer}, author, now);
+  const ServerEditsResult ordered =
+      order({offer}, author, is_powerful ? DiskNeed::none : DiskNeed::space, now);
   if (ordered.state == ServerEditsResult::State::ordered) return rights_.newest();
-  if (ordered.state == ServerEditsResult::State::closed)
-    return failure("the world takes no changes any more");
-  return failure(std::string(ordered.reason) + ": try again later");
+  return failure(why_not_ordered(ordered));
 }
 
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,
@@ -106,9 +124,7 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   const ServerEditsResult ordered = order_edits({offer}, 0, now);
   if (ordered.state == ServerEditsResult::State::ordered)
     return AddedAt{order_.newest_materials(), first};
-  if (ordered.state == ServerEditsResult::State::busy)
-    return refusal(std::string(ordered.reason) + ": try again later");
-  return refusal("the world takes no changes any more");
+  return refusal(why_not_ordered(ordered));
 }
 
 }  // namespace runstone

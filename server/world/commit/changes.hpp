@@ -37,16 +37,17 @@ class Changes {
         quotas_(quotas),
         commits_(commits) {}
 
-  /// Orders the offers at once and in order, behind all queued edits, as far as the log has room.
-  /// Requires that they pass check_server_edit(), that their client sequences ascend, that they
+  /// Orders the offers at once and in order, as far as the log has room: behind all queued edits
+  /// except large ones that wait for room (LargeEditPace) and the edits behind those. Requires that they pass check_server_edit(), that their client sequences ascend, that they
   /// have one author and instance, and that their cause is not player. Each offer costs its
   /// edit_price(), paid by the key of the author `payer` and the address of the author's first
   /// session. An author without a session pays by the key alone. Nobody pays if `payer` is 0.
   ServerEditsResult order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                 const Clocks& now);
   /// Orders a change of rights as a record of the log, made by the author (0: the console), who
-  /// pays for it as for an edit. Sessions that may not stay are closed. Returns its sequence, or
-  /// why it was refused, as a sentence.
+  /// pays for it as for an edit. It is in force on return. Sessions that may not stay are closed. A
+  /// full disk does not keep those from it who have power over others: a ban must not wait. Returns
+  /// its sequence, or why it was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log: all or none.
@@ -56,6 +57,12 @@ class Changes {
                                                   const Clocks& now);
 
  private:
+  enum class DiskNeed {
+    space,  // nothing is ordered while the disk is full
+    none,   // what is ordered while the disk is full waits in memory
+  };
+  ServerEditsResult order(const std::vector<EditOffer>& offers, AuthorId payer, DiskNeed need,
+                          const Clocks& now);
   std::optional<Payer> payer_of(AuthorId author) const;
   bool has_power(const RightsActor& actor) const;
 

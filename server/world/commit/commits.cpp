@@ -59,7 +59,7 @@ void Commits::drop_edits_for(SessionId session, const OrderedBatch& batch,
 void Commits::send(const OrderedBatch& batch, const Clocks& now) {
   for (const OrderedEdit& edit : batch.commit.edits) {
     if (const Session* author = sessions_.of_client(edit.op.author, edit.op.instance))
-      receipts_.await(*author, order_.head());
+      receipts_.expect_durable(*author, order_.head());
   }
   const auto receivers = receivers_of(batch);
   for (std::size_t i = 0; i < receivers.size(); ++i) {
@@ -88,7 +88,7 @@ void Commits::apply(const std::vector<EditRecord>& records) {
   if (order_.apply_materials(records)) receipts_.send_materials_to_all();
 }
 
-void Commits::publish(const OrderedBatch& batch, const Clocks& now) {
+void Commits::send_batch(const OrderedBatch& batch, const Clocks& now) {
   send(batch, now);
   ground_.edited(batch.all_touched, now);
 }
@@ -98,7 +98,7 @@ bool Commits::commit(LargeEdits large, const Clocks& now) {
   if (!batch) return false;
   apply(batch->records);
   order_.append(*batch);
-  publish(*batch, now);
+  send_batch(*batch, now);
   return true;
 }
 
@@ -111,7 +111,7 @@ void Commits::follow(std::span<const LogPartRecord> records, const Clocks& now) 
     if (epoch > order_.epoch()) begin_epoch(epoch);
     const OrderedBatch batch = order_.authority().follow(same, now);
     apply(batch.records);
-    publish(batch, now);
+    send_batch(batch, now);
     records = records.subspan(same.size());
   }
 }

@@ -50,7 +50,7 @@ class Commits {
   void apply(const std::vector<EditRecord>& records);
   /// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and
   /// for chunks that are not in memory.
-  void publish(const OrderedBatch& batch, const Clocks& now);
+  void send_batch(const OrderedBatch& batch, const Clocks& now);
   void send(const OrderedBatch& batch, const Clocks& now);
   std::vector<std::vector<SessionId>> receivers_of(const OrderedBatch& batch) const;
   void drop_edits_for(SessionId session, const OrderedBatch& batch,

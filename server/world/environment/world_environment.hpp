@@ -114,10 +114,12 @@ class WorldEnvironment {
   virtual bool owns_world() const { return true; }
   /// Returns true if the log queue has room for `records` more. If not, edits are rejected busy.
   virtual bool log_has_room(std::size_t records) const = 0;
+  /// Returns log_has_room(), but also true while the disk has no space: the records wait in memory.
+  virtual bool log_has_queue_room(std::size_t records) const { return log_has_room(records); }
   /// Returns the bytes of memory that the records take that are not durable yet.
   virtual std::size_t log_queued_bytes() const = 0;
   /// Queues records for the log writer, and rows of players to be written with them. There may be
-  /// rows without records. Requires log_has_room(). Answer to records: WorldServer::durable().
+  /// rows without records. Requires log_has_queue_room(). Answer to records: WorldServer::durable().
   virtual void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) = 0;
   /// Queues changes of names for the log writer, ahead of all records that are queued later.
   /// Requires log_has_room(1). Answer: WorldServer::names_durable().
@@ -128,8 +130,9 @@ class WorldEnvironment {
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().
   virtual void load_chunk(const ChunkKey& key) = 0;
   /// Makes a tile on a worker. Called at most once for a tile until it is answered. Answer:
-  /// Tiles::made() or stopped(). Without tiles (WorldConfig::tile_levels_max is
-  /// 0), neither this nor the next five calls are made.
+  /// Tiles::made() or stopped(). Without tiles (WorldConfig::tile_levels_max is 0), this call,
+  /// make_past_tile(), tiles_edited(), newest_tile_edit(), is_tile_current() and save_tiles() are
+  /// not made.
   virtual void make_tile(TileRequest /*request*/) {}
   /// Makes the tile of a request that has `at`, for a session that sees the past. Answer:
   /// Tiles::past_made() or past_stopped().

@@ -217,11 +217,12 @@ void Ground::hurry_loads(const Clocks& now) {
 bool Ground::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldChunks& chunks = base_.order.chunks();
   loads_.ended(key);
+  // A chunk that has arrived ends the count of failures, so the attempts below do not count.
   loads_.forget_failures(key);
   if (chunk.version > chunks.version(key) && !base_.order.owns_world()) {
     // The owner has saved it, and what made this version is still on its way. That may take as long
-    // as the owner does not answer, so these attempts do not count. A server that has lost the
-    // lease may read what the next owner has saved.
+    // as the owner does not answer. A server that has lost the lease may read what the next owner
+    // has saved.
     loads_.load_again(key, OperatorLogLevel::debug, "it is newer than what has arrived", now);
     return false;
   }

@@ -41,7 +41,8 @@ class LoadQueue {
   /// Removes and returns the next key. Returns nullopt if none waits or in_flight_max loads are
   /// under way. Skips the sessions that must wait.
   std::optional<Next> next(const std::set<SessionId>& must_wait = {});
-  /// As next(), for the world only.
+  /// Removes and returns the next key that the world needs. Returns nullopt if none waits or
+  /// in_flight_max loads are under way.
   std::optional<Next> next_for_world();
   /// Queues a key that next() returned before the session's other keys.
   void put_back(SessionId session, const ChunkKey& key) { lanes_[session].push_front(key); }

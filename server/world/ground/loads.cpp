@@ -53,7 +53,8 @@ void Loads::ended(const ChunkKey& key) {
 bool Loads::load_again(const ChunkKey& key, OperatorLogLevel level, const std::string& why,
                        const Clocks& now) {
   auto pause_us = retries_.failed(key, now.steady_us);
-  // The database of several servers may be away for long.
+  // A server that follows never gives up, because the database may be away for long: failed() has
+  // forgotten the chunk, so the second call begins to count again.
   if (!pause_us && base_.order.is_following()) pause_us = retries_.failed(key, now.steady_us);
   if (!pause_us) return false;
   base_.environment.report(level, "chunk=" + text_of(key) + " not read, again in " +

@@ -1,5 +1,5 @@
 // PastTiles: a session that sees the past gets the tiles of that moment. A tile below which nothing
-// was edited since is the same at both times, so it is a present tile, as for the other sessions.
+// was edited since is the same at both times, so the session gets the present tile.
 // Workers make the others, from the chunks as they were and from tiles that did not change. Such a
 // tile is sent to one session, which is no receiver of its changes. It is neither kept nor stored,
 // and has the digest 0, so that no client keeps it either. When the session moves in time or

@@ -70,7 +70,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
     push(std::move(ordered), version, batch);
     batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, subject});
   }
-  publish(batch);
+  publish_touched(batch);
   return batch;
 }
 
@@ -95,7 +95,7 @@ OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clo
     push(std::move(ordered), record.version, batch);
     batch.records.push_back(record);
   }
-  publish(batch);
+  publish_touched(batch);
   return batch;
 }
 
@@ -111,7 +111,7 @@ void Authority::push(OrderedEdit ordered, Version version, OrderedBatch& batch) 
   batch.commit.edits.push_back(std::move(ordered));
 }
 
-void Authority::publish(OrderedBatch& batch) {
+void Authority::publish_touched(OrderedBatch& batch) {
   std::vector<ChunkKey>& all = batch.all_touched;
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());

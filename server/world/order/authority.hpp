@@ -91,7 +91,7 @@ class Authority {
   /// Puts an edit on the stacks of the chunks that it touches, and adds it to the commit.
   void push(OrderedEdit ordered, Version version, OrderedBatch& batch);
   /// Makes all_touched a set, and publishes its chunks.
-  void publish(OrderedBatch& batch);
+  void publish_touched(OrderedBatch& batch);
 
   EditLimits limits_;
   Epoch epoch_, last_epoch_;

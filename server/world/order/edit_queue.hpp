@@ -3,7 +3,7 @@
 // for at most one costly edit of each other client, however many they have sent. The edits of one
 // client keep their order. A large edit of a player also waits until LargeEditPace has room, and
 // those of its client wait behind it.
-// Bounds: the caller's (WorldState::environment.log_has_room(), is_memory_full()), and for large
+// Bounds: the caller's (Order::log_has_room(), Order::is_memory_full()), and for large
 // edits has_room_for().
 // Thread: the world strand.
 #pragma once
@@ -25,7 +25,7 @@ struct EditOffer {
   TimeUs submitted_us = 0;
   EditDescriptor edit;
   Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
-  /// For an edit of a player: the first edit of its action, as EditRequest::action.
+  /// For an edit of a player: the client sequence of the first edit of its action; 0: none.
   ClientSequence action = 0;
   TimeUs arrived_us = 0;  // an edit of a player: when it was accepted, by the server's steady clock
 };
@@ -45,7 +45,8 @@ class EditQueue {
  public:
   /// The work of large edits that may wait; the last one may exceed it.
   static constexpr std::size_t kWaitingWorkMax = 16 * 1024 * 1024;
-  /// The same for authors of whom no edit waits: many waiting edits of others keep nobody out.
+  /// The work of large edits that may wait if no edit of the author waits. It is higher, so that
+  /// many waiting edits of others keep nobody out.
   static constexpr std::size_t kFirstWaitingWorkMax = 4 * kWaitingWorkMax;
 
   explicit EditQueue(std::int32_t chunk_edge) : chunk_edge_(chunk_edge) {}

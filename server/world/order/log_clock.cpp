@@ -28,6 +28,7 @@ void LogClock::advance(const Clocks& now) {
 void LogClock::begin(const Clocks& now) {
   steady_us_ = now.steady_us;
   time_us_ = now.utc_us;
+  ahead_us_ = std::max<TimeUs>(0, last_us_ - time_us_);
   if (last_us_ - time_us_ <= kJumpUs) return;
   warning_ = "the log ends at " + utc_text(last_us_) + ", but the wall clock reads " +
              utc_text(now.utc_us) +
@@ -53,6 +54,7 @@ void LogClock::jump(TimeUs error_us, const Clocks& now) {
                utc_text(time_us_) + " to " + utc_text(now.utc_us);
     if (now.utc_us < last_us_)
       *warning_ += ", but edits keep the time of the newest one until " + utc_text(last_us_);
+    ahead_us_ = std::max<TimeUs>(0, time() - now.utc_us);
     time_us_ = now.utc_us;
     jump_.reset();
   }

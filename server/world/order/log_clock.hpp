@@ -8,10 +8,13 @@
 //     service may set a clock long after the start, and a suspended computer stops its steady
 //     clock.
 //   - The times of edits never decrease. While the last edit of the log is ahead of the log's time,
-//     edits get the time of that edit again. Their order is that of their sequences.
+//     edits get the time of that edit again. Their order is that of their sequences. time(), by
+//     which restrictions end, goes on from there nevertheless: a clock that was ahead once must not
+//     make a mute of five seconds last for years.
 // Each jump makes a warning for the operator, and so does a log that ends ahead of the wall clock.
 // Pure: the times of both clocks are arguments. One thread.
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,8 +38,9 @@ class LogClock {
   TimeUs stamp();
   /// Reports an edit that another server has ordered at this time.
   void follow(TimeUs time_us) { last_us_ = time_us > last_us_ ? time_us : last_us_; }
-  /// Returns the log's time at the last advance(), at least that of the last edit.
-  TimeUs time() const { return last_us_ > time_us_ ? last_us_ : time_us_; }
+  /// Returns the log's time at the last advance(), or a later one if the log ends ahead of the wall
+  /// clock: at least the time of the last edit, and always advancing with the steady clock.
+  TimeUs time() const { return std::max(last_us_, time_us_ + ahead_us_); }
   /// Returns the newest warning that was not taken, if there is one.
   std::optional<std::string> take_warning() { return std::exchange(warning_, std::nullopt); }
 
@@ -52,6 +56,7 @@ class LogClock {
 
   TimeUs last_us_;                   // of the last edit
   TimeUs time_us_ = 0;               // the log's time at steady_us_
+  TimeUs ahead_us_ = 0;              // time() minus the log's time, while the last edit is ahead
   std::optional<TimeUs> steady_us_;  // of the last advance(); nullopt before the first
   TimeUs slew_left_ = 0;             // millionths of 1 us of slew, below one million
   std::optional<Jump> jump_;         // a jump that the log's time does not follow

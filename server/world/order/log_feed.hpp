@@ -21,7 +21,7 @@ class LogFeed {
   LogFeed(WorldEnvironment& environment, bool may_be_followed)
       : environment_(environment), may_be_followed_(may_be_followed) {}
 
-  // Appending. Each call queues it for the log writer and sends it to the servers that
+  // Appending. Each call queues its rows for the log writer and sends them to the servers that
   // follow.
   void append(std::vector<PlayerRow> players, OrderedBatch& batch);
   /// Rows of players without records.

@@ -85,6 +85,10 @@ class Order {
   // The log.
   /// Returns true if the log takes another edit, besides those that are queued.
   bool log_has_room() const { return environment_.log_has_room(authority_.queue().size() + 1); }
+  /// Returns true if a record of power may be ordered, such as a ban: also while the disk is full.
+  bool log_has_queue_room() const {
+    return environment_.log_has_queue_room(authority_.queue().size() + 1);
+  }
   /// Appends the records of a batch, and the rows of their authors that the store lacks.
   void append(OrderedBatch& batch);
   void append_players(std::vector<PlayerRow> players) {

@@ -59,8 +59,8 @@ class Ownership {
   void begin_handover();
   /// The log is complete, and the caller gives the lease up.
   void end_handover();
-  /// The server has the lease. A server that has forked tries as well, because the log decides
-  /// whether it has forked: its owner may be the one that was wrong.
+  /// The server has the lease. It may have forked: TakeoverWatch stops a server that has forked, but
+  /// the fork may be found after it has looked. Then the log decides: end_takeover() or find_fork().
   void begin_takeover();
   /// The log is the one that this server has.
   void end_takeover();

@@ -21,15 +21,15 @@ MaterialsAdded rows_from(const MaterialTable& table, std::size_t first) {
 }  // namespace
 
 void Receipts::welcomed(const Session& session, const Welcome& welcome) {
-  Told& told = told_[session.id];
-  told.epoch = welcome.epoch;
-  told.durable = welcome.durable;
-  told.materials = welcome.materials.size();
+  Sent& sent = sent_[session.id];
+  sent.epoch = welcome.epoch;
+  sent.durable = welcome.durable;
+  sent.materials = welcome.materials.size();
 }
 
 void Receipts::reject(Session& session, Reject reject) {
   if (session.is_closed) return;
-  std::vector<Reject>& pending = told_[session.id].rejects;
+  std::vector<Reject>& pending = sent_[session.id].rejects;
   pending.push_back(std::move(reject));
   if (pending.size() == 1) {
     send_pending(session);
@@ -40,41 +40,41 @@ void Receipts::reject(Session& session, Reject reject) {
 
 void Receipts::send_pending(Session& session) {
   if (session.is_closed) return;
-  Told& told = told_[session.id];
-  std::size_t sent = 0;
-  while (sent < told.rejects.size() &&
-         sessions_.send_or_skip(session, encode_message(told.rejects[sent])))
-    ++sent;
-  told.rejects.erase(told.rejects.begin(),
-                     told.rejects.begin() + static_cast<std::ptrdiff_t>(sent));
-  if (told.durable < order_.durable() && told.durable < told.awaits_durable)
-    send_durable(session, told, encode_message(durable()));
+  Sent& sent = sent_[session.id];
+  std::size_t count = 0;
+  while (count < sent.rejects.size() &&
+         sessions_.send_or_skip(session, encode_message(sent.rejects[count])))
+    ++count;
+  sent.rejects.erase(sent.rejects.begin(),
+                     sent.rejects.begin() + static_cast<std::ptrdiff_t>(count));
+  if (sent.durable < order_.durable() && sent.durable < sent.awaits_durable)
+    send_durable(session, sent, encode_message(durable()));
 }
 
 bool Receipts::has_pending(const Session& session) const {
-  const auto found = told_.find(session.id);
-  return found != told_.end() && !found->second.rejects.empty();
+  const auto found = sent_.find(session.id);
+  return found != sent_.end() && !found->second.rejects.empty();
 }
 
-void Receipts::await(const Session& session, Sequence seq) {
-  Sequence& awaited = told_[session.id].awaits_durable;
+void Receipts::expect_durable(const Session& session, Sequence seq) {
+  Sequence& awaited = sent_[session.id].awaits_durable;
   awaited = std::max(awaited, seq);
 }
 
-void Receipts::send_durable(const Session& session, Told& told, const EncodedMessage& encoded) {
-  if (session.is_closed || session.is_relayed || !told.rejects.empty()) return;
+void Receipts::send_durable(const Session& session, Sent& sent, const EncodedMessage& encoded) {
+  if (session.is_closed || session.is_relayed || !sent.rejects.empty()) return;
   const bool is_known =
-      told.durable == order_.durable() && told.is_read_only == order_.is_disk_full();
+      sent.durable == order_.durable() && sent.is_read_only == order_.is_disk_full();
   if (is_known || !sessions_.send_or_skip(session, encoded)) return;
-  told.durable = order_.durable();
-  told.is_read_only = order_.is_disk_full();
+  sent.durable = order_.durable();
+  sent.is_read_only = order_.is_disk_full();
 }
 
 void Receipts::send_durable_to_authors() {
   const EncodedMessage encoded = encode_message(durable());
   for (const Session* session : sessions_.open()) {
-    Told& told = told_[session->id];
-    if (told.durable < told.awaits_durable) send_durable(*session, told, encoded);
+    Sent& sent = sent_[session->id];
+    if (sent.durable < sent.awaits_durable) send_durable(*session, sent, encoded);
   }
 }
 
@@ -83,14 +83,14 @@ void Receipts::broadcast_durable(const Clocks& now) {
   durable_due_us_ = now.steady_us + config_.durable_interval_us;
   const EncodedMessage encoded = encode_message(durable());
   for (const Session* session : sessions_.open())
-    send_durable(*session, told_[session->id], encoded);
+    send_durable(*session, sent_[session->id], encoded);
 }
 
 void Receipts::send_epoch(Session& session) {
   if (session.is_closed || session.is_relayed) return;
-  Told& told = told_[session.id];
-  if (told.epoch == order_.epoch()) return;
-  told.epoch = order_.epoch();
+  Sent& sent = sent_[session.id];
+  if (sent.epoch == order_.epoch()) return;
+  sent.epoch = order_.epoch();
   if (!session.has(kFeatureResume))
     return sessions_.close(session, GoodbyeReason::closing, kConnectAgain);
   // It precedes the commits of the epoch, which the client would refuse otherwise.
@@ -104,7 +104,7 @@ void Receipts::send_epoch_to_all() {
 void Receipts::send_materials(Session& session) {
   if (session.is_closed || session.is_relayed) return;
   const MaterialTable& table = order_.materials();
-  std::size_t& known = told_[session.id].materials;
+  std::size_t& known = sent_[session.id].materials;
   if (known == table.size()) return;
   if (!session.has(kFeatureMaterials)) {
     return sessions_.close(session, GoodbyeReason::closing,

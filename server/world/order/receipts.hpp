@@ -24,7 +24,7 @@ class Receipts {
   /// Reports that the session gets `welcome`, which says the epoch, the durable watermark, and the
   /// materials.
   void welcomed(const Session& session, const Welcome& welcome);
-  void forget(SessionId session) { told_.erase(session); }
+  void forget(SessionId session) { sent_.erase(session); }
 
   // Rejects.
   /// Sends a reject. If the session's queue is full, the reject is sent later, in order. A session
@@ -36,9 +36,9 @@ class Receipts {
 
   // The durable watermark.
   Durable durable() const { return {order_.epoch(), order_.durable(), order_.is_disk_full()}; }
-  /// The session's client has an edit up to `seq`, and gets the watermark at once until it covers
-  /// that.
-  void await(const Session& session, Sequence seq);
+  /// Notes that the session's client has an edit up to `seq`. The session gets every watermark at
+  /// once until one covers `seq`.
+  void expect_durable(const Session& session, Sequence seq);
   /// Sends the watermark to the sessions whose client has edits that are not yet acknowledged.
   void send_durable_to_authors();
   /// Sends the watermark to every session, once in durable_interval_us. Sessions without edits need
@@ -60,7 +60,7 @@ class Receipts {
   void send_materials_to_all();
 
  private:
-  struct Told {
+  struct Sent {
     Epoch epoch = 0;
     Sequence durable = 0;
     bool is_read_only = false;
@@ -71,12 +71,12 @@ class Receipts {
   /// Sends the watermark, which `encoded` holds, unless the session has it. Does nothing while
   /// rejects are pending, because they precede it. If the session's queue is full, a later call
   /// sends it.
-  void send_durable(const Session& session, Told& told, const EncodedMessage& encoded);
+  void send_durable(const Session& session, Sent& sent, const EncodedMessage& encoded);
 
   const WorldConfig& config_;
   Sessions& sessions_;
   const Order& order_;
-  std::map<SessionId, Told> told_;
+  std::map<SessionId, Sent> sent_;
   TimeUs durable_due_us_ = 0;  // when every session gets the watermark next
 };
 

@@ -43,12 +43,12 @@ class WorldChunks {
   /// Sets the version of a chunk's snapshot. Requires that no replay_onto_stack() came before.
   void set_saved(const ChunkKey& key, Version version);
   /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot contains it.
-  /// Requires log order. `bytes` as for push().
+  /// Requires log order. `bytes`: the memory that the edit takes on this stack.
   void replay_onto_stack(const ChunkKey& key, Version version, const EditDescriptor& edit,
                          std::size_t bytes);
 
   /// Puts an ordered edit on top of the chunk's stack and raises its version. Returns the sequence
-  /// of its version before. `bytes`: of memory that the edit takes on this stack.
+  /// of its version before. `bytes`: the memory that the edit takes on this stack.
   Sequence push(const ChunkKey& key, Version version, const EditDescriptor& edit,
                 std::size_t bytes);
   /// Applies a resident chunk's stack to a private copy in one sweep and publishes the copy.

@@ -13,8 +13,9 @@ Result<void, std::string> Credentials::take_role(const Session& session, const R
                                                  const Clocks& now) {
   const AuthorId author = order_.players().enter(session.key, session.name);
   const auto accepted = changes_.change_rights(change, rights_.actor_of(session.key), author, now);
-  if (!accepted) order_.author_left(author);
-  return accepted;
+  if (accepted) return {};
+  order_.author_left(author);
+  return failure(accepted.error());
 }
 
 Result<void, std::string> Credentials::accept_invite(const Session& session,

@@ -76,7 +76,7 @@ std::optional<EditRequests::Refusal> EditRequests::check_rights(const Attempt& a
   return Refusal{RejectReason::not_permitted, *std::move(why)};
 }
 
-std::optional<EditRequests::Refusal> EditRequests::decide(const Attempt& attempt) {
+std::optional<EditRequests::Refusal> EditRequests::check_and_enqueue(const Attempt& attempt) {
   Authority& authority = order_.authority();
   if (authority.resolved().knows(attempt.op))
     return Refusal{authority.resolved().answer_to(attempt.op)};
@@ -128,7 +128,7 @@ void EditRequests::refuse(const Attempt& attempt, Refusal refusal) {
     sessions_.charge_reading(session, kRejectionBytes);
   }
   const Sequence applied_by = maybe_applied ? order_.head() : 0;
-  receipts_.await(session, applied_by);
+  receipts_.expect_durable(session, applied_by);
   receipts_.reject(session,
                    {request.client_seq, refusal.reason, std::move(refusal.detail), applied_by});
 }
@@ -139,7 +139,7 @@ bool EditRequests::on_edit(Session& session, const EditRequest& request, const C
   if (order_.authority().queue().has(op)) return false;
   const Attempt attempt{session, request, op, quotas_.edit_payer(session.key, session.address),
                         now};
-  auto refusal = decide(attempt);
+  auto refusal = check_and_enqueue(attempt);
   if (!refusal) return true;
   refuse(attempt, *std::move(refusal));
   return false;
@@ -150,7 +150,7 @@ bool EditRequests::reject_invalid(Session& session, const EditRequest& request) 
   const bool is_refused =
       request.action != 0 && found != refused_.end() && found->second.action == request.action;
   if (!request.fault && !is_refused) return false;
-  refused_[session.id] = {request.action, RejectReason::bad_edit};
+  if (request.action != 0) refused_[session.id] = {request.action, RejectReason::bad_edit};
   sessions_.charge_reading(session, kRejectionBytes);
   receipts_.reject(session, {request.client_seq, RejectReason::bad_edit,
                              request.fault ? fault_text(*request.fault) : kActionRefused, 0});

@@ -56,8 +56,9 @@ class EditRequests {
   std::optional<Refusal> check_reach(const Attempt& attempt);
   std::optional<Refusal> check_edit(const Attempt& attempt);
   std::optional<Refusal> check_rights(const Attempt& attempt);
-  /// Returns why the edit is refused, or nullopt if it was queued.
-  std::optional<Refusal> decide(const Attempt& attempt);
+  /// Queues the edit if it passes all checks, in the order of the list. Returns why it is refused, or
+  /// nullopt if it was queued.
+  std::optional<Refusal> check_and_enqueue(const Attempt& attempt);
   void refuse(const Attempt& attempt, Refusal refusal);
   const char* why_busy(const Attempt& attempt) const;
 

@@ -91,21 +91,26 @@ bool Joining::close_if_no_name(Session& session) {
   return true;
 }
 
-/// Closes a session from a banned address. A ban of its key is told later, to the owner of the key.
-bool Joining::close_if_banned(Session& session) {
+/// Closes a session from a banned address. A ban of the key is checked in close_if_not_admitted(), when
+/// the client has proved the key.
+bool Joining::close_if_address_banned(Session& session) {
   const auto why = world_.rights.address_refusal(session.key, session.address);
   if (!why) return false;
   world_.sessions.close(session, GoodbyeReason::not_admitted, *why);
   return true;
 }
 
-/// Closes a session whose player may not see the world. An invite or a password is used only if
-/// that helps: a player who has a role keeps it.
+/// Closes a session whose player is banned or may not see the world. First it uses the invite or the
+/// password, unless the player is banned or has a role.
 bool Joining::close_if_not_admitted(Session& session, const JoinCredentials& brought,
                                     const Clocks& now) {
-  const auto accepted = credentials_.accept(session, brought, now);
-  if (session.is_closed) return true;  // the new role closed it
-  auto why = world_.rights.join_refusal(session.key, session.address);
+  auto why = world_.rights.ban_refusal(session.key, session.address);
+  Result<void, std::string> accepted;
+  if (!why) {
+    accepted = credentials_.accept(session, brought, now);
+    if (session.is_closed) return true;  // the new role closed it
+    why = world_.rights.join_refusal(session.key, session.address);
+  }
   if (!why) {
     if (!accepted) {
       world_.rights.note_refusal(session.key, "role: " + accepted.error(), now.utc_us);
@@ -223,7 +228,7 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   session.features = (offered_features() | kFeatureServers) & hello.features;
   if (!is_server(session)) session.features &= ~kFeatureServers;
   // Before any signature: a banned address costs little.
-  if (close_if_banned(session)) return;
+  if (close_if_address_banned(session)) return;
   if (!is_server(session)) {
     if (close_if_no_seat(session) || close_if_no_name(session)) return;
   } else if (world_.order.is_following()) {

@@ -46,8 +46,8 @@ class Joining {
   /// Returns true for another server of the world. Requires that the features are in force.
   bool is_server(const Session& session) const;
   /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
-  /// the session: not_authenticated, server_full, name_refused or not_admitted. Closes an older
-  /// session of the key and client instance (already_connected). The signature shows that both are
+  /// the session: closing (another server may own the world), server_full, name_refused or
+  /// not_admitted. Closes an older session of the key and client instance (already_connected). The signature shows that both are
   /// the same client, and the older connection is usually dead without a sign of it.
   void let_in(Session& session, const JoinCredentials& brought, const Clocks& now);
   /// Handles the session of a player at another server, which has authenticated the player: lets
@@ -86,7 +86,7 @@ class Joining {
   // Each closes the session and returns true if the condition holds.
   bool close_if_no_seat(Session& session);
   bool close_if_no_name(Session& session);
-  bool close_if_banned(Session& session);
+  bool close_if_address_banned(Session& session);
   bool close_if_not_admitted(Session& session, const JoinCredentials& brought, const Clocks& now);
   bool close_if_authenticated(Session& session);
   bool close_if_forged(Session& session, const Signature& signature);

@@ -124,8 +124,6 @@ std::optional<std::string> Rights::address_refusal(const PublicKey& key,
   return restriction_text("your address is banned", ban->value);
 }
 
-/// Returns why nobody with this key may join from this address, or that the player is banned, or
-/// nullopt.
 std::optional<std::string> Rights::ban_refusal(const PublicKey& key, AddressBlock address) const {
   if (is_operator(key)) return std::nullopt;
   if (auto refused = address_refusal(key, address)) return refused;

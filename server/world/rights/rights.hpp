@@ -39,23 +39,25 @@ class Rights {
   /// Decides about a right without a place.
   RightsDecision decide(const PublicKey& key, Right right) const;
 
-  // Why a player may not do something, as a sentence, or nullopt.
-  /// Why the player may not edit at all, if a restriction forbids it.
+  // Each returns the reason, as a sentence, or nullopt if the player may do it.
+  /// Returns why the player may not edit at all, if a restriction forbids it.
   std::optional<std::string> freeze_text(const PublicKey& key) const;
-  /// Why the player may not write to the others: a mute with its reason and end, or the role.
+  /// Returns why the player may not write to the others: a mute with its reason and end, or the role.
   std::optional<std::string> chat_refusal(const PublicKey& key) const;
-  /// Why nobody with this key may join from this address, for goodbye not_admitted. Administrators
+  /// Returns why nobody with this key may join from this address, for goodbye not_admitted. Administrators
   /// may join from everywhere, so that no ban of addresses locks them out.
   std::optional<std::string> address_refusal(const PublicKey& key, AddressBlock address) const;
-  /// Why the player may not join from this address: address_refusal(), a ban, or the role may not
-  /// see the world.
+  /// Returns address_refusal(), or that the player is banned, or nullopt.
+  std::optional<std::string> ban_refusal(const PublicKey& key, AddressBlock address) const;
+  /// Returns why the player may not join from this address: ban_refusal(), or the role may not see the
+  /// world.
   std::optional<std::string> join_refusal(const PublicKey& key, AddressBlock address) const;
-  /// Why the player may not make the edit, for reject not_permitted. Requires a valid edit. Cost:
+  /// Returns why the player may not make the edit, for reject not_permitted. Requires a valid edit. Cost:
   /// RightsState::decide_edit().
   std::optional<std::string> edit_refusal(const PublicKey& key, const EditDescriptor& edit) const;
-  /// Why the author may not make the edit. The server (0) may make every edit.
+  /// Returns why the author may not make the edit. The server (0) may make every edit.
   std::optional<std::string> edit_refusal(AuthorId author, const EditDescriptor& edit) const;
-  /// Why the change may not be made: why_refused(), no player acts on an operator, and no player
+  /// Returns why the change may not be made: why_refused(), no player acts on an operator, and no player
   /// but an administrator bans an address from which somebody is here on whom that player may not
   /// act.
   std::optional<std::string> change_refusal(const RightsChange& change,
@@ -77,7 +79,6 @@ class Rights {
   std::vector<RefusalRow> refusals() const { return refusals_.rows(); }
 
  private:
-  std::optional<std::string> ban_refusal(const PublicKey& key, AddressBlock address) const;
   std::string refusal_text(const PublicKey& key, const RightsDecision& no) const;
 
   const WorldConfig& config_;

@@ -114,7 +114,8 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
     CHECK(store->log_range()->first > 1);
     CHECK(store->meta().materials.find("lime") == kLime);
     const auto generator = generator_of(*store);
-    succeed(copy_world(*store, **generator, store->log_range()->last.version.seq, folder / "copy"));
+    succeed(copy_world(*store, **generator, store->log_range()->last.version.seq, folder / "copy",
+                       out));
   }
   CHECK(table_of(folder / "copy") == table_of(world));
   build_with_lime(world, 5);

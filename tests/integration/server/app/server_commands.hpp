@@ -22,7 +22,7 @@ inline Answer control(const std::string& world, const std::vector<std::string>& 
   const auto done = control_server({world, words}, out, read_password);
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
-  return {*done, out.str()};
+  return {*done == ControlEnd::done, out.str()};
 }
 
 /// Sends a client's command and waits until it is done.

@@ -24,7 +24,10 @@ struct AddBench : RollbackBench {
   CommandAnswer give(const CommandCaller& caller, const std::string& line) {
     answers.clear();
     give_command({services, caller, bench.now(), reply()}, line);
-    run_all();
+    for (int i = 0; i < 2; ++i) {
+      run_all();
+      services.tick(bench.now());
+    }
     return answer();
   }
   /// Writes a file and adds it at the console.

@@ -28,7 +28,7 @@ struct RightsBench : RollbackBench {
     give_command({services, caller, {now.steady_us, now.utc_us - set_back_us}, reply()}, line);
     for (int i = 0; i < 3; ++i) {
       run_all();
-      services.tick();
+      services.tick(now);
     }
     return answer();
   }
@@ -245,10 +245,66 @@ TEST_CASE("taking a record back waits until later ones are on disk", "[admin][ri
   CHECK(bench.works.empty());
   CHECK(bench.answers.empty());
   bench.run_all();
-  bench.services.tick();
+  bench.services.tick(now);
   bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(bench.bench.server.rights().state().grants().empty());
+}
+
+TEST_CASE("a change of rights is in force at once, and answered when it is on disk",
+          "[admin][rights]") {
+  RightsBench bench;
+  WorldServer& world = bench.bench.server;
+  const Clocks now = bench.bench.now();
+  const Clocks late{now.steady_us + kAnswerUnsavedUs, now.utc_us};
+  bench.answers.clear();
+  give_command({bench.services, {}, now, bench.reply()}, "role set mason see");
+  CHECK(world.rights().state().find_role("mason") != nullptr);
+  bench.services.tick(now);
+  CHECK(bench.answers.empty());
+  SECTION("on disk in time") {
+    bench.run_all();
+    bench.services.tick(now);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK(bench.answers[0].is_done);
+    CHECK(bench.answers[0].is_ok);
+  }
+  SECTION("late") {
+    bench.services.tick(late);
+    bench.services.tick(late);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK(bench.answers[0].is_unsaved);
+    CHECK_FALSE(bench.answers[0].is_done);
+    CHECK(has(bench.answers[0].text, "in force, not on disk yet"));
+    bench.run_all();
+    bench.services.tick(late);
+    REQUIRE(bench.answers.size() == 2);
+    CHECK(bench.answers[1].is_done);
+    CHECK(bench.answers[1].is_ok);
+  }
+  SECTION("never") {
+    world.log_failed();
+    bench.services.tick(now);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK(bench.answers[0].is_done);
+    CHECK_FALSE(bench.answers[0].is_ok);
+    CHECK(has(bench.answers[0].text, "NOT on disk"));
+  }
+}
+
+TEST_CASE("a full disk does not keep a host from a ban, and the answer says that it is not saved",
+          "[admin][rights]") {
+  RightsBench bench;
+  WorldServer& world = bench.bench.server;
+  const Clocks now = bench.bench.now();
+  world.set_disk_is_full(true, now);
+  bench.answers.clear();
+  give_command({bench.services, {}, now, bench.reply()}, "ban 203.0.113.9");
+  bench.services.tick(now);
+  REQUIRE(bench.answers.size() == 1);
+  CHECK(bench.answers[0].is_unsaved);
+  CHECK(has(bench.answers[0].text, "in force, not on disk yet: the world's disk is full"));
+  CHECK(world.rights().state().restrictions().size() == 1);
 }
 
 }  // namespace runstone::test

@@ -148,14 +148,14 @@ TEST_CASE_METHOD(BackupBench, "a partial folder of somebody else is not removed"
   SECTION("no backup made it") {
     fs::create_directory(partial);
     write_file(partial + "/thesis.txt", "mine");
-    CHECK_THAT(back_up_to(copy), Contains("is not what an interrupted backup leaves"));
+    CHECK_THAT(back_up_to(copy), Contains("is not what an interrupted program leaves"));
     CHECK(fs::exists(partial + "/thesis.txt"));
   }
   SECTION("it is a link") {
     fs::create_directory(folder / "other");
     write_file(folder / "other/partial.lock", "");
     fs::create_directory_symlink(folder / "other", partial);
-    CHECK_THAT(back_up_to(copy), Contains("is not what an interrupted backup leaves"));
+    CHECK_THAT(back_up_to(copy), Contains("is not what an interrupted program leaves"));
     CHECK(fs::exists(folder / "other/partial.lock"));
   }
   SECTION("another backup is writing it") {

@@ -118,5 +118,5 @@ TEST_CASE("a digest list file is replaced as a whole, and unknown keys in it are
   CHECK(read_digests_json(folder / "missing.json").error().message() ==
         folder / "missing.json: cannot be read");
   CHECK(write_digests_json(folder / "no/list.json", {}).error() ==
-        folder / "no/list.json: cannot be written");
+        folder / "no/list.json: cannot be written: No such file or directory");
 }

@@ -49,6 +49,37 @@ void check_once(const ClusterBench& bench, AuthorId author, ClientSequence count
   CHECK(found == expected);
 }
 
+TEST_CASE("a server that took the world over while it read the log reads again as a follower",
+          "[world][servers]") {
+  ClusterBench bench(1);
+  bench.join(1, 1, 1);
+  bench.edit(1, 1, 1, block(1));
+  bench.run();
+  const std::size_t late = bench.add_follower();
+  bench.edit(1, 1, 2, block(2));
+  bench.run();
+  bench.servers[late].holds_reads = true;
+  bench.connect(late);
+  bench.pump();
+  REQUIRE(bench.environment(late).log_reads.size() == 1);
+  bench.lose_owner();
+  REQUIRE(bench.take_over(late));
+  bench.servers[late].holds_reads = false;
+  bench.run();  // the answer comes now
+  REQUIRE(bench.environment(late).log_reads.empty());
+  bench.connect(1);
+  for (int i = 0; i < 3; ++i) bench.tick();
+  begin_handover(bench, 1);
+  end_handover(bench, 1);
+  bench.cut(late);
+  bench.edit(1, 1, 3, block(3));
+  bench.run();
+  bench.connect(late);
+  for (int i = 0; i < 10 && !bench.world(late).cluster().is_live(); ++i) bench.tick();
+  CHECK(bench.world(late).cluster().is_live());
+  CHECK(bench.world(late).order().head() == bench.world(1).order().head());
+}
+
 TEST_CASE("an owner hands the world over and back, and each edit is applied once",
           "[world][servers]") {
   ClusterBench bench(2);

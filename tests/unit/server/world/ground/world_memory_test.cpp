@@ -43,7 +43,7 @@ TEST_CASE("resident chunks count what the heap gives for them", "[world]") {
       Chunk chunk;
       chunk.voxels = uniform_chunk({kEdge, kEdge, kEdge}, kEmpty, AxisOrder::xzy);
       chunk.voxels.runs.shrink_to_fit();
-      REQUIRE_FALSE(chunks->loaded(key, std::move(chunk)).has_value());
+      REQUIRE(chunks->loaded(key, std::move(chunk)).has_value());
       chunks->released(key);
     }
   }

@@ -133,5 +133,23 @@ TEST_CASE("a log that ends ahead of the wall clock is reported, and keeps its ti
   CHECK_FALSE(little.log.take_warning().has_value());
 }
 
+TEST_CASE("the time by which restrictions end advances although the log ends years ahead",
+          "[world]") {
+  ClockPair clocks(kStart + 2 * kYear);
+  const TimeUs begin_us = clocks.log.time();
+  CHECK(begin_us == kStart + 2 * kYear);
+  clocks.pass(5 * kSecond);
+  CHECK(clocks.log.time() == begin_us + 5 * kSecond);
+  CHECK(clocks.log.stamp() == kStart + 2 * kYear);
+  // The clock is set right, to a time that is nearer to the end of the log, and time() never goes back.
+  clocks.wrong_us = kYear;
+  TimeUs before_us = clocks.log.time();
+  for (int minute = 0; minute < 70; ++minute) {
+    clocks.pass(kMinute, kSecond);
+    CHECK(clocks.log.time() == before_us + kMinute);
+    before_us = clocks.log.time();
+  }
+}
+
 }  // namespace
 }  // namespace runstone
