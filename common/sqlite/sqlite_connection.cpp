@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
+
 #include "common/sqlite/sqlite_file.hpp"
 
 namespace runstone::sql {
@@ -36,8 +38,13 @@ Result<bool> file_exists(const std::string& file, const std::string& vfs) {
   if (system == nullptr)
     return failure(Error{Error::Kind::io, file, "no SQLite VFS is called " + vfs});
   int there = 0;
-  if (system->xAccess(system, file.c_str(), SQLITE_ACCESS_EXISTS, &there) != SQLITE_OK)
-    return failure(Error{Error::Kind::io, file, "cannot be looked up"});
+  errno = 0;
+  const int code = system->xAccess(system, file.c_str(), SQLITE_ACCESS_EXISTS, &there);
+  // SQLite's VFS takes a file that cannot be looked up for one that is not there.
+  const bool is_known = there != 0 || errno == 0 || errno == ENOENT || errno == ENOTDIR;
+  if (code != SQLITE_OK || !is_known) {
+    return failure(Error{Error::Kind::io, file, with_system_error("cannot be looked up", errno)});
+  }
   return there != 0;
 }
 
@@ -70,6 +77,13 @@ Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std
     error.error.file = file;
     return error;
   }
+  // A file that cannot be opened for writing SQLite opens for reading.
+  const bool is_for_writing = mode == SqliteMode::write || mode == SqliteMode::create;
+  if (is_for_writing && sqlite3_db_readonly(handle, "main") == 1) {
+    return failure(Error{Error::Kind::io, file,
+                         "cannot be opened for writing: it or its file system is read-only, or the "
+                         "disk failed"});
+  }
   sqlite3_busy_timeout(handle, kBusyMsMax);
   return database;
 }
@@ -95,18 +109,20 @@ void keep_wal_on_close(Database& database, bool keep) {
                     nullptr);
 }
 
-std::optional<std::array<std::uint8_t, 100>> file_header(Database& database) {
+Result<std::optional<SqliteHeader>> file_header(Database& database) {
   // The bytes are read through SQLite's descriptor. Closing another descriptor of the file would
   // drop this process's locks on it (POSIX).
   sqlite3_file* file = nullptr;
-  std::array<std::uint8_t, 100> bytes{};
+  SqliteHeader bytes{};
   if (sqlite3_file_control(sqlite_handle(database), "main", SQLITE_FCNTL_FILE_POINTER, &file) !=
           SQLITE_OK ||
-      file->pMethods == nullptr ||
-      file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK) {
-    return std::nullopt;
-  }
-  return bytes;
+      file->pMethods == nullptr)
+    return failure(Error{Error::Kind::io, database.file(), "cannot be read"});
+  const int code = file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0);
+  if (code == SQLITE_OK) return std::optional(bytes);
+  if (code == SQLITE_IOERR_SHORT_READ) return std::optional<SqliteHeader>();
+  return failure(Error{Error::Kind::io, database.file(),
+                       with_system_error("cannot be read", last_error_of(file))});
 }
 
 }  // namespace runstone::sql

@@ -9,6 +9,7 @@
 #include "common/sql/database.hpp"
 
 struct sqlite3;
+struct sqlite3_file;
 struct sqlite3_stmt;
 
 namespace runstone::sql {
@@ -16,6 +17,10 @@ namespace runstone::sql {
 /// Returns the error of the last call on a connection. `code` is the result of that call. A null
 /// handle means that there was no memory for a connection.
 Unexpected<Error> sqlite_failure(sqlite3* handle, int code);
+/// Returns the system's error of the last call on a file that failed, or 0.
+int last_error_of(sqlite3_file* file);
+/// Returns `what` and, unless it is 0, the text and the number of a system's error.
+std::string with_system_error(std::string what, int system);
 
 class SqliteStatement final : public StatementHandle {
  public:

@@ -28,7 +28,9 @@ Result<bool> file_exists(const std::string& file, const std::string& vfs);
 /// If `keep` is true, closing the last connection leaves the WAL as it is. Otherwise closing
 /// writes the WAL into the main file and deletes it.
 void keep_wal_on_close(Database& database, bool keep);
+using SqliteHeader = std::array<std::uint8_t, 100>;
 /// Returns the first 100 bytes of the main file as they are on disk, or nullopt if it is shorter.
-std::optional<std::array<std::uint8_t, 100>> file_header(Database& database);
+/// Fails (io) if they cannot be read.
+Result<std::optional<SqliteHeader>> file_header(Database& database);
 
 }  // namespace runstone::sql

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/sqlite/sqlite_connection.hpp"
+
 namespace runstone::sql {
 
 /// SQLite's data of an open file.
@@ -25,10 +27,11 @@ struct VfsFile::Handle {
 
 namespace {
 
-Unexpected<Error> file_failure(const std::string& name, const char* verb, int code) {
+Unexpected<Error> file_failure(const std::string& name, const char* verb, int code, int system) {
   const bool is_full = (code & 0xff) == SQLITE_FULL;
-  return {Error{is_full ? Error::Kind::full : Error::Kind::io, name.c_str(),
-                std::string("cannot be ") + verb + ": " + sqlite3_errstr(code)}};
+  return {Error{
+      is_full ? Error::Kind::full : Error::Kind::io, name.c_str(),
+      with_system_error(std::string("cannot be ") + verb + ": " + sqlite3_errstr(code), system)}};
 }
 
 }  // namespace
@@ -49,8 +52,19 @@ Result<VfsFile> VfsFile::open(const std::string& file, Mode mode, const std::str
       SQLITE_OPEN_SUPER_JOURNAL |
       (mode == Mode::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   auto handle = std::make_unique<Handle>(file, system->szOsFile);
-  const int code = system->xOpen(system, handle->name.c_str(), handle->get(), flags, nullptr);
-  if (code != SQLITE_OK) return file_failure(handle->name, "opened", code);
+  int flags_given = 0;
+  const int code = system->xOpen(system, handle->name.c_str(), handle->get(), flags, &flags_given);
+  if (code != SQLITE_OK) {
+    const int system_error = system->xGetLastError(system, 0, nullptr);
+    return file_failure(handle->name, "opened", code, system_error);
+  }
+  // A VFS opens a file for reading that it may not write.
+  if (mode == Mode::write && (flags_given & SQLITE_OPEN_READONLY) != 0) {
+    return failure(
+        Error{Error::Kind::io, file,
+              "cannot be opened for writing: it or its file system is read-only, or the disk "
+              "failed"});
+  }
   return VfsFile(std::move(handle));
 }
 
@@ -59,7 +73,7 @@ Result<void> VfsFile::read(std::uint64_t offset, std::span<std::uint8_t> out) {
       handle_->get(), out.data(), static_cast<int>(out.size()), static_cast<sqlite3_int64>(offset));
   // A short read fills the rest with zeros.
   if (code != SQLITE_OK && code != SQLITE_IOERR_SHORT_READ)
-    return file_failure(handle_->name, "read", code);
+    return file_failure(handle_->name, "read", code, last_error_of(handle_->get()));
   return {};
 }
 
@@ -67,13 +81,15 @@ Result<void> VfsFile::write(std::uint64_t offset, ByteView bytes) {
   const int code =
       handle_->get()->pMethods->xWrite(handle_->get(), bytes.data(), static_cast<int>(bytes.size()),
                                        static_cast<sqlite3_int64>(offset));
-  if (code != SQLITE_OK) return file_failure(handle_->name, "written", code);
+  if (code != SQLITE_OK)
+    return file_failure(handle_->name, "written", code, last_error_of(handle_->get()));
   return {};
 }
 
 Result<void> VfsFile::sync() {
   const int code = handle_->get()->pMethods->xSync(handle_->get(), SQLITE_SYNC_NORMAL);
-  if (code != SQLITE_OK) return file_failure(handle_->name, "synced", code);
+  if (code != SQLITE_OK)
+    return file_failure(handle_->name, "synced", code, last_error_of(handle_->get()));
   return {};
 }
 

@@ -342,6 +342,10 @@ StopReport Server::stop() {
     return !hands_over && steady_now_us() < due_us;
   });
   report.hands_over = hands_over;
+  if (!hands_over) {
+    if (const auto complete = parts.owned_store().complete_file(); !complete)
+      logger("store").warn("{}", complete.error().message());
+  }
   return report;
 }
 

@@ -40,7 +40,8 @@ StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
   auto reader = borrow();
   if (!reader) return failure(reader.error());
   auto chunk = load(**reader, key);
-  give_back(*std::move(reader));
+  // A connection remembers the last error of its files, and would take later damage for it.
+  if (chunk || !chunk.error().may_pass()) give_back(*std::move(reader));
   return chunk;
 }
 

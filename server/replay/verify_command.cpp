@@ -66,7 +66,8 @@ void print_table(std::ostream& out, const Store& store, const VerifyReport& whol
   row(out, "result") << (whole.differences() == 0
                              ? "equal"
                              : std::to_string(whole.differences()) + " differences")
-                     << (store.loss() ? ", but edits are lost" : "") << '\n';
+                     << (store.loss() ? " in what is left; the row LOST says what is missing" : "")
+                     << '\n';
   if (whole.differences() != 0) row(out, "first") << whole.first_difference() << '\n';
 }
 

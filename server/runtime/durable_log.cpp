@@ -72,7 +72,7 @@ void DurableLog::on_space(DiskSpace space, const std::string& reason) {
       break;
     case DiskSpace::full:
       logger("store").error(
-          "READ-ONLY: {}: edits are rejected, and accepted ones are written when there is space",
+          "READ-ONLY: {}: edits are rejected, and accepted ones wait until they can be written",
           reason);
       break;
     case DiskSpace::read_only:

@@ -14,8 +14,8 @@
 namespace runstone {
 
 /// Reads log position, checkpoint, snapshot versions, players and watermarks. Does not set the
-/// epoch. Fails if a row cannot be read, or if players or watermarks are missing; the error names
-/// file, table and row.
+/// epoch. Fails if a row cannot be read, or if rows are missing (WorldReader::check_counts()); the
+/// error names file, table and row.
 Result<WorldStart, std::string> read_world_start(WorldReader& store);
 
 /// Replays the log above the checkpoint onto the edit stacks of `world`. Returns the number of

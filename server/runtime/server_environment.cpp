@@ -115,9 +115,8 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
     if (loaded) {
       world_->chunk_loaded(key, *std::move(loaded), read_clocks());
     } else {
-      const bool is_damaged = loaded.error().kind != StoreError::Kind::io &&
-                              loaded.error().kind != StoreError::Kind::locked;
-      world_->chunk_failed(key, is_damaged ? LoadFailure::damaged : LoadFailure::not_read,
+      world_->chunk_failed(key,
+                           loaded.error().may_pass() ? LoadFailure::not_read : LoadFailure::damaged,
                            loaded.error().message(), read_clocks());
     }
   });

@@ -5,6 +5,7 @@
 #include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
+#include "server/store/loss_advice.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -62,27 +63,34 @@ StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uin
   return std::optional<Chunk>(*std::move(chunk));
 }
 
-StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) {
+StoreResult<RowFold> ChunkTable::read_rows(const std::function<void(const StoredChunk&)>& each) {
   const sql::ResetAtEnd reset_at_end(rows_);
-  std::vector<StoredChunk> rows;
   RowFold fold;
   for (;;) {
     const auto more = rows_.step();
     if (!more) return failed(more.error());
-    if (!*more) break;
+    if (!*more) return fold;
     ++fold.count;
     fold.sum += fold_term({rows_.integer(0), rows_.integer(1), rows_.integer(2), rows_.integer(3),
                            rows_.integer(4), rows_.integer(5)});
-    rows.push_back(
-        {key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
+    each({key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
   }
-  if (fold != expected) {
-    return failure(StoreError{
-        StoreError::Kind::corrupt, file_, table_,
-        "rows vanished, appeared or changed their key or version: " + std::to_string(fold.count) +
-            " rows, meta counts " + std::to_string(expected.count)});
-  }
-  return rows;
+}
+
+StoreResult<RowFold> ChunkTable::fold() {
+  return read_rows([](const StoredChunk&) {});
+}
+
+StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) {
+  std::vector<StoredChunk> rows;
+  const auto fold = read_rows([&](const StoredChunk& row) { rows.push_back(row); });
+  if (!fold) return failed(fold.error());
+  if (*fold == expected) return rows;
+  return failure(StoreError{
+      StoreError::Kind::corrupt, file_, table_,
+      "rows vanished, appeared or changed their key or version: " + std::to_string(fold->count) +
+          " rows, meta counts " + std::to_string(expected.count) + ". " + kLossAdvice +
+          (kind_ == Kind::snapshot ? ", which makes the snapshots again: no edit is lost" : "")});
 }
 
 StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,

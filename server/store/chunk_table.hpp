@@ -2,6 +2,7 @@
 // validated, and its digest is computed again from its runs. An error is Kind::corrupt and names
 // table and chunk.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@ class ChunkTable {
   /// Returns all rows without their voxels, ascending by key. Fails (corrupt) if their fold is not
   /// `expected`.
   StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);
+  /// Returns the fold of all rows.
+  StoreResult<RowFold> fold();
   /// Inserts or replaces one row in the caller's transaction, and updates the fold. Fails
   /// (bad_request) if
   ///   - the chunk has another edge;
@@ -46,6 +49,8 @@ class ChunkTable {
         rows_(std::move(rows)),
         version_(std::move(version)),
         save_(std::move(save)) {}
+  /// Calls `each` for all rows without their voxels, ascending by key. Returns their fold.
+  StoreResult<RowFold> read_rows(const std::function<void(const StoredChunk&)>& each);
   Unexpected<StoreError> chunk_failure(StoreError::Kind kind, const ChunkKey& key,
                                        std::string what) const;
 

@@ -191,12 +191,21 @@ StoreResult<void> MetaTable::put(const std::string& key, const MetaValue& value)
   return store_result(write_.bind(5, checksum_of(key, value)).run());
 }
 
-StoreResult<MetaValue> MetaTable::get(const std::string& key) {
+StoreResult<std::optional<MetaValue>> MetaTable::find(const std::string& key) {
   const sql::ResetAtEnd reset_at_end(one_);
   const auto found = one_.bind(1, std::string_view(key)).step();
   if (!found) return failed(found.error());
+  if (!*found) return std::optional<MetaValue>();
+  auto value = read_row(one_, key);
+  if (!value) return failed(value.error());
+  return std::optional(*std::move(value));
+}
+
+StoreResult<MetaValue> MetaTable::get(const std::string& key) {
+  auto found = find(key);
+  if (!found) return failed(found.error());
   if (!*found) return corrupt(key, "is missing");
-  return read_row(one_, key);
+  return **std::move(found);
 }
 
 StoreResult<std::uint64_t> MetaTable::counter(const std::string& key) {
@@ -247,6 +256,53 @@ StoreResult<void> MetaTable::put_log_head(const LogEnd& head) {
   writer.u64(head.version.seq);
   writer.u64(static_cast<std::uint64_t>(head.time_us));
   return put("log_head", bytes);
+}
+
+StoreResult<std::optional<RowCounts>> MetaTable::row_counts() {
+  const auto value = find("row_counts");
+  if (!value) return failed(value.error());
+  if (!*value) return std::optional<RowCounts>();
+  const auto* bytes = std::get_if<Bytes>(&**value);
+  if (bytes == nullptr || bytes->size() != 36) return corrupt("row_counts", "is no list of counts");
+  ByteReader reader(*bytes);
+  RowCounts counts;
+  counts.epoch = reader.u32();
+  counts.head = reader.u64();
+  counts.player_names = reader.u64();
+  counts.keyframes = reader.u64();
+  counts.lost_edits = reader.u64();
+  const auto epoch = counter("epoch");
+  if (!epoch) return failed(epoch.error());
+  const auto head = log_head();
+  if (!head) return failed(head.error());
+  if (counts.epoch != *epoch || counts.head != head->version.seq) return std::optional<RowCounts>();
+  return std::optional(counts);
+}
+
+StoreResult<void> MetaTable::put_row_counts(const RowCounts& counts) {
+  Bytes bytes;
+  ByteWriter writer(bytes);
+  writer.u32(counts.epoch);
+  for (const std::uint64_t value :
+       {counts.head, counts.player_names, counts.keyframes, counts.lost_edits})
+    writer.u64(value);
+  return put("row_counts", bytes);
+}
+
+StoreResult<std::optional<Epoch>> MetaTable::open_epoch() {
+  const auto value = find("open_epoch");
+  if (!value) return failed(value.error());
+  if (!*value) return std::optional<Epoch>();
+  const auto* written = std::get_if<std::int64_t>(&**value);
+  if (written == nullptr) return corrupt("open_epoch", "is no epoch");
+  const auto epoch = counter("epoch");
+  if (!epoch) return failed(epoch.error());
+  if (*written < 0 || static_cast<std::uint64_t>(*written) < *epoch) return std::optional<Epoch>();
+  return std::optional(static_cast<Epoch>(*written));
+}
+
+StoreResult<void> MetaTable::put_open_epoch(std::optional<Epoch> epoch) {
+  return put("open_epoch", epoch ? std::int64_t{*epoch} : std::int64_t{-1});
 }
 
 }  // namespace runstone

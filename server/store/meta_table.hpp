@@ -1,10 +1,11 @@
 // MetaTable: the values that are pinned when a world is created, and the few that change: epoch,
-// checkpoint, the highest author number, head and end of the log, the folds of tables, and the
-// material table, which compactions extend.
+// checkpoint, the highest author number, head and end of the log, the folds and row counts of tables,
+// whether a program is writing the world, and the material table, which compactions extend.
 // Threads: the one that owns the store.
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -39,6 +40,15 @@ inline void remove_row(RowFold& fold, std::int64_t checksum) {
   fold.sum -= static_cast<std::uint64_t>(checksum);
 }
 
+/// The numbers of rows in tables without a fold. They count only while `epoch` and `head` are those
+/// of the world: an older program changes rows without counting them.
+struct RowCounts {
+  Epoch epoch = 0;
+  Sequence head = 0;  // of the log
+  std::uint64_t player_names = 0, keyframes = 0;
+  std::uint64_t lost_edits = 0;  // rows of the log whose loss was accepted
+};
+
 class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
@@ -55,6 +65,13 @@ class MetaTable {
   /// there was none.
   StoreResult<LogEnd> log_head();
   StoreResult<void> put_log_head(const LogEnd& head);
+  /// Returns row `row_counts`, or nullopt if there is none or it does not count any more.
+  StoreResult<std::optional<RowCounts>> row_counts();
+  StoreResult<void> put_row_counts(const RowCounts& counts);
+  /// Returns row `open_epoch`: the epoch of the program that is writing the world. Returns nullopt if
+  /// the database alone holds the whole world, or if an older program has written it since.
+  StoreResult<std::optional<Epoch>> open_epoch();
+  StoreResult<void> put_open_epoch(std::optional<Epoch> epoch);
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)
@@ -63,6 +80,7 @@ class MetaTable {
         one_(std::move(one)),
         write_(std::move(write)) {}
   StoreResult<MetaValue> read_row(sql::Statement& row, std::string_view key);
+  StoreResult<std::optional<MetaValue>> find(const std::string& key);
   StoreResult<MetaValue> get(const std::string& key);
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;
 

@@ -1,5 +1,6 @@
 #include "server/store/name_table.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 
@@ -57,8 +58,8 @@ StoreResult<std::vector<UsedName>> NameTable::names() {
   }
 }
 
-StoreResult<void> NameTable::add(const UsedName& name) {
-  std::int64_t last = 0;
+StoreResult<std::int64_t> NameTable::add(const UsedName& name) {
+  std::vector<std::int64_t> numbers;
   {
     const sql::ResetAtEnd reset_at_end(of_author_);
     of_author_.bind(1, std::int64_t{name.author});
@@ -68,19 +69,22 @@ StoreResult<void> NameTable::add(const UsedName& name) {
       if (!*more) break;
       const auto used = name_of(of_author_);
       if (!used) return failed(used.error());
-      if (used->name == name.name) return {};
-      last = of_author_.integer(1);
+      if (used->name == name.name) return std::int64_t{0};
+      numbers.push_back(of_author_.integer(1));
     }
   }
-  const std::int64_t number = last + 1;
+  const std::int64_t number = numbers.empty() ? 1 : numbers.back() + 1;
   const auto inserted = insert_.bind(1, std::int64_t{name.author})
                             .bind(2, number)
                             .bind(3, std::string_view(name.name))
                             .bind(4, name_checksum(name.author, number, name.name))
                             .run();
   if (!inserted) return failed(inserted.error());
-  return store_result(
-      drop_.bind(1, std::int64_t{name.author}).bind(2, number - kNamesPerAuthorMax).run());
+  const std::int64_t last_dropped = number - kNamesPerAuthorMax;
+  const auto dropped = drop_.bind(1, std::int64_t{name.author}).bind(2, last_dropped).run();
+  if (!dropped) return failed(dropped.error());
+  return 1 - std::count_if(numbers.begin(), numbers.end(),
+                           [&](std::int64_t one) { return one <= last_dropped; });
 }
 
 }  // namespace runstone

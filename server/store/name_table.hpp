@@ -22,8 +22,9 @@ class NameTable {
   /// Returns all names, ascending by author, then by first use. Each row is verified.
   StoreResult<std::vector<UsedName>> names();
   /// Adds a name unless the author has it, and removes the oldest one beyond the bound, in the
-  /// caller's transaction. Fails (corrupt), and changes nothing, if a row of the author is damaged.
-  StoreResult<void> add(const UsedName& name);
+  /// caller's transaction. Returns by how many the number of rows has changed. Fails (corrupt), and
+  /// changes nothing, if a row of the author is damaged.
+  StoreResult<std::int64_t> add(const UsedName& name);
 
  private:
   NameTable(std::string file, sql::Statement all, sql::Statement of_author, sql::Statement insert,

@@ -34,7 +34,8 @@ StoreResult<void> fill_new_world(sql::Database& database, const WorldMeta& meta)
                           "name_claim_fold", "rights_record_fold"}) {
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
-  return table->put_log_head({});
+  if (auto put = table->put_log_head({}); !put) return put;
+  return table->put_row_counts({});
 }
 
 }  // namespace runstone

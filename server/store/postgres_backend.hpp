@@ -52,6 +52,8 @@ class PostgresBackend final : public WorldBackend {
   }
   StoreResult<void> write_mark(const DurableState&) override { return {}; }
   StoreResult<void> sync_mark() override { return {}; }
+  StoreResult<bool> complete_file(bool) override { return true; }
+  std::string missing_files() const override { return {}; }
   std::string mixture_advice() const override;
   void keep_on_close(bool) override {}
   StoreResult<void> check() override { return {}; }  // it has no check that a world could run

@@ -1,5 +1,6 @@
 // The part of SqlStore that shortens the log: the edits are applied to the base, then they are
 // deleted.
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -79,6 +80,8 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     auto kept_materials = keep_materials(keyframe);
     if (!kept_materials) return failed(kept_materials.error());
     materials = *std::move(kept_materials);
+    const auto counts = meta_table_.row_counts();  // before the head moves
+    if (!counts) return failed(counts.error());
     if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
     if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
         !gone)
@@ -86,7 +89,19 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     // A segment that continues after the head stays as it is. Its box may be larger than needed.
     if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone)
       return gone;
-    return keyframes_.remove(keyframe);
+    if (auto gone = keyframes_.remove(keyframe); !gone) return gone;
+    if (!*counts) return {};
+    const auto left = counted_rows();
+    if (!left) return failed(left.error());
+    RowCounts counted = **counts;
+    counted.head = keyframe;
+    counted.keyframes = left->keyframes;
+    if (counted.lost_edits > 0) {
+      const auto lost = count_lost_edits();
+      if (!lost) return failed(lost.error());
+      counted.lost_edits = std::min(counted.lost_edits, *lost);
+    }
+    return meta_table_.put_row_counts(counted);
   });
   segments_.forget();
   if (compacted) meta_.materials = std::move(materials);

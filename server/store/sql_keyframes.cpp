@@ -110,7 +110,8 @@ StoreResult<void> SqlStore::save_keyframe(ChunkSpan chunks,
     if (auto proved = keyframes_.prove({*keyframe}, *start, *rows); !proved) {
       return refuse(proved.error().where, proved.error().what);
     }
-    return keyframes_.save(*keyframe);
+    if (auto saved = keyframes_.save(*keyframe); !saved) return saved;
+    return change_counts([](RowCounts& counts) { ++counts.keyframes; });
   });
 }
 

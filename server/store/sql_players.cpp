@@ -1,5 +1,6 @@
 // The part of SqlStore that reads, writes and repairs players, names, rights and watermarks.
-// `meta` holds a fold of each of these tables but `player_name`, which detects rows that are lost.
+// `meta` holds a fold of each of these tables, which detects rows that are lost; of `player_name` it
+// holds the number of rows.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -18,7 +19,7 @@ constexpr const char* kPlayers = "player";
 constexpr const char* kWatermarks = "player_instance";
 constexpr const char* kClaims = "name_claim";
 constexpr const char* kRights = "rights_record";
-/// A damaged mark does not say how many starts are lost. No more than these, we trust: clients keep
+/// A damaged or missing mark does not say how many starts are lost. No more than these, we trust: clients keep
 /// chunks by epoch, so an epoch must not be used twice.
 constexpr Epoch kEpochsSkipped = 10'000;
 
@@ -160,10 +161,19 @@ StoreResult<void> SqlStore::put_players(std::span<const PlayerRow> players) {
   if (players.empty()) return {};
   auto fold = meta_table_.fold(fold_key_of(kPlayers));
   if (!fold) return failed(fold.error());
+  std::int64_t new_names = 0;
   for (const PlayerRow& player : players) {
     if (player.author == 0) return refuse("player author=0", "is the server itself");
     if (auto put = player_table_.put(player, *fold); !put) return put;
-    if (auto added = names_.add({player.author, player.name}); !added) return added;
+    const auto added = names_.add({player.author, player.name});
+    if (!added) return failed(added.error());
+    new_names += *added;
+  }
+  if (new_names != 0) {
+    auto counted = change_counts([&](RowCounts& counts) {
+      counts.player_names += static_cast<std::uint64_t>(new_names);  // may be negative
+    });
+    if (!counted) return counted;
   }
   return meta_table_.put_fold(fold_key_of(kPlayers), *fold);
 }
@@ -188,6 +198,8 @@ StoreResult<void> SqlStore::raise_watermarks(const Watermarks& marks) {
 }
 
 StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
+  if (auto accepted = accept_lost_chunks(lost); !accepted) return accepted;
+  if (auto accepted = accept_lost_counts(lost); !accepted) return accepted;
   const auto players = player_table_.players();
   if (!players) return failed(players.error());
   if (const auto sound = check_players(*players); !sound) {
@@ -223,14 +235,14 @@ StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
 StoreResult<std::vector<std::string>> SqlStore::accept_losses() {
   std::vector<std::string> lost;
   if (loss_) lost.push_back(loss_->message());
-  if (is_mark_damaged_) state_.epoch += kEpochsSkipped;
+  if (is_mark_unknown_) state_.epoch += kEpochsSkipped;
   // The lost sequences go to other edits. Every epoch that is lost is on the old branch.
   if (loss_ || !backend_->has_mark()) state_.epoch = next_branch(state_.epoch, 0);
-  const auto written = write([&]() -> StoreResult<void> {
-    if (auto put = meta_table_.put("epoch", std::int64_t{state_.epoch}); !put) return put;
+  const auto written = transact([&]() -> StoreResult<void> {
+    if (auto accepted = accept_lost_rows(lost); !accepted) return accepted;
+    if (auto put = put_epoch(state_.epoch); !put) return put;
     if (auto put = meta_table_.put("author_max", std::int64_t{state_.author_max}); !put) return put;
-    if (auto deleted = delete_tiles(); !deleted) return deleted;
-    return accept_lost_rows(lost);
+    return delete_tiles();
   });
   if (!written) return failed(written.error());
   backend_->keep_on_close(false);

@@ -35,6 +35,11 @@ Unexpected<StoreError> SqlStore::refuse(std::string where, std::string what) con
 }
 
 StoreResult<void> SqlStore::write(const std::function<StoreResult<void>()>& body) {
+  if (auto begun = begin_writing(); !begun) return begun;
+  return transact(body);
+}
+
+StoreResult<void> SqlStore::transact(const std::function<StoreResult<void>()>& body) {
   if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
   if (broken_) {
     return failure(StoreError{StoreError::Kind::io, file(), "",
@@ -80,12 +85,13 @@ StoreResult<Epoch> SqlStore::begin_branch(TimeUs now_us) {
 StoreResult<Epoch> SqlStore::set_epoch(Epoch epoch) {
   DurableState next = state_;
   next.epoch = epoch;
-  const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next.epoch}); });
+  const auto written = transact([&] { return put_epoch(next.epoch); });
   if (!written) return failed(written.error());
   state_ = next;
   // A world whose mark cannot be written is not started.
   if (auto marked = backend_->write_mark(next); !marked) return failed(marked.error());
   if (auto synced = backend_->sync_mark(); !synced) return failed(synced.error());
+  has_mark_file_ = is_whole_ = true;
   return next.epoch;
 }
 
@@ -158,7 +164,7 @@ StoreResult<void> SqlStore::append_history(std::span<const PlayerRow> players,
     if (auto continues = check_continues(records, true); !continues) return continues;
     if (auto inserted = insert(players, records, next); !inserted) return inserted;
     if (!records.empty()) next.epoch = std::max(next.epoch, records.back().version.epoch);
-    return meta_table_.put("epoch", std::int64_t{next.epoch});
+    return put_epoch(next.epoch);
   });
   if (written) committed(next);
   return written;
@@ -220,8 +226,14 @@ StoreResult<void> SqlStore::save_snapshots(ChunkSpan chunks, std::optional<Seque
     if (*checkpoint < *before) return refuse("meta key=checkpoint", "may not move back");
     return meta_table_.put("checkpoint", static_cast<std::int64_t>(*checkpoint));
   });
-  // A mark that cannot be synced may lag after a power failure.
-  if (written && checkpoint) static_cast<void>(backend_->sync_mark().has_value());
+  if (written && checkpoint) {
+    // A mark that cannot be synced may lag after a power failure.
+    static_cast<void>(backend_->sync_mark().has_value());
+    if (is_reader_in_the_way_) {
+      const auto completed = backend_->complete_file(false);
+      is_reader_in_the_way_ = !completed || !*completed;
+    }
+  }
   return written;
 }
 

@@ -30,6 +30,7 @@ namespace runstone {
 
 class SqlStore final : public Store {
  public:
+  ~SqlStore() override;
   /// Opens a world. Converts an older format if it is open for writing. Checks meta rows and log
   /// ids, and whether the log is as long as it was durable.
   static StoreResult<std::unique_ptr<SqlStore>> open(std::unique_ptr<WorldBackend> backend,
@@ -75,6 +76,7 @@ class SqlStore final : public Store {
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;
   const std::optional<StoreError>& loss() const override { return loss_; }
+  StoreResult<void> check_counts() override;
   StoreResult<void> check() override;
 
   // WorldSink
@@ -104,6 +106,7 @@ class SqlStore final : public Store {
   Epoch epoch() const override { return state_.epoch; }
   StoreResult<std::vector<std::string>> accept_losses() override;
   StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<void> complete_file() override;
   StoreResult<void> shrink() override;
 
  private:
@@ -149,7 +152,14 @@ class SqlStore final : public Store {
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
   /// later write is refused.
+  StoreResult<void> transact(const std::function<StoreResult<void>()>& body);
+  /// Calls begin_writing(), then transact().
   StoreResult<void> write(const std::function<StoreResult<void>()>& body);
+  /// Before the first change of the world: says in the main file itself that it is not complete
+  /// without its WAL and its mark.
+  StoreResult<void> begin_writing();
+  /// Writes the epoch, and what counts for one epoch only, in the caller's transaction.
+  StoreResult<void> put_epoch(Epoch epoch);
   /// Calls `body` in one read transaction: commits of other processes are not visible to it.
   template <class T>
   StoreResult<T> at_one_moment(const std::function<StoreResult<T>()>& body);
@@ -179,8 +189,22 @@ class SqlStore final : public Store {
                            DurableState& next);
   StoreResult<void> put_players(std::span<const PlayerRow> players);
   StoreResult<void> raise_watermarks(const Watermarks& marks);
-  /// Adds to `lost` what the tables of players and watermarks lack, and counts the rest anew.
+  /// Adds to `lost` what the tables lack that have folds or counts, and counts the rest anew.
   StoreResult<void> accept_lost_rows(std::vector<std::string>& lost);
+  StoreResult<void> accept_lost_chunks(std::vector<std::string>& lost);
+  StoreResult<void> accept_lost_counts(std::vector<std::string>& lost);
+  StoreResult<std::uint64_t> count_of(const char* table);
+  /// Counts the rows of the tables without a fold.
+  StoreResult<RowCounts> counted_rows();
+  /// Applies a change to the row counts in the caller's transaction, unless they do not count.
+  StoreResult<void> change_counts(const std::function<void(RowCounts&)>& change);
+  /// Returns how many rows the log lacks between its first and its last one. Returns 0 in PostgreSQL,
+  /// which would read the whole table.
+  StoreResult<std::uint64_t> count_lost_edits();
+  StoreResult<void> check_base_count();
+  /// Returns an error (corrupt) for each table without a fold, and for the log, that lacks rows.
+  StoreResult<std::vector<StoreError>> missing_rows();
+  StoreResult<StoreError> lost_edits_error(std::uint64_t lost);
   /// Fails (corrupt) if the rows of a table are not those that `meta` counts. `more` completes the
   /// error.
   StoreResult<void> check_fold(const std::string& table, const RowFold& found,
@@ -211,7 +235,12 @@ class SqlStore final : public Store {
   /// The greatest numbers of database and mark.
   DurableState state_;
   std::optional<StoreError> loss_;
-  bool is_mark_damaged_ = false;
+  bool is_mark_unknown_ = false;  // it is damaged, or missing although the world needs it
+  bool has_mark_file_ = false;
+  bool is_open_ = false;               // `meta` says that the database is being written
+  bool is_open_in_file_ = false;       // this program has written that into the main file
+  bool is_reader_in_the_way_ = false;  // it lies in the WAL still
+  bool is_whole_ = false;              // this program may say so when it closes the world
   bool broken_ = false;
 };
 

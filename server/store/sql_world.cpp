@@ -41,6 +41,18 @@ StoreError loss_of(const std::string& file, const DurableState& found,
   return {StoreError::Kind::corrupt, file, "edit_log", what + kLossAdvice};
 }
 
+/// Returns the error about a world that a program was writing and that came here in part.
+StoreError without_mark(const std::string& file, const std::string& missing, Sequence last) {
+  return {StoreError::Kind::corrupt, file, "",
+          "is only a part of a world: a server was writing it when it was copied, or did not stop "
+          "cleanly, and " +
+              missing + (missing.find(" and ") == std::string::npos ? " is" : " are") +
+              " missing. The log ends here at seq=" + std::to_string(last) +
+              ", and it is not known how many later edits are lost. Put world.sqlite, "
+              "world.sqlite-wal and world.durable of one moment together into the folder. " +
+              kLossAdvice};
+}
+
 }  // namespace
 
 StoreResult<SqlStore::Tables> SqlStore::Tables::open(WorldBackend& backend) {
@@ -112,11 +124,12 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
     if (const auto left = store->leave_tiles_of_other_rules(); !left) return failed(left.error());
   }
   store->backend_->keep_on_close(store->loss_.has_value());
+  store->is_whole_ = !store->loss_;
   return store;
 }
 
 StoreResult<void> SqlStore::convert() {
-  return write([&]() -> StoreResult<void> {
+  return transact([&]() -> StoreResult<void> {
     if (!claims_) {
       if (auto added = convert_to_format_3(); !added) return added;
     }
@@ -134,7 +147,7 @@ StoreResult<void> SqlStore::leave_tiles_of_other_rules() {
     tiles_.reset();
     return {};
   }
-  return write([&] { return delete_tiles(); });
+  return transact([&] { return delete_tiles(); });
 }
 
 StoreResult<void> SqlStore::delete_tiles() {
@@ -146,7 +159,7 @@ StoreResult<void> SqlStore::delete_tiles() {
 StoreResult<void> SqlStore::read_state() {
   // The mark is read before the numbers that it is compared with, because a running server raises
   // the numbers first.
-  const auto marked = backend_->read_mark(meta_.world_id);
+  auto marked = backend_->read_mark(meta_.world_id);
   std::optional<Sequence> end;  // every use of a log without an end fails and names the damage
   auto read = at_one_moment<void>([&]() -> StoreResult<void> {
     const auto epoch = meta_table_.counter("epoch");
@@ -156,17 +169,26 @@ StoreResult<void> SqlStore::read_state() {
     const auto log_last = meta_table_.counter("log_last");
     if (!log_last) return failed(log_last.error());
     state_ = {static_cast<Epoch>(*epoch), *log_last, static_cast<AuthorId>(*author_max)};
+    const auto open = meta_table_.open_epoch();
+    if (!open) return failed(open.error());
+    is_open_ = open->has_value();
     if (const auto range = log_range()) end = range->last.version.seq;
     return {};
   });
   if (!read) return read;
+  // A server that starts meanwhile makes the mark before it says that it writes.
+  if (is_open_ && marked && !*marked) marked = backend_->read_mark(meta_.world_id);
+  has_mark_file_ = marked && *marked;
   if (end && *end != state_.seq) {
     loss_ = mixture(file(), backend_->mixture_advice(), *end, state_.seq);
     if (access_ != StoreAccess::read_only) return failed(*loss_);
   } else if (!marked) {
-    is_mark_damaged_ = true;
+    is_mark_unknown_ = true;
     loss_ = marked.error();
     loss_->what += std::string(". ") + kLossAdvice;
+  } else if (is_open_ && backend_->has_mark() && !*marked) {
+    is_mark_unknown_ = true;
+    loss_ = without_mark(file(), backend_->missing_files(), state_.seq);
   } else if (*marked) {
     const DurableState found = state_, durable = **marked;
     state_.epoch = std::max(found.epoch, durable.epoch);

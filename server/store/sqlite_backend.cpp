@@ -179,6 +179,21 @@ StoreResult<std::optional<DurableState>> SqliteBackend::read_mark(const WorldId&
   return mark_->read();
 }
 
+StoreResult<bool> SqliteBackend::complete_file(bool is_last) {
+  // The first column says whether a reader was in the way. SQLite waits for readers as for a lock.
+  const auto is_busy = database_.integer(is_last ? "PRAGMA wal_checkpoint(TRUNCATE)"
+                                                 : "PRAGMA wal_checkpoint(FULL)");
+  if (is_busy) return *is_busy == 0;
+  if (is_busy.error().kind == sql::Error::Kind::locked) return false;  // this connection reads
+  return failed(is_busy.error());
+}
+
+std::string SqliteBackend::missing_files() const {
+  // An empty WAL, as SQLite makes it when it opens the file, counts as none.
+  const auto has_wal = sql::file_exists(file_in(folder_) + "-wal", vfs_);
+  return has_wal && *has_wal ? "world.durable" : "world.sqlite-wal and world.durable";
+}
+
 std::string SqliteBackend::mixture_advice() const {
   return "world.sqlite-wal is damaged and hides newer pages of world.sqlite, or another program "
          "changed the log. Put the world's folder back from a backup";

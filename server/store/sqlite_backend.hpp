@@ -46,6 +46,8 @@ class SqliteBackend final : public WorldBackend {
   StoreResult<std::optional<DurableState>> read_mark(const WorldId& world) override;
   StoreResult<void> write_mark(const DurableState& state) override { return mark_->write(state); }
   StoreResult<void> sync_mark() override { return mark_->sync(); }
+  StoreResult<bool> complete_file(bool is_last) override;
+  std::string missing_files() const override;
   std::string mixture_advice() const override;
   void keep_on_close(bool keep) override;
   StoreResult<void> check() override;

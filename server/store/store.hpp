@@ -67,6 +67,9 @@ class Store : public WorldReader, public WorldSink, public ImportSink {
   ///     that are older are deleted.
   ///   - The watermarks of players stay.
   virtual StoreResult<void> compact(Sequence keyframe) = 0;
+  /// Moves all of the world into its main file, which can be copied alone until the next write. Fails
+  /// (locked) if a reader keeps it from doing so. The destructor does the same and says nothing.
+  virtual StoreResult<void> complete_file() { return {}; }
   /// Returns the free space in the database to the file system. Requires disk space for a second
   /// copy meanwhile.
   virtual StoreResult<void> shrink() = 0;

@@ -131,7 +131,8 @@ StoreResult<void> SqlStore::check() {
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;
-  return check_keyframes();
+  if (auto keyframes = check_keyframes(); !keyframes) return keyframes;
+  return check_counts();
 }
 
 }  // namespace runstone

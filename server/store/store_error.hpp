@@ -24,6 +24,12 @@ struct StoreError {
   // The table and row, such as "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty.
   std::string where;
   std::string what;
+  /// Returns true if the same call may succeed later: the disk, the database or a lock failed it, and
+  /// not what is stored.
+  bool may_pass() const {
+    return kind == Kind::io || kind == Kind::locked || kind == Kind::full ||
+           kind == Kind::read_only;
+  }
   /// Returns one line: "FILE: WHERE: WHAT".
   std::string message() const;
 };

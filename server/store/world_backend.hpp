@@ -47,6 +47,13 @@ class WorldBackend {
   /// Returns when all that was written is on disk.
   virtual StoreResult<void> sync_mark() = 0;
 
+  /// Moves what the database keeps beside its main file into that file, and returns when it is on
+  /// disk. Returns false if a reader keeps it from doing so. `is_last` is true if the caller expects
+  /// no further write. Does nothing if there is no mark.
+  virtual StoreResult<bool> complete_file(bool is_last) = 0;
+  /// Returns the names of the files beside the database that a world without a mark lacks.
+  virtual std::string missing_files() const = 0;
+
   /// Returns how rows can come to be a mixture of old and new ones, and what to do then.
   virtual std::string mixture_advice() const = 0;
   /// If `keep` is true, closing the database changes nothing in it.

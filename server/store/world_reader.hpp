@@ -54,6 +54,9 @@ class WorldReader : public LogReader, public ChunkReader {
   /// end_reads().
   virtual StoreResult<void> begin_reads() = 0;
   virtual StoreResult<void> end_reads() = 0;
+  /// Counts the rows that a start does not read otherwise: base chunks, names, keyframes and the log.
+  /// Fails (corrupt) if some are missing. Cost: O(rows), without reading them.
+  virtual StoreResult<void> check_counts() { return {}; }
   /// Reads and verifies every row of every table but `tile`, which is a cache, and runs the
   /// database's own check. It is slow, and meant for audits. A loss() is no error of a row.
   virtual StoreResult<void> check() = 0;

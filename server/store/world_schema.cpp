@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -221,13 +222,15 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return failure(StoreError{kind, file, "", std::move(what)});
   };
+  // A disk that does not answer says nothing about the file.
   auto database = sql::open_sqlite(file, sql::SqliteMode::header, vfs);
-  if (!database)
-    return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
+  if (!database) return fail_as(StoreError::Kind::io, "cannot be opened: " + database.error().what);
   // The bytes are read directly, without a PRAGMA: after a crash during a checkpoint the main file
   // is not valid until its WAL is applied. The marks are in it even then, because they were written
   // before the WAL existed.
-  const auto header = sql::file_header(*database);
+  const auto read = sql::file_header(*database);
+  if (!read) return failed(read.error());
+  const std::optional<sql::SqliteHeader>& header = *read;
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
   const auto big_endian = [&](std::size_t at) {
     std::uint32_t value = 0;

@@ -29,7 +29,8 @@ StoreResult<void> add_tables_of_format_4(sql::Database& database);
 /// format. `file` names the world in the error.
 StoreResult<void> check_format(const std::string& file, std::uint32_t version);
 /// Reads the marks from the main file alone, so that a file that is refused does not change. `vfs`
-/// is that of sql::open_sqlite(). Fails with not_a_world, newer_version or corrupt.
+/// is that of sql::open_sqlite(). Fails with not_a_world, newer_version or corrupt, and with io if the
+/// file cannot be read.
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs);
 
 /// Computes the checksum of a row: XXH3-64 of the table's name and of every other column, in the

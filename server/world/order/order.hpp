@@ -28,7 +28,7 @@ namespace runstone {
 
 /// Why edits are rejected, for players and operators: while the disk is full, while the database
 /// takes no writes, and while Order::is_memory_full().
-inline constexpr const char* kDiskIsFull = "the world's disk is full";
+inline constexpr const char* kDiskIsFull = "the world's disk is full or read-only";
 inline constexpr const char* kDatabaseIsReadOnly = "the world's database is read-only";
 inline constexpr const char* kMemoryIsFull = "the server's memory is full (memory_mib)";
 

@@ -2,12 +2,16 @@
 // else works, and the row stays as it is, so that it can be repaired.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cerrno>
+#include <chrono>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/support/net/raw_client.hpp"
+#include "tests/support/sql/fault_vfs.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 
 namespace runstone {
@@ -64,6 +68,28 @@ void make_damaged_world(const std::string& folder) {
       "UPDATE snapshot SET data = zeroblob(length(data)) "
       "WHERE x=0 AND y=0 AND z=0; SELECT changes()";
   REQUIRE(raw_sql(folder + "/world.sqlite", damage) == "1");
+}
+
+TEST_CASE("a disk that cannot be read for a moment quarantines no chunk", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  config.log_level = LogLevel::error;
+  test::FaultVfs disk;
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    disk.fail(1, EIO, test::FaultVfs::Lasts::for_ever);
+    client.send(View{1, {0, 0, 0}, 1, 0});
+    while (!disk.has_failed()) std::this_thread::yield();
+    // The other loads of the view meet the error as well. Each is tried again after a second.
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    disk.heal();
+    const Answers seen = answers(client, 5);
+    CHECK(seen.sent.size() == 5);
+    CHECK(seen.unavailable.empty());
+    CHECK(server->stop().is_clean);
+  }
 }
 
 TEST_CASE("a damaged chunk is unavailable to the sessions that see it, and others are not affected",

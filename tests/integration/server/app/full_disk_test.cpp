@@ -25,7 +25,7 @@ ClientSequence edit_until_rejected(RawClient& client, ClientSequence seq) {
       if (const auto* reject = std::get_if<Reject>(&*message)) {
         CHECK(reject->client_seq == seq);
         REQUIRE(reject->reason == RejectReason::busy);
-        if (reject->detail == "the world's disk is full") return seq;
+        if (reject->detail == "the world's disk is full or read-only") return seq;
         break;  // the world strand did not know the reason yet
       }
       if (std::holds_alternative<Commit>(*message)) break;
@@ -138,7 +138,7 @@ TEST_CASE("a server that starts below its disk reserve is read-only from the fir
   client.send(voxel(1));
   const auto reject = client.next_of<Reject>();
   REQUIRE(reject.has_value());
-  CHECK(*reject == Reject{1, RejectReason::busy, "the world's disk is full", 0});
+  CHECK(*reject == Reject{1, RejectReason::busy, "the world's disk is full or read-only", 0});
   client.send(View{1, {0, 0, 0}, 0, 0});
   CHECK(client.next_of<ChunkSnapshot>().has_value());
   CHECK(server->stop().is_clean);

@@ -154,12 +154,15 @@ TEST_CASE("the header is read from the main file", "[sqlite]") {
   REQUIRE(database.has_value());
   const auto header = sql::file_header(*database);
   REQUIRE(header.has_value());
-  CHECK((*header)[70] == 1);
-  CHECK((*header)[71] == 2);
+  REQUIRE(header->has_value());
+  CHECK((**header)[70] == 1);
+  CHECK((**header)[71] == 2);
   std::ofstream(folder / "short") << "SQLite";
   auto shorter = sql::open_sqlite(folder / "short", sql::SqliteMode::header);
   REQUIRE(shorter.has_value());
-  CHECK_FALSE(sql::file_header(*shorter).has_value());
+  const auto none = sql::file_header(*shorter);
+  REQUIRE(none.has_value());
+  CHECK_FALSE(none->has_value());
 }
 
 TEST_CASE("a file is looked up through its VFS", "[sqlite]") {

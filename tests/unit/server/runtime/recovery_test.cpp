@@ -71,6 +71,22 @@ TEST_CASE("the replay begins above the checkpoint", "[server]") {
   CHECK(*replayed == 2);
 }
 
+TEST_CASE("a start fails if a name or an edit in the middle of the log is missing", "[server]") {
+  for (const std::string rows : {"player_name WHERE author = 1", "edit_log WHERE seq = 3"}) {
+    const TempFolder folder;
+    make_world(folder / "world");
+    REQUIRE(raw_sql(folder / "world/world.sqlite",
+                    "DELETE FROM " + rows + "; SELECT changes() > 0") == "1");
+    auto store = open_world(folder / "world", StoreAccess::read_write);
+    REQUIRE(store.has_value());
+    const auto start = read_world_start(**store);
+    REQUIRE_FALSE(start.has_value());
+    CAPTURE(start.error());
+    CHECK(start.error().find(rows.substr(0, rows.find(' '))) != std::string::npos);
+    CHECK(start.error().find("--accept-losses") != std::string::npos);
+  }
+}
+
 TEST_CASE("a start fails if a player or a watermark is missing", "[server]") {
   for (const std::string table : {"player", "player_instance"}) {
     const TempFolder folder;

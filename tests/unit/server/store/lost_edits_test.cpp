@@ -254,10 +254,12 @@ TEST_CASE("a checkpoint of the WAL and a compaction lose nothing", "[store][loss
   CHECK(refusal(folder.path()) == "opens");
 }
 
-TEST_CASE("a world without a mark opens without a word and gets one", "[store][loss][sqlite]") {
+TEST_CASE("a world of an older program without a mark opens without a word and gets one",
+          "[store][loss][sqlite]") {
   const TempFolder folder;
   make_killed_world(folder.path());
   std::filesystem::remove(folder / "world.sqlite-wal");
+  REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM meta WHERE key = 'open_epoch'").empty());
   const auto mark = text_of_file(folder / "world.durable");
   std::filesystem::remove(folder / "world.durable");
   {

@@ -96,12 +96,12 @@ TEST_CASE("while the disk is full edits are rejected with that reason, and accep
   bench.server.set_disk_is_full(true, bench.now());
   bench.edit(1, 2, kAtOrigin);
   CHECK(bench.environment.messages<Reject>(1, kEdge) ==
-        std::vector<Reject>{{2, RejectReason::busy, "the world's disk is full", 0}});
+        std::vector<Reject>{{2, RejectReason::busy, "the world's disk is full or read-only", 0}});
   const std::vector<EditOffer> offers = {{{1, 99, 1}, Cause::rollback, 0, {kAtOrigin, {}, 2}, 0}};
   bench.environment.log_room = false;
   const auto busy = bench.server.changes().order_edits(offers, 0, bench.now());
   CHECK(busy.state == ServerEditsResult::State::busy);
-  CHECK(std::string(busy.reason) == "the world's disk is full");
+  CHECK(std::string(busy.reason) == "the world's disk is full or read-only");
   CHECK(bench.environment.records.size() == 1);  // the edit that was accepted before
   bench.environment.log_room = true;
   bench.server.set_disk_is_full(false, bench.now());

@@ -176,7 +176,7 @@ TEST_CASE("an owner refuses to hand the world over when nobody can take it, and 
         "the database does not answer: another server may own the world");
   bench.environment(0).is_owner = true;
   bench.world(0).set_disk_is_full(true, bench.now());
-  CHECK(bench.world(0).cluster().handover_refusal({}) == "the world's disk is full");
+  CHECK(bench.world(0).cluster().handover_refusal({}) == "the world's disk is full or read-only");
   bench.world(0).set_disk_is_full(false, bench.now());
   bench.world(0).log_failed();
   CHECK(bench.world(0).cluster().handover_refusal({}) ==
