@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 
 namespace runstone {
 namespace {
@@ -25,6 +25,18 @@ bool write_all(int descriptor, std::string_view bytes) {
   }
   return true;
 }
+
+/// Closes a descriptor at the end of its scope.
+class OpenFile {
+ public:
+  explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
+  ~OpenFile() { ::close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+ private:
+  int descriptor_;
+};
 
 /// Puts the name of a renamed file on disk. A file system that cannot is no error.
 void sync_folder(const std::string& folder) {
@@ -66,18 +78,31 @@ Written write_private_file(const std::string& file, std::string_view bytes) {
 }
 
 Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) return failure(file + ": is a folder");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return failure(file + ": cannot be read: " + std::strerror(errno));
-  std::string bytes(bytes_max + 1, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad()) return failure(file + ": cannot be read");
-  if (bytes.size() > bytes_max)
-    return failure(file + ": is larger than " + std::to_string(bytes_max) + " bytes");
-  return bytes;
+  const auto fail = [&file](const std::string& why) { return failure(file + ": " + why); };
+  const auto cannot = [&fail](int error) {
+    return fail(std::string("cannot be read: ") + std::strerror(error));
+  };
+  // Without O_NONBLOCK the call would wait for the other end of a FIFO.
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (descriptor < 0) return cannot(errno);
+  const OpenFile closes(descriptor);
+  struct stat about {};
+  if (::fstat(descriptor, &about) != 0) return cannot(errno);
+  if (S_ISDIR(about.st_mode)) return fail("is a folder");
+  if (!S_ISREG(about.st_mode)) return fail("is a device, a pipe or a socket, and no file");
+  const std::string too_large = "is larger than " + std::to_string(bytes_max) + " bytes";
+  if (static_cast<std::uint64_t>(about.st_size) > bytes_max) return fail(too_large);
+  // The file may grow while it is read, and files of /proc have no size.
+  std::string bytes;
+  std::array<char, 64 * 1024> part{};
+  for (;;) {
+    const ssize_t count = ::read(descriptor, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return cannot(errno);
+    if (count == 0) return bytes;
+    bytes.append(part.data(), static_cast<std::size_t>(count));
+    if (bytes.size() > bytes_max) return fail(too_large);
+  }
 }
 
 std::string set_aside(const std::string& file) {

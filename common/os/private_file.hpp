@@ -1,6 +1,7 @@
 // Private files: settings, lists and keys of one user, which other users of the machine may not
 // read.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -17,8 +18,13 @@ Result<void, std::string> write_private_file(const std::string& file, std::strin
 /// with errno if that fails.
 bool make_private_folder(const std::string& folder);
 
-/// Returns the bytes of a file. Fails with a line that begins with the name of the file if it
-/// cannot be read or has more than `bytes_max` bytes.
+/// Files of settings, certificates, keys and the like have at most so many bytes.
+inline constexpr std::size_t kSmallFileBytesMax = std::size_t{1} << 20;
+
+/// Returns the bytes of a regular file. It is for every small file that settings, options and
+/// commands name: a device could have no end, and a pipe would block. Fails with a line that begins
+/// with the name of the file if it cannot be read, is no regular file, or has more than `bytes_max`
+/// bytes.
 Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max);
 
 /// Renames a file that cannot be used to `file` + ".broken", so that its user can repair it.

@@ -1,9 +1,8 @@
 #include "server/admin/material_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
+
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 namespace {
@@ -13,17 +12,9 @@ constexpr std::size_t kRowsInLine = 8;
 }  // namespace
 
 Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::string& file) {
-  std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(file, error);
-  if (!is_file) return failure(file + ": " + (error ? error.message() : "is no file"));
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return failure(file + ": cannot be read");
-  std::string toml(kMaterialFileBytesMax + 1, '\0');
-  in.read(toml.data(), static_cast<std::streamsize>(toml.size()));
-  toml.resize(static_cast<std::size_t>(in.gcount()));
-  if (toml.size() > kMaterialFileBytesMax)
-    return failure(file + ": is larger than " + std::to_string(kMaterialFileBytesMax) + " bytes");
-  auto rows = parse_material_rows(toml, file);
+  const auto toml = read_file(file, kMaterialFileBytesMax);
+  if (!toml) return failure(toml.error());
+  auto rows = parse_material_rows(*toml, file);
   if (!rows) return failure(rows.error().message());
   return *std::move(rows);
 }

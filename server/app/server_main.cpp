@@ -13,10 +13,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <functional>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <optional>
@@ -25,6 +23,7 @@
 
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
@@ -35,6 +34,7 @@
 #include "server/app/server_options.hpp"
 #include "server/app/standby.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/view_memory.hpp"
 
 namespace runstone {
 namespace {
@@ -49,10 +49,9 @@ int cannot_start(const std::string& line) {
 Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   ServerConfig config;
   if (!options.config_file.empty()) {
-    std::ifstream in(options.config_file, std::ios::binary);
-    if (!in) return failure(options.config_file + ": cannot be read");
-    const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto read = read_config_toml(config, toml, options.config_file);
+    const auto toml = read_file(options.config_file, kSmallFileBytesMax);
+    if (!toml) return failure(toml.error());
+    const auto read = read_config_toml(config, *toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
@@ -196,6 +195,7 @@ int run(const ServerOptions& options) {
     }
   }
   allow_files_for(*config);
+  if (const auto warning = view_memory_warning(*config)) logger("app").warn("{}", *warning);
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };

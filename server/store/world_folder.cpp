@@ -3,11 +3,10 @@
 #include <sodium.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "common/generate/spawn_point.hpp"
+#include "common/os/private_file.hpp"
 #include "server/store/postgres_backend.hpp"
 
 namespace runstone {
@@ -48,10 +47,10 @@ bool has_world(const std::string& place) {
 
 Result<MaterialTable, std::string> read_materials(const std::string& file) {
   if (file.empty()) return default_material_table();
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return failure(file + ": cannot be read");
-  const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  auto table = parse_material_table(toml, file);
+  constexpr std::size_t kTableBytesMax = std::size_t{64} << 20;  // far more than 65,536 rows have
+  const auto toml = read_file(file, kTableBytesMax);
+  if (!toml) return failure(toml.error());
+  auto table = parse_material_table(*toml, file);
   if (!table) return failure(table.error().message());
   return *std::move(table);
 }

@@ -5,13 +5,12 @@
 
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <string>
 
 #include "common/os/open_files.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_gateway.hpp"
 #include "server/web/web_options.hpp"
@@ -29,10 +28,9 @@ int cannot_start(const std::string& line) {
 Result<WebConfig, std::string> read_config(const WebOptions& options) {
   WebConfig config;
   if (!options.config_file.empty()) {
-    std::ifstream in(options.config_file, std::ios::binary);
-    if (!in) return failure(options.config_file + ": cannot be read");
-    const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto read = read_web_toml(config, toml, options.config_file);
+    const auto toml = read_file(options.config_file, kSmallFileBytesMax);
+    if (!toml) return failure(toml.error());
+    const auto read = read_web_toml(config, *toml, options.config_file);
     if (!read) return failure(read.error().message());
   }
   const auto look_up = [](const std::string& name) -> std::optional<std::string> {
