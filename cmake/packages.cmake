@@ -26,6 +26,7 @@ pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 pkg_check_modules(PQ REQUIRED IMPORTED_TARGET libpq)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
+pkg_check_modules(ICU REQUIRED IMPORTED_TARGET icu-i18n)
 
 # Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)

@@ -3,7 +3,7 @@
 FROM debian:bookworm-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends \
       ca-certificates cmake ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
-      flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libpq-dev libzstd-dev libxxhash-dev libhwy-dev libsodium-dev libssl-dev libutf8proc-dev \
+      flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libpq-dev libzstd-dev libxxhash-dev libhwy-dev libsodium-dev libssl-dev libutf8proc-dev libicu-dev \
       libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libboost-dev prometheus-cpp-dev libegl-dev libgl-dev libosmesa6-dev libglfw3-dev libglm-dev \
       libimgui-dev libdeflate-dev zlib1g-dev python3-glad libstb-dev && rm -rf /var/lib/apt/lists/*
 WORKDIR /src

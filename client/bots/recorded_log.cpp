@@ -30,7 +30,7 @@ void note_materials(const EditDescriptor& edit, std::vector<bool>& used) {
 }  // namespace
 
 std::string session_name(const std::string& recorded, AuthorId author) {
-  if (author == 0) return "recorded server";
+  if (author == 0) return "recorded world";
   const std::string_view name = cut_utf8(recorded, kPlayerNameBytesMax);
   return is_plain_name(name) ? std::string(name) : "author " + std::to_string(author);
 }

@@ -33,4 +33,15 @@ constexpr AddressBlock address_range_of(AddressBlock block) {
   return AddressBlock{is_v4 ? bits & ~std::uint64_t{0xff} : bits & ~std::uint64_t{0xffff}};
 }
 
+/// Returns true for the addresses of networks that nobody reaches from outside: 10.0.0.0/8,
+/// 172.16.0.0/12, 192.168.0.0/16, fc00::/7 and fe80::/10.
+constexpr bool is_of_local_network(AddressBlock block) {
+  const auto bits = static_cast<std::uint64_t>(block);
+  if (bits >> 32 == 0xffff) {
+    const auto v4 = static_cast<std::uint32_t>(bits);
+    return v4 >> 24 == 10 || v4 >> 20 == 0xac1 || v4 >> 16 == 0xc0a8;
+  }
+  return bits >> 57 == 0xfc >> 1 || bits >> 54 == 0xfe80 >> 6;
+}
+
 }  // namespace runstone

@@ -1,14 +1,14 @@
 #include "common/os/private_file.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 
 #include "common/os/file_writer.hpp"
 
@@ -16,6 +16,18 @@ namespace runstone {
 namespace {
 
 using Written = Result<void, std::string>;
+
+/// Closes a descriptor at the end of its scope.
+class OpenFile {
+ public:
+  explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
+  ~OpenFile() { ::close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+ private:
+  int descriptor_;
+};
 
 }  // namespace
 
@@ -38,19 +50,36 @@ Written write_private_file(const std::string& file, std::string_view bytes) {
   return {};
 }
 
-Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) return failure(file + ": is a folder");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return failure(file + ": cannot be read: " + std::strerror(errno));
-  std::string bytes(bytes_max + 1, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad()) return failure(file + ": cannot be read");
-  if (bytes.size() > bytes_max)
-    return failure(file + ": is larger than " + std::to_string(bytes_max) + " bytes");
-  return bytes;
+Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max,
+                                           FileKinds kinds) {
+  const auto fail = [&file](const std::string& why) { return failure(file + ": " + why); };
+  const auto cannot = [&fail](int error) {
+    return fail(std::string("cannot be read: ") + std::strerror(error));
+  };
+  // Without O_NONBLOCK the call would wait for the other end of a FIFO.
+  const bool takes_pipes = kinds == FileKinds::regular_or_pipe;
+  const int waits = takes_pipes ? 0 : O_NONBLOCK;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | waits | O_NOCTTY | O_CLOEXEC);
+  if (descriptor < 0) return cannot(errno);
+  const OpenFile closes(descriptor);
+  struct stat about{};
+  if (::fstat(descriptor, &about) != 0) return cannot(errno);
+  if (S_ISDIR(about.st_mode)) return fail("is a folder");
+  if (!S_ISREG(about.st_mode) && !(takes_pipes && S_ISFIFO(about.st_mode)))
+    return fail("is a device, a pipe or a socket, and no file");
+  const std::string too_large = "is larger than " + std::to_string(bytes_max) + " bytes";
+  if (static_cast<std::uint64_t>(about.st_size) > bytes_max) return fail(too_large);
+  // The file may grow while it is read, and files of /proc have no size.
+  std::string bytes;
+  std::array<char, 64 * 1024> part{};
+  for (;;) {
+    const ssize_t count = ::read(descriptor, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return cannot(errno);
+    if (count == 0) return bytes;
+    bytes.append(part.data(), static_cast<std::size_t>(count));
+    if (bytes.size() > bytes_max) return fail(too_large);
+  }
 }
 
 std::string set_aside(const std::string& file) {

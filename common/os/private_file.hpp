@@ -1,6 +1,8 @@
 // Private files: settings, lists and keys of one user, which other users of the machine may not
 // read.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -18,9 +20,20 @@ Result<void, std::string> write_private_file(const std::string& file, std::strin
 /// with errno if that fails.
 bool make_private_folder(const std::string& folder);
 
-/// Returns the bytes of a file. Fails with a line that begins with the name of the file if it
-/// cannot be read or has more than `bytes_max` bytes.
-Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max);
+/// Files of settings, certificates, keys and the like have at most so many bytes.
+inline constexpr std::size_t kSmallFileBytesMax = std::size_t{1} << 20;
+
+/// What may stand behind the name of a file that is read as a whole.
+enum class FileKinds : std::uint8_t {
+  regular,         // for a server that runs: a device could have no end, and a pipe would block
+  regular_or_pipe  // for options of a program, such as `--password-file <(pass show world)`
+};
+
+/// Returns the bytes of a small file that settings, options and commands name. Fails with a line
+/// that begins with the name of the file if it cannot be read, is of another kind, or has more than
+/// `bytes_max` bytes. Waits for the other end of a pipe.
+Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max,
+                                           FileKinds kinds = FileKinds::regular);
 
 /// Renames a file that cannot be used to `file` + ".broken", so that its user can repair it.
 /// Replaces an older broken file. Returns the new name, or an empty text if that failed.

@@ -4,8 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "common/os/private_file.hpp"
-
 namespace runstone {
 namespace {
 
@@ -27,8 +25,9 @@ Result<std::string, std::string> text_of_bytes(std::string bytes) {
   return text;
 }
 
-Result<std::string, std::string> read_text_file(const std::string& file, std::size_t bytes_max) {
-  auto bytes = read_file(file, bytes_max);
+Result<std::string, std::string> read_text_file(const std::string& file, std::size_t bytes_max,
+                                                FileKinds kinds) {
+  auto bytes = read_file(file, bytes_max, kinds);
   if (!bytes) return bytes;
   auto text = text_of_bytes(*std::move(bytes));
   if (!text) return failure(file + ": " + text.error());

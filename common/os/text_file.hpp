@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 
@@ -20,9 +21,10 @@ inline constexpr std::size_t kFirstLineBytesMax = 4096;
 /// the file.
 Result<std::string, std::string> text_of_bytes(std::string bytes);
 
-/// Reads a text file. Fails with a line that begins with the name of the file if it cannot be read,
-/// has more than `bytes_max` bytes, or is not in UTF-8 as text_of_bytes() says.
-Result<std::string, std::string> read_text_file(const std::string& file, std::size_t bytes_max);
+/// Reads a text file. Fails with a line that begins with the name of the file if read_file() fails,
+/// or if it is not in UTF-8 as text_of_bytes() says.
+Result<std::string, std::string> read_text_file(const std::string& file, std::size_t bytes_max,
+                                                FileKinds kinds = FileKinds::regular_or_pipe);
 
 /// Removes what text_of_bytes() leaves out from a line that was read from a stream without its line
 /// feed: a byte order mark before it, and a carriage return behind it.

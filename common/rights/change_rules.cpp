@@ -7,6 +7,10 @@ namespace {
 
 using Refusal = std::optional<std::string>;
 
+constexpr const char* kGrantsFull =
+    "As many players have a role as the world can hold: one of them must lose it first (revoke "
+    "PLAYER).";
+
 std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
 std::optional<RightSet> built_in_rights(const std::string& role) {
@@ -100,7 +104,7 @@ class ChangeCheck {
     if (auto lacks = needs(Right::administer)) return lacks;
     const Decided<Role>* old = state_.find_role(change.role.name);
     if (old == nullptr && state_.roles().size() >= kRolesMax) {
-      return "The world has as many roles as it can have.";
+      return "The world has as many roles as it can have. Remove one first (role remove NAME).";
     }
     return refused_gift(change.role.rights, old == nullptr ? RightSet{} : old->value.rights);
   }
@@ -111,14 +115,18 @@ class ChangeCheck {
     if (old == nullptr) return no_role(change.role);
     // A built-in role stays, whoever uses it.
     if (const auto rights = built_in_rights(change.role)) {
-      if (old->by.seq == 0) return "The role " + quoted(change.role) + " is built in.";
+      if (old->by.seq == 0)
+        return "The role " + quoted(change.role) + " is built in, and nothing was changed of it.";
       return refused_gift(*rights, old->value.rights);
     }
     if (state_.default_role().value == change.role) {
-      return "The role " + quoted(change.role) + " is the default role.";
+      return "The role " + quoted(change.role) +
+             " is the default role: make another one the default first (role default NAME).";
     }
     for (const auto& [key, grant] : state_.grants()) {
-      if (grant.value == change.role) return "A player has the role " + quoted(change.role) + ".";
+      if (grant.value == change.role)
+        return "A player has the role " + quoted(change.role) +
+               ": give the players with it another one first (grants lists them).";
     }
     return std::nullopt;
   }
@@ -134,7 +142,7 @@ class ChangeCheck {
     if (auto reason = refused_gift(role->value.rights, {})) return reason;
     if (!change.role.empty() && !state_.grants().contains(change.key) &&
         state_.grants().size() >= kGrantsMax) {
-      return "As many players have a role as the world can hold.";
+      return kGrantsFull;
     }
     return std::nullopt;
   }
@@ -150,7 +158,8 @@ class ChangeCheck {
     if (auto reason = refused_subject(change.subject)) return reason;
     if (state_.find_restriction(change.kind, change.subject) == nullptr &&
         state_.restriction_count() >= kRestrictionsMax) {
-      return "The world has as many restrictions as it can hold. Lift some that have ended.";
+      return "The world has as many restrictions as it can hold. Lift some that have ended (bans lists "
+             "them).";
     }
     return std::nullopt;
   }
@@ -158,7 +167,7 @@ class ChangeCheck {
   Refusal refused_kind(const Lift& change) const {
     if (auto reason = refused_subject(change.subject)) return reason;
     if (state_.find_restriction(change.kind, change.subject) == nullptr) {
-      return "There is no such restriction.";
+      return "There is no such restriction (bans lists them).";
     }
     return std::nullopt;
   }
@@ -169,7 +178,8 @@ class ChangeCheck {
     const ProtectedBox* old = found == nullptr ? nullptr : &found->value;
     const std::size_t boxes_max = rights_.has(Right::protect) ? kBoxesMax : kClaimedBoxesMax;
     if (old == nullptr && state_.boxes().size() >= boxes_max) {
-      return "The world has as many protected boxes as it can have.";
+      return "The world has as many protected boxes as it can have. Remove one first (unprotect "
+             "NAME).";
     }
     for (const std::string& role : box.roles) {
       const bool is_old =
@@ -182,7 +192,8 @@ class ChangeCheck {
 
   Refusal refused_kind(const Unprotect& change) const {
     const Decided<ProtectedBox>* box = state_.find_box(change.box);
-    if (box == nullptr) return "There is no protected box " + quoted(change.box) + ".";
+    if (box == nullptr)
+      return "There is no protected box " + quoted(change.box) + " (protected lists them).";
     if (rights_.has(Right::protect)) return std::nullopt;
     if (!box->value.owner || box->value.owner != actor_.key) return needs(Right::protect);
     return refused_while_frozen();
@@ -200,7 +211,7 @@ class ChangeCheck {
           return state_.usable_invite(invite.first, now_us_) != nullptr;
         });
     if (static_cast<std::size_t>(usable) >= kInvitesMax) {
-      return "The world has as many invites as it can have. Cancel some.";
+      return "The world has as many invites as it can have. Cancel some (invite cancel ID).";
     }
     return std::nullopt;
   }
@@ -235,7 +246,8 @@ class ChangeCheck {
     if (!rights_.has(Right::administer)) {
       if (auto lacks = needs(Right::grant)) return lacks;
     }
-    if (!state_.invites().contains(change.invite)) return "There is no such invite.";
+    if (!state_.invites().contains(change.invite))
+      return "There is no such invite (invites lists them).";
     return std::nullopt;
   }
 
@@ -245,15 +257,15 @@ class ChangeCheck {
     if (role == nullptr) return no_role(name);
     if (auto reason = refused_gift(role->value.rights, {})) return reason;
     if (role->value.rights.has(Right::see)) return std::nullopt;
-    return "Players with the role " + quoted(name) + " may not join.";
+    return "Players with the role " + quoted(name) +
+           " may not join: choose a role with the right see (roles lists them).";
   }
 
   /// Checks the role that a player gets on joining.
   Refusal refused_first_grant(const PublicKey& key, const std::string& role) const {
     if (state_.grants().contains(key)) return "You have a role already.";
     if (state_.find_role(role) == nullptr) return no_role(role);
-    if (state_.grants().size() >= kGrantsMax)
-      return "As many players have a role as the world can hold.";
+    if (state_.grants().size() >= kGrantsMax) return kGrantsFull;
     return std::nullopt;
   }
 
@@ -290,12 +302,13 @@ class ChangeCheck {
     const Role& role = state_.role_of(*actor_.key);
     const RightsState::Holding others = state_.holding_of(*actor_.key, old);
     if (others.boxes >= role.claims_max) {
-      return "Your role allows " + std::to_string(role.claims_max) + " boxes.";
+      return "Your role allows " + std::to_string(role.claims_max) +
+             " boxes: remove one of yours first (unprotect NAME).";
     }
     const std::uint64_t volume = volume_of(box.box);
     if (volume > role.claim_volume_max || others.volume > role.claim_volume_max - volume) {
       return "Your role allows boxes of " + std::to_string(role.claim_volume_max) +
-             " voxels together.";
+             " voxels together: make it smaller, or remove one of yours first (unprotect NAME).";
     }
     return refused_ground(box);
   }
@@ -321,7 +334,7 @@ class ChangeCheck {
   }
 
   static Refusal no_role(const std::string& role) {
-    return "There is no role " + quoted(role) + ".";
+    return "There is no role " + quoted(role) + " (roles lists them).";
   }
 
   /// Checks rights that the actor gives. Those that the receiver has already are `old`.
@@ -329,18 +342,21 @@ class ChangeCheck {
     for (std::size_t i = 0; i < kRightCount; ++i) {
       const auto right = static_cast<Right>(i);
       if (given.has(right) && !old.has(right) && !rights_.has(right)) {
-        return "You lack the right " + quoted(name_of(right)) + " and cannot give it.";
+        return "You lack the right " + quoted(name_of(right)) +
+               " and cannot give it: ask an administrator, or the host.";
       }
     }
     return std::nullopt;
   }
 
   Refusal refused_target(const PublicKey& target) const {
-    if (actor_.key == target) return "You cannot do this to yourself.";
+    if (actor_.key == target)
+      return "You cannot do this to yourself: another administrator can, or the host at the console.";
     if (has_all_ || rights_.has(Right::administer)) return std::nullopt;
     const RightSet theirs = state_.role_of(target).rights;
     if (rights_.includes(theirs) && theirs != rights_) return std::nullopt;
-    return "You can do this only to players who have fewer rights than you.";
+    return "You can do this only to players who have fewer rights than you: ask an administrator, or "
+           "the host.";
   }
 
   Refusal refused_subject(const RestrictionSubject& subject) const {
@@ -377,7 +393,8 @@ Refusal why_refused(const RightsState& state, const RightsActor& actor, const Ri
   if (auto reason = ChangeCheck(state, actor, now_us).refused(change)) return reason;
   if (may_take_administer(state, change) && Outlook(state, nullptr, now_us).has_administrator() &&
       !Outlook(state, &change, now_us).has_administrator()) {
-    return "The world would have no administrator any more.";
+    return "The world would have no administrator any more: give another player a role with the "
+           "rights see and administer first (grant PLAYER administrator).";
   }
   return std::nullopt;
 }

@@ -49,6 +49,10 @@ class RightSet {
   constexpr bool has(Right right) const { return (bits_ & bit(right)) != 0; }
   constexpr void add(Right right) { bits_ |= bit(right); }
   constexpr void remove(Right right) { bits_ &= ~bit(right); }
+  /// Returns the rights of this set that the other one has not.
+  constexpr RightSet without(RightSet other) const { return of_bits(bits_ & ~other.bits_); }
+  /// Returns the rights that both sets have.
+  constexpr RightSet and_in(RightSet other) const { return of_bits(bits_ & other.bits_); }
   /// Returns true if every right of the other set is in this one.
   constexpr bool includes(RightSet other) const { return (other.bits_ & ~bits_) == 0; }
   friend constexpr bool operator==(RightSet, RightSet) = default;
@@ -57,5 +61,10 @@ class RightSet {
   static constexpr std::uint32_t bit(Right right) { return 1U << static_cast<unsigned>(right); }
   std::uint32_t bits_ = 0;
 };
+
+/// The rights with which a player acts on other players and on their ground.
+inline constexpr RightSet kRightsOverOthers = {Right::build_protected, Right::protect,
+                                               Right::roll_back,       Right::moderate,
+                                               Right::grant,           Right::administer};
 
 }  // namespace runstone

@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <variant>
 
+#include "server/admin/command_table.hpp"
+#include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_reason.hpp"
+#include "server/names/name_reference.hpp"
 
 namespace runstone {
 namespace {
@@ -30,8 +33,9 @@ KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std
     sources.present.push_back({player.author, player.key, player.name});
   sources.visitors = world.order().players().visitors();
   // Only a fingerprint finds a key without a name.
-  if (std::any_of(words.begin(), words.end(), is_fingerprint))
-    sources.others = keys_of(world.rights().state());
+  const bool has_fingerprint = std::any_of(
+      words.begin(), words.end(), [](const auto& word) { return !fingerprint_in(word).empty(); });
+  if (has_fingerprint) sources.others = keys_of(world.rights().state());
   return sources;
 }
 
@@ -125,17 +129,32 @@ void CommandCall::answer_when_durable(Sequence record, const std::string& text) 
 }
 
 void CommandCall::with_players(const std::vector<std::string>& words,
-                               std::function<void(const KnownPlayers&, const Keys&)> go_on) const {
+                               std::function<void(const KnownPlayers&, const Keys&)> go_on,
+                               const std::string& before) const {
   on_worker(
-      "",
+      before,
       [sources = sources_of(world(), words), words](WorldReader& reader) {
         return look_up_players(reader, sources, words);
       },
       [go_on = std::move(go_on)](const PlayerLookUp& found) { go_on(found.players, found.keys); });
 }
 
+bool CommandCall::refuse_unless_confirmed(const std::optional<std::string>& hazard) const {
+  if (!hazard || is_confirmed) return false;
+  // A line with a password's verifier is not repeated.
+  const std::string repeat =
+      logged_command(line) == line
+          ? "give the command as: " + line + " " + kAnyway
+          : std::string("give the command with the word ") + kAnyway + " at its end";
+  refuse("nothing has changed: " + *hazard + ". To do it all the same, " + repeat);
+  return true;
+}
+
 void CommandCall::change_rights(const RightsChange& change, const std::string& text) const {
   if (const auto valid = validate(change); !valid) return refuse(valid.error().what);
+  if (auto why = world().rights().change_refusal(change, caller.actor))
+    return refuse(*std::move(why));
+  if (refuse_unless_confirmed(hazard_of(rights(), change))) return;
   const std::size_t sessions = world().session_count();
   const auto seq = world().changes().change_rights(change, caller.actor, caller.author, now);
   if (!seq) return refuse(seq.error());

@@ -74,6 +74,8 @@ struct CommandCall {
   CommandCaller caller;
   Clocks now;
   CommandReply reply;
+  std::string line = {};      // as it was typed
+  bool is_confirmed = false;  // kAnyway was typed
 
   WorldServer& world() const { return services.world; }
   const RightsState& rights() const { return world().rights().state(); }
@@ -94,14 +96,20 @@ struct CommandCall {
 
   using Keys = std::vector<PublicKey>;  // one for each word that was looked up
   /// Looks up players on a worker. Calls `go_on` with what is known and with the key of each word,
-  /// or refuses the command if a word means nobody or several players.
+  /// or refuses the command if a word means nobody or several players, with a text that begins with
+  /// `before`.
   void with_players(const std::vector<std::string>& words,
-                    std::function<void(const KnownPlayers&, const Keys&)> go_on) const;
+                    std::function<void(const KnownPlayers&, const Keys&)> go_on,
+                    const std::string& before = "") const;
+  /// Refuses the command with a hazard, which is a sentence without a period, and with the line to
+  /// repeat, unless the line ended with kAnyway. Returns true if it refused.
+  bool refuse_unless_confirmed(const std::optional<std::string>& hazard) const;
   /// Answers a command whose record is ordered, and in force, when it is on disk. If that takes
   /// kAnswerUnsavedUs, or the disk is full, an answer that is_unsaved comes before.
   void answer_when_durable(Sequence record, const std::string& text) const;
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
-  /// (record N)" and the number of sessions that it ended, or with why it was refused.
+  /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
+  /// which hazard_of() warns must be confirmed.
   void change_rights(const RightsChange& change, const std::string& text) const;
 };
 

@@ -22,8 +22,13 @@ struct CommandRow;
 /// A line that was parsed.
 struct Command {
   const CommandRow* row = nullptr;
-  std::any meaning;  // of the words after those that name the command
+  std::any meaning;           // of the words after those that name the command
+  bool is_confirmed = false;  // the line ended with kAnyway
 };
+
+/// The word at the end of a line that confirms a command with wide consequences. Without it the
+/// command is refused with what it would do.
+inline constexpr const char* kAnyway = "anyway";
 
 /// Who may give a command.
 struct CommandRule {
@@ -68,8 +73,9 @@ struct CommandRow {
   const char* help = "";
   CommandFunctions functions;
 
-  bool takes_text = false;  // the rest of the line is one text, also with single quotes in it
-  bool is_secret = false;   // the server's log gets no more than the first word
+  bool may_be_confirmed = false;  // kAnyway may end the line
+  bool takes_text = false;        // the rest of the line is one text, also with single quotes in it
+  bool is_secret = false;         // the server's log gets no more than the first word
   /// How a server that follows the owner carries the command out. Null: it refuses the command.
   void (*run_at_follower)(const FollowerCall& call) = nullptr;
   /// Returns the line as the control program sends it. Null: as it was typed.

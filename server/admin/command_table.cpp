@@ -82,6 +82,13 @@ Result<Command, std::string> parse_words(const CommandRow& row, WordReader reade
   return Command{&row, *std::move(meaning)};
 }
 
+/// Returns true if the last word of the line confirms the command. It does not where it is the first
+/// word behind those that name the command, or the text of a reason.
+bool ends_with_anyway(const CommandRow& row, const std::vector<std::string>& words) {
+  return row.may_be_confirmed && words.size() > naming_words(row) + 1 && words.back() == kAnyway &&
+         words[words.size() - 2] != "reason";
+}
+
 /// Returns the row of a line that is a word and a text, or null. `text` becomes the text.
 const CommandRow* find_text_command(std::string_view line, std::string_view& text) {
   line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
@@ -125,12 +132,16 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
     const std::vector<std::string> name{std::string(row->words)};
     return parse_words(*row, WordReader(name, 1, now_us, text));
   }
-  const auto words = command_words(line);
+  auto words = command_words(line);
   if (!words) return failure(words.error());
   if (words->empty()) return failure("no command: `help` names them");
   const CommandRow* row = find_command(*words);
   if (row == nullptr) return failure(no_command(*words));
-  return parse_words(*row, WordReader(*words, naming_words(*row), now_us));
+  const bool is_confirmed = ends_with_anyway(*row, *words);
+  if (is_confirmed) words->pop_back();
+  auto command = parse_words(*row, WordReader(*words, naming_words(*row), now_us));
+  if (command) command->is_confirmed = is_confirmed;
+  return command;
 }
 
 std::string command_help(const std::function<bool(Right)>& has_right, bool is_local) {
@@ -162,7 +173,10 @@ void give_command(const CommandCall& call, const std::string& line) {
   if (!command) return call.refuse(command.error());
   if (auto why = why_not(call.caller, call.rights(), command->row->rule, call.rights_time()))
     return call.refuse(*std::move(why));
-  command->row->functions.run(call, command->meaning);
+  CommandCall given = call;
+  given.line = line;
+  given.is_confirmed = command->is_confirmed;
+  command->row->functions.run(given, command->meaning);
 }
 
 void give_command(const FollowerCall& call, const std::string& line) {

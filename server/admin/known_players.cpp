@@ -7,28 +7,9 @@
 #include "common/names/folded_name.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/word_reader.hpp"
+#include "server/names/name_reference.hpp"
 
 namespace runstone {
-namespace {
-
-/// Returns the fingerprint in the form of key_fingerprint(), or an empty text if the word has not
-/// the form of one.
-std::string fingerprint_in(std::string_view word) {
-  std::string text;
-  if (word.size() != 14) return text;
-  for (std::size_t i = 0; i < word.size(); ++i) {
-    const char c = word[i];
-    const bool is_digit = c >= '0' && c <= '9';
-    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    if (i == 4 || i == 9 ? c != '-' : !is_digit && !is_letter) return "";
-    text += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
-  return text;
-}
-
-}  // namespace
-
-bool is_fingerprint(const std::string& word) { return !fingerprint_in(word).empty(); }
 
 KnownPlayers::KnownPlayers(const Sources& sources) {
   for (const PlayerRow& row : sources.present) add(row.key, row.name, row.author);
@@ -51,41 +32,98 @@ void KnownPlayers::add(const PublicKey& key, const std::string& name,
   names_[folded_name(name)].insert(key);
 }
 
-Result<PublicKey, std::string> KnownPlayers::find(const std::string& word) const {
+std::set<PublicKey> KnownPlayers::named(const std::string& name) const {
+  const auto found = names_.find(folded_name(name));
+  return found == names_.end() ? std::set<PublicKey>() : found->second;
+}
+
+std::set<PublicKey> KnownPlayers::with_fingerprint(const std::string& fingerprint) const {
+  std::set<PublicKey> keys;
+  for (const auto& [key, player] : players_) {
+    if (key_fingerprint(key) == fingerprint) keys.insert(key);
+  }
+  return keys;
+}
+
+/// Returns text such as "ana #3 9M1Q-Z7CR-04KD (say #3), bob ...".
+std::string KnownPlayers::list_of(const std::set<PublicKey>& keys) const {
   constexpr std::size_t kListed = 10;
-  if (word.starts_with('#')) {
-    const auto author = number_of<AuthorId>(std::string_view(word).substr(1));
-    const auto key = author ? authors_.find(*author) : authors_.end();
-    if (key != authors_.end()) return key->second;
-    return failure("nobody has that author number (players lists them)");
-  }
-  PublicKey typed{};
-  if (read_hex(word, typed)) return typed;
-  std::set<PublicKey> meant;
-  if (const auto named = names_.find(folded_name(word)); named != names_.end())
-    meant = named->second;
-  const std::string fingerprint = fingerprint_in(word);
-  if (!fingerprint.empty()) {
-    for (const auto& [key, player] : players_) {
-      if (key_fingerprint(key) == fingerprint) meant.insert(key);
-    }
-  }
-  if (meant.size() == 1) return *meant.begin();
-  if (meant.empty()) {
-    return failure(
-        fingerprint.empty()
-            ? "nobody of that name is known here (players and names list the others)"
-            : "nobody with that fingerprint is known here (players and names list them)");
-  }
   std::string list;
   std::size_t listed = 0;
-  for (const PublicKey& key : meant) {
+  for (const PublicKey& key : keys) {
     if (++listed > kListed) break;
-    list += (listed == 1 ? " " : ", ") + text_of(key);
+    list += (listed == 1 ? "" : ", ") + text_of(key) + " (say " + word_for(key) + ")";
   }
-  if (meant.size() > kListed) list += " and " + std::to_string(meant.size() - kListed) + " more";
-  return failure("several players have, own or had that name:" + list +
-                 " (give #N, the fingerprint or the key)");
+  if (keys.size() > kListed) list += " and " + std::to_string(keys.size() - kListed) + " more";
+  return list;
+}
+
+Result<PublicKey, std::string> KnownPlayers::find(const std::string& word) const {
+  PublicKey typed{};
+  if (read_hex(word, typed)) return typed;
+  const bool is_number = word.starts_with('#');
+  const std::string fingerprint = fingerprint_in(word);
+  const std::set<PublicKey> by_name = named(word);
+  std::set<PublicKey> meant;
+  if (is_number) {
+    const auto author = number_of<AuthorId>(std::string_view(word).substr(1));
+    const auto key = author ? authors_.find(*author) : authors_.end();
+    if (key != authors_.end()) meant.insert(key->second);
+  } else if (!fingerprint.empty()) {
+    meant = with_fingerprint(fingerprint);
+  } else {
+    meant = by_name;
+  }
+  const bool is_reference = is_number || !fingerprint.empty();
+  std::set<PublicKey> all = meant;
+  all.insert(by_name.begin(), by_name.end());
+  if (meant.size() == 1 && all.size() == 1) return *meant.begin();
+  if (all.size() > 1) {
+    return failure((is_reference && !by_name.empty()
+                        ? "that is also the name of a player; it may mean "
+                        : "several players have, own or had that name: ") +
+                   list_of(all));
+  }
+  const std::string called = all.empty() ? "" : ". The player of that name is " + list_of(all);
+  if (is_number) return failure("nobody has that author number (players lists them)" + called);
+  if (!fingerprint.empty()) {
+    return failure("nobody with that fingerprint is known here (players and names list them)" +
+                   called);
+  }
+  return failure("nobody of that name is known here (players and names list the others)");
+}
+
+std::optional<std::string> KnownPlayers::doubt_of(AuthorId author) const {
+  const std::set<PublicKey> by_name = named("#" + std::to_string(author));
+  const auto key = authors_.find(author);
+  std::set<PublicKey> all = by_name;
+  if (key != authors_.end()) all.insert(key->second);
+  if (by_name.empty() || (all.size() == 1 && key != authors_.end())) return std::nullopt;
+  return "that is also the name of a player; it may mean " + list_of(all);
+}
+
+std::optional<AuthorId> KnownPlayers::author_of(const PublicKey& key) const {
+  const auto found = players_.find(key);
+  return found == players_.end() ? std::nullopt : found->second.author;
+}
+
+bool KnownPlayers::has_name(const PublicKey& key, const std::string& name) const {
+  const auto found = players_.find(key);
+  return found != players_.end() && folded_name(found->second.name) == folded_name(name);
+}
+
+std::string KnownPlayers::word_for(const PublicKey& key) const {
+  const auto means_only = [&](std::set<PublicKey> meant, const std::string& word) {
+    const std::set<PublicKey> by_name = named(word);
+    meant.insert(by_name.begin(), by_name.end());
+    return meant == std::set<PublicKey>{key};
+  };
+  if (const auto author = author_of(key)) {
+    const std::string number = "#" + std::to_string(*author);
+    if (means_only({authors_.at(*author)}, number)) return number;
+  }
+  const std::string fingerprint = key_fingerprint(key);
+  return means_only(with_fingerprint(fingerprint), fingerprint) ? fingerprint : to_hex(key);
 }
 
 std::string KnownPlayers::text_of(const PublicKey& key) const {

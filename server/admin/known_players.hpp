@@ -1,6 +1,6 @@
 // KnownPlayers: finds the key that a command means, and the text for a key in an answer. A name
 // says little: several keys may use it one after another. So a word that fits several keys is an
-// error that lists them, and every text has the fingerprint of the key.
+// error that lists them and the word for each, and every text has the fingerprint of the key.
 #pragma once
 #include <map>
 #include <optional>
@@ -14,9 +14,6 @@
 #include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
-
-/// Returns true if the word has the form of a key_fingerprint(), in upper or lower case.
-bool is_fingerprint(const std::string& word);
 
 class KnownPlayers {
  public:
@@ -39,9 +36,21 @@ class KnownPlayers {
   ///   - a fingerprint: the known key that has it;
   ///   - otherwise the player who has, owns or had this name. Case and the like do not count
   ///     (folded_name).
-  /// Fails if there is none, or if there are several; the error then lists them. A word can be both
-  /// fingerprint and name. Cost: O(keys) for a fingerprint, otherwise O(log n).
+  /// Fails if there is none, or if there are several; the error then lists them, with a word that
+  /// means each of them alone. A number or fingerprint that is also the name of somebody else is
+  /// refused: owners keep such names from before (name_reference.hpp). Cost: O(keys) for a
+  /// fingerprint, otherwise O(log n).
   Result<PublicKey, std::string> find(const std::string& word) const;
+  /// Returns why "#N" does not mean the author with this number alone: it is the name of somebody
+  /// else, too. Otherwise returns nullopt, also if nobody is known to have the number.
+  std::optional<std::string> doubt_of(AuthorId author) const;
+  /// Returns the author number of a key, or nullopt.
+  std::optional<AuthorId> author_of(const PublicKey& key) const;
+  /// Returns true if the player has this name now. Case and the like do not count.
+  bool has_name(const PublicKey& key, const std::string& name) const;
+  /// Returns a word with which find() finds this key alone: "#N", the fingerprint or the key. Cost:
+  /// O(keys).
+  std::string word_for(const PublicKey& key) const;
 
   /// Returns "ana #3 9M1Q-Z7CR-04KD", as far as name and author number are known.
   std::string text_of(const PublicKey& key) const;
@@ -55,6 +64,9 @@ class KnownPlayers {
     std::optional<AuthorId> author;
   };
   void add(const PublicKey& key, const std::string& name, std::optional<AuthorId> author);
+  std::set<PublicKey> named(const std::string& name) const;
+  std::set<PublicKey> with_fingerprint(const std::string& fingerprint) const;
+  std::string list_of(const std::set<PublicKey>& keys) const;
 
   std::map<PublicKey, Player> players_;
   std::map<AuthorId, PublicKey> authors_;

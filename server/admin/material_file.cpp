@@ -1,8 +1,6 @@
 #include "server/admin/material_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 
 #include "common/os/text_file.hpp"
 
@@ -14,10 +12,7 @@ constexpr std::size_t kRowsInLine = 8;
 }  // namespace
 
 Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::string& file) {
-  std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(file, error);
-  if (!is_file) return failure(file + ": " + (error ? error.message() : "is no file"));
-  const auto toml = read_text_file(file, kMaterialFileBytesMax);
+  const auto toml = read_text_file(file, kMaterialFileBytesMax, FileKinds::regular);
   if (!toml) return failure(toml.error());
   auto rows = parse_material_rows(*toml, file);
   if (!rows) return failure(rows.error().message());

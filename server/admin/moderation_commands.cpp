@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "common/core/utc_text.hpp"
+#include "common/names/folded_name.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/rights_change_text.hpp"
@@ -14,6 +15,7 @@
 namespace runstone {
 namespace {
 
+constexpr const char* kAddressWord = "address";
 constexpr const char* kWidened = " [a single IPv6 address means its /64]";
 
 /// Returns a count of bytes in the largest unit of which there is at least one.
@@ -87,6 +89,9 @@ RestrictionWord take_subject(WordReader& reader, RestrictionKind kind) {
                  " is missing");
     return {};
   }
+  const bool is_address = reader.peek() == kAddressWord && reader.has_second() &&
+                          parse_address_range(reader.peek_second());
+  if (is_address) reader.take("", "");
   const auto range = parse_address_range(reader.peek());
   if (!range) return {reader.player(word), std::nullopt, false};
   const std::string text = reader.take("", "");
@@ -95,7 +100,7 @@ RestrictionWord take_subject(WordReader& reader, RestrictionKind kind) {
     reader.wrong(word + " \"" + text + "\": " + range->error());
     return {};
   }
-  return {"", (*range)->range, (*range)->is_widened};
+  return {"", (*range)->range, (*range)->is_widened, text, is_address};
 }
 
 template <RestrictionKind kind>
@@ -116,24 +121,63 @@ Result<RestrictCommand, std::string> parse_restrict(WordReader& reader) {
   return reader.result(command);
 }
 
+/// Returns why a word does not mean an address alone: it is the name of a player, too. Otherwise
+/// returns nullopt. New players get no such names, so owners and players who are here are all.
+std::optional<std::string> doubt_of_address(const CommandCall& call, const RestrictionWord& word) {
+  if (word.is_address) return std::nullopt;
+  KnownPlayers::Sources sources;
+  const std::string folded = folded_name(word.address);
+  std::vector<PublicKey> named;
+  for (const OnlinePlayer& player : call.world().people().online()) {
+    if (folded_name(player.name) != folded) continue;
+    sources.present.push_back({player.author, player.key, player.name});
+    named.push_back(player.key);
+  }
+  if (const NameClaim* claim = call.world().order().names().find(folded)) {
+    if (const auto author = call.world().order().players().author_of(claim->key))
+      sources.present.push_back({*author, claim->key, claim->name});
+    sources.claims.push_back(*claim);
+    named.push_back(claim->key);
+  }
+  if (named.empty()) return std::nullopt;
+  const KnownPlayers players(sources);
+  return "\"" + word.address + "\" is an address and the name of " + players.text_of(named[0]) +
+         ": say " + kAddressWord + " " + word.address + ", or " + players.word_for(named[0]) +
+         " for the player";
+}
+
 /// Calls `go_on` with the subject of a restriction and its text.
 void with_subject(
     const CommandCall& call, const RestrictionWord& word,
     const std::function<void(const RestrictionSubject&, const std::string& who)>& go_on) {
-  if (word.range) return go_on(*word.range, "everybody from " + subject_text(*word.range));
+  if (word.range) {
+    if (auto doubt = doubt_of_address(call, word)) return call.refuse(*std::move(doubt));
+    return go_on(*word.range, "everybody from " + subject_text(*word.range));
+  }
   call.with_players({word.player},
                     [go_on](const KnownPlayers& players, const CommandCall::Keys& keys) {
                       go_on(keys[0], players.text_of(keys[0]));
                     });
 }
 
+/// Returns what a ban of addresses cannot do in a world whose default role administers.
+std::string exempt_by_default(const RightsState& rights) {
+  const std::string& name = rights.default_role().value;
+  const Decided<Role>* role = rights.find_role(name);
+  if (role == nullptr || !role->value.rights.has(Right::administer)) return "";
+  return "; players without a granted role still join, because the default role " + name +
+         " administers (role default visitor changes it)";
+}
+
 void restrict_subject(const CommandCall& call, const RestrictCommand& command) {
   with_subject(call, command.who,
                [call, command](const RestrictionSubject& subject, const std::string& who) {
-                 std::string text = who + " is " + restricted_text(command.kind);
+                 std::string text = who + (command.who.range ? ", except administrators," : "") +
+                                    " is " + restricted_text(command.kind);
                  if (command.until_us != 0) text += " until " + utc_text(command.until_us);
                  if (!command.reason.empty()) text += ": " + command.reason;
                  if (command.who.is_widened) text += kWidened;
+                 if (command.who.range) text += exempt_by_default(call.rights());
                  call.change_rights(
                      Restrict{command.kind, subject, command.until_us, command.reason}, text);
                });
@@ -218,10 +262,14 @@ constexpr std::array<CommandRow, 12> kModerationRows = {{
     {"kick", kModerators,
      "kick PLAYER [reason TEXT] end the sessions of a player, who may come back",
      parsed_by<parse_kick, kick>()},
-    {"ban", kModerators,
-     "ban PLAYER|ADDRESS|RANGE [for DURATION] [reason TEXT]\n"
-     "                          let nobody join with this key, or from there",
-     parsed_by<parse_restrict<RestrictionKind::ban>, restrict_subject>()},
+    {.words = "ban",
+     .rule = kModerators,
+     .help = "ban PLAYER|ADDRESS|RANGE [for DURATION] [reason TEXT]\n"
+             "                          let nobody join with this key, or from there; "
+             "administrators\n"
+             "                          still join from there",
+     .functions = parsed_by<parse_restrict<RestrictionKind::ban>, restrict_subject>(),
+     .may_be_confirmed = true},
     {"mute", kModerators, "mute PLAYER ...           let a player not write to others",
      parsed_by<parse_restrict<RestrictionKind::mute>, restrict_subject>()},
     {"freeze", kModerators, "freeze PLAYER ...         let a player not edit",

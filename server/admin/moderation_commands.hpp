@@ -22,6 +22,8 @@ struct RestrictionWord {
   std::string player;                 // empty: a range
   std::optional<AddressRange> range;  // nullopt: a player
   bool is_widened = false;            // a single IPv6 address was typed, which means its /64
+  std::string address = {};           // of a range, as it was typed
+  bool is_address = false;            // "address" stood before it, so it is no player's name
   friend bool operator==(const RestrictionWord&, const RestrictionWord&) = default;
 };
 struct RestrictCommand {

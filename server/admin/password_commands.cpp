@@ -56,7 +56,10 @@ Result<std::string, std::string> with_verifier(const std::string& line, const st
   randombytes_buf(salt.data(), salt.size());
   const auto password = join_password(*text, salt, command.password.role);
   if (!password) return failure("password set: " + password.error());
-  return line + " verifier " + verifier_text(*password);
+  const std::string verifier = " verifier " + verifier_text(*password);
+  const std::string anyway = std::string(" ") + kAnyway;
+  if (!line.ends_with(anyway)) return line + verifier;
+  return line.substr(0, line.size() - anyway.size()) + verifier + anyway;
 }
 
 void set_password(const CommandCall& call, const SetPasswordCommand& command) {
@@ -99,6 +102,7 @@ constexpr std::array<CommandRow, 3> kPasswordRows = {{
      .rule = kLocal,
      .help = "password set [role ROLE]  give the world a password, which control asks for",
      .functions = parsed_by<parse_set_password, set_password>(),
+     .may_be_confirmed = true,
      .is_secret = true,
      .complete = with_verifier},
     {"password clear", needs(Right::administer),

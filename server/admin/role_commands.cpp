@@ -9,6 +9,7 @@
 #include "server/admin/command_call.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/rights_change_text.hpp"
+#include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_lists.hpp"
 
 namespace runstone {
@@ -170,6 +171,10 @@ Result<Role, std::string> parse_role(WordReader& reader) {
 }
 
 void set_role(const CommandCall& call, const Role& role) {
+  const bool is_allowed =
+      !call.world().rights().change_refusal(DefineRole{role}, call.caller.actor);
+  if (is_allowed && call.refuse_unless_confirmed(hazard_of_lost_rights(call.rights(), role)))
+    return;
   call.change_rights(DefineRole{role}, "role " + role.name + " is " + role_text(role));
 }
 
@@ -260,29 +265,39 @@ constexpr std::array<CommandRow, 10> kRoleRows = {{
     {"revoke", kGranters, "revoke PLAYER             give a player the default role again",
      parsed_by<parse_revoke, revoke_role>()},
     {"grants", kGranters, "grants                    who has which role", alone<list_grants>()},
-    {"invite", kGranters,
-     "invite [role ROLE] [uses N] [days N]\n"
-     "                          make a link with which players join and get a role",
-     parsed_by<parse_invite, create_invite>()},
+    {.words = "invite",
+     .rule = kGranters,
+     .help = "invite [role ROLE] [uses N] [days N]\n"
+             "                          make a link with which players join and get a role",
+     .functions = parsed_by<parse_invite, create_invite>(),
+     .may_be_confirmed = true},
     {"invite cancel", kGranters, "invite cancel ID          end an invite",
      parsed_by<parse_invite_id, cancel_invite>()},
     {"invites", kGranters, "invites                   the invites in force", alone<list_invites>()},
-    {"role set", kRoleAdministrators,
-     "role set NAME RIGHT,RIGHT,... [volume N] [claims N] [claim-volume N]\n"
-     "         [edits BUDGET] [view N] [loads N]\n"
-     "                          define a role; volume: voxels of one edit; edits: as "
-     "builder_budget;\n"
-     "                          view: chunks; loads: chunks a second",
-     parsed_by<parse_role, set_role>()},
-    {"role remove", kRoleAdministrators,
-     "role remove NAME          remove a role, or what was changed of a built-in one",
-     parsed_by<parse_role_name, remove_role>()},
-    {"role default", kRoleAdministrators,
-     "role default NAME         the role of players without a grant",
-     parsed_by<parse_role_name, set_default_role>()},
-    {"rights", kRoleAdministrators,
-     "rights undo SEQ           take back a record that changed rights (log cause rights)",
-     parsed_by<parse_undo_rights, undo_rights>()},
+    {.words = "role set",
+     .rule = kRoleAdministrators,
+     .help = "role set NAME RIGHT,RIGHT,... [volume N] [claims N] [claim-volume N]\n"
+             "         [edits BUDGET] [view N] [loads N]\n"
+             "                          define a role; volume: voxels of one edit; edits: as "
+             "builder_budget;\n"
+             "                          view: chunks; loads: chunks a second",
+     .functions = parsed_by<parse_role, set_role>(),
+     .may_be_confirmed = true},
+    {.words = "role remove",
+     .rule = kRoleAdministrators,
+     .help = "role remove NAME          remove a role, or what was changed of a built-in one",
+     .functions = parsed_by<parse_role_name, remove_role>(),
+     .may_be_confirmed = true},
+    {.words = "role default",
+     .rule = kRoleAdministrators,
+     .help = "role default NAME         the role of players without a grant",
+     .functions = parsed_by<parse_role_name, set_default_role>(),
+     .may_be_confirmed = true},
+    {.words = "rights",
+     .rule = kRoleAdministrators,
+     .help = "rights undo SEQ           take back a record that changed rights (log cause rights)",
+     .functions = parsed_by<parse_undo_rights, undo_rights>(),
+     .may_be_confirmed = true},
 }};
 
 }  // namespace

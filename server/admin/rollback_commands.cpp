@@ -6,13 +6,14 @@
 #include <utility>
 #include <variant>
 
+#include "common/core/hex.hpp"
 #include "common/core/utc_text.hpp"
-#include "server/admin/author_names.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/material_file.hpp"
 #include "server/admin/rights_change_text.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/history/edit_text.hpp"
+#include "server/names/name_reference.hpp"
 #include "server/rollback/newest_edits.hpp"
 #include "server/rollback/preview_edits.hpp"
 
@@ -48,7 +49,7 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
   const std::string word = reader.peek();
   if (word == "author") {
     reader.take("", "");
-    filter.authors.push_back(author_of(reader.take(word, "a name, or # and a number,"), reader));
+    filter.authors.push_back(author_of(reader.take(word, std::string(kPlayerWord) + ","), reader));
   } else if (word == "since" || word == "until") {
     reader.take("", "");
     (word == "since" ? filter.from_us : filter.until_us) = reader.moment(word);
@@ -68,16 +69,27 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
   return true;
 }
 
-StoreResult<AuthorNames> read_author_names(WorldReader& reader) {
-  const auto rows = reader.players();
+/// Returns the players who have built, for the lines of the log. Blocks on the disk.
+StoreResult<KnownPlayers> read_builders(WorldReader& reader) {
+  KnownPlayers::Sources sources;
+  auto rows = reader.players();
   if (!rows) return failure(rows.error());
-  const auto used = reader.player_names();
+  auto used = reader.player_names();
   if (!used) return failure(used.error());
-  return AuthorNames(*rows, *used);
+  sources.stored = *std::move(rows);
+  sources.used = *std::move(used);
+  return KnownPlayers(sources);
 }
 
-/// Calls `go_on` with the filter for the log. Names of authors are looked up on a worker; the
-/// command is refused if one is unknown or ambiguous, with a text that begins with `command`.
+/// Returns true if the word is the number, the fingerprint or the key of a player.
+bool is_reference(const std::string& word) {
+  PublicKey key{};
+  return word.starts_with('#') || !fingerprint_in(word).empty() || read_hex(word, key);
+}
+
+/// Calls `go_on` with the filter for the log. Authors are looked up on a worker, as players are in
+/// all commands; the command is refused if one is unknown or ambiguous, with a text that begins with
+/// `command`.
 void with_selection(const CommandCall& call, const CommandFilter& filter,
                     const std::string& command,
                     const std::function<void(const SelectionFilter&)>& go_on) {
@@ -86,25 +98,36 @@ void with_selection(const CommandCall& call, const CommandFilter& filter,
   out.until_us = filter.until_us.value_or(out.until_us);
   out.box = filter.box;
   out.cause = filter.cause;
-  std::vector<std::string> unknown;
+  std::vector<std::string> words;
   for (const CommandFilter::Author& author : filter.authors) {
     if (author.number) out.authors.push_back(*author.number);
-    if (!author.number) unknown.push_back(author.name);
+    if (!author.number) words.push_back(author.name);
   }
-  if (unknown.empty()) return go_on(out);
-  call.on_worker(command + ": ", read_author_names,
-                 [call, out, unknown, command, go_on](const AuthorNames& names) {
-                   SelectionFilter selected = out;
-                   for (const std::string& name : unknown) {
-                     const std::string quoted = "author \"" + name + "\"";
-                     const auto named = names.find(name);
-                     if (!named) return call.refuse(command + " " + quoted + ": " + named.error());
-                     if (!names.is_in_use(name, *named))
-                       call.report(quoted + " is now called " + names.of(*named));
-                     selected.authors.push_back(*named);
-                   }
-                   go_on(selected);
-                 });
+  if (filter.authors.empty()) return go_on(out);
+  const std::string before = command + " author ";
+  call.with_players(
+      words,
+      [call, out, words, before, go_on](const KnownPlayers& players,
+                                        const CommandCall::Keys& keys) {
+        // A number needs no player: the log of a copy may have authors whom nobody knows here.
+        for (const AuthorId number : out.authors) {
+          if (const auto doubt = players.doubt_of(number))
+            return call.refuse(before + "\"#" + std::to_string(number) + "\": " + *doubt);
+        }
+        SelectionFilter selected = out;
+        for (std::size_t i = 0; i < words.size(); ++i) {
+          const std::string quoted = "\"" + words[i] + "\"";
+          const auto author = players.author_of(keys[i]);
+          if (!author)
+            return call.refuse(before + quoted + ": " + players.text_of(keys[i]) +
+                               " has never built (players lists who has)");
+          if (!players.has_name(keys[i], words[i]) && !is_reference(words[i]))
+            call.report("author " + quoted + " is now called " + players.text_of(keys[i]));
+          selected.authors.push_back(*author);
+        }
+        go_on(selected);
+      },
+      before);
 }
 
 Result<LogCommand, std::string> parse_log(WordReader& reader) {
@@ -128,7 +151,7 @@ Result<LogCommand, std::string> parse_log(WordReader& reader) {
 /// Returns the lines of the newest edits that the filter selects. Blocks on the disk.
 Result<std::string, std::string> read_log_lines(WorldReader& reader, const SelectionFilter& filter,
                                                 std::uint64_t limit) {
-  const auto names = read_author_names(reader);
+  const auto names = read_builders(reader);
   const auto newest = newest_edits(reader, filter, limit);
   const auto materials = reader.materials();
   if (!materials) return failure(materials.error().message());
@@ -136,8 +159,8 @@ Result<std::string, std::string> read_log_lines(WorldReader& reader, const Selec
   if (!names) return failure(names.error().message());
   std::string text;
   for (const EditRecord& record : *newest) {
-    text += (text.empty() ? "" : "\n") +
-            log_line(record, names->with_key(record.op.author), *materials);
+    text +=
+        (text.empty() ? "" : "\n") + log_line(record, names->text_of(record.op.author), *materials);
   }
   return text.empty() ? std::string("no edit matches") : text;
 }

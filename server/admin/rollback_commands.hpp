@@ -17,7 +17,7 @@ namespace runstone {
 
 /// Selects edits by author, time, place and cause. A field that is not set selects all edits.
 struct CommandFilter {
-  /// A player, by name or by author number ("#3").
+  /// A player, by author number ("#3"), or by a word of KnownPlayers::find().
   struct Author {
     std::string name;  // empty: by number
     std::optional<AuthorId> number;
@@ -49,7 +49,7 @@ std::string_view name_of(Cause cause);
 
 /// Returns a line such as
 ///   "9120 2026-11-21T23:57:42Z ana #3 9M1Q-Z7CR-04KD player box 1 2 3 to 4 5 6 := stone"
-/// where both corners are inside. `author` is a text of AuthorNames. For an undo, redo or rollback
+/// where both corners are inside. `author` is a text of KnownPlayers. For an undo, redo or rollback
 /// the line names the edit that it refers to instead of a kind: "undo of 9100 restored 1 2 3". An
 /// edit that belongs to an action of several names the first one: "player with 9100 box ...". The
 /// material is left out if the edit restores voxels or pastes a clipboard, and if the table does

@@ -66,6 +66,7 @@ struct ServerConfig {
   std::uint64_t sessions_max = 256;           // 1..65536
   std::uint64_t sessions_per_key = 4;         // of one player, 0: no limit
   std::uint64_t sessions_per_address = 64;    // 0: no limit
+  std::uint64_t range_seats_percent = 50;     // of the seats that others leave, 1..100
   std::uint64_t connections_per_second = 20;  // of one address, ten times at once, 0: no limit
   std::uint64_t handshakes_per_address = 32;  // unauthenticated connections, 1..65536
   std::uint64_t view_radius_max = 16;         // chunks, 0..64

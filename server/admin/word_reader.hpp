@@ -49,6 +49,9 @@ class WordReader {
   bool at_end() const { return next_ == words_.size() || !error_.empty(); }
   /// Returns the next word. Requires that there is one.
   const std::string& peek() const { return words_[next_]; }
+  /// Returns true if a word comes after the next one, and peek_second() that word.
+  bool has_second() const { return error_.empty() && next_ + 1 < words_.size(); }
+  const std::string& peek_second() const { return words_[next_ + 1]; }
   /// Takes the next word if it is `word`. Returns true if it was.
   bool take_word(std::string_view word);
   /// Returns the next word. If there is none, returns an empty word and records an error.

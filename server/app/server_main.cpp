@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <optional>
@@ -36,6 +35,7 @@
 #include "server/app/server_options.hpp"
 #include "server/app/standby.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/view_memory.hpp"
 
 namespace runstone {
 namespace {
@@ -197,6 +197,7 @@ int run(const ServerOptions& options) {
     }
   }
   allow_files_for(*config);
+  if (const auto warning = view_memory_warning(*config)) logger("app").warn("{}", *warning);
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };

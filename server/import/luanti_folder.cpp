@@ -72,7 +72,7 @@ Result<LuantiFolder, ImportError> find_luanti_map(const std::string& folder) {
   const bool has_settings = fs::exists(settings_file, error);
   if (!has_map && !has_settings) return refused(folder, words_of_foreign_place(folder));
   if (has_settings) {
-    const auto text = read_text_file(settings_file, kSettingsBytesMax);
+    const auto text = read_text_file(settings_file, kSettingsBytesMax, FileKinds::regular);
     if (!text) return refused(folder, text.error());
     const auto settings = settings_of(*text);
     const auto backend = settings.find("backend");

@@ -38,6 +38,12 @@ MapAnswer json_answer(std::string json) {
   return out;
 }
 
+/// Returns true for a request that draws nothing and reads some records at most.
+bool is_quick(const MapRequest& request) {
+  return !std::holds_alternative<TilePictureRequest>(request) &&
+         !std::holds_alternative<BuildersRequest>(request);
+}
+
 constexpr TimeUs kWarnUs = 10'000'000;
 constexpr const char* kNoPast = "strangers may not see the past of this world";
 
@@ -59,28 +65,42 @@ MapService::MapService(MapThreads& threads, std::string place, std::size_t cache
 MapService::~MapService() {
   is_stopping_.store(true);
   threads_.leave(*this);
-  for (const Job& job : queue_) job.reply(map_words(503, "the gateway stops"));
+  for (const auto* queue : {&quick_, &queue_}) {
+    for (const Job& job : *queue) job.reply(map_words(503, "the gateway stops"));
+  }
 }
 
 void MapService::ask(MapRequest request, std::string if_none_match, Reply reply) {
+  std::deque<Job>& queue = is_quick(request) ? quick_ : queue_;
   std::unique_lock lock(mutex_);
-  if (queue_.size() >= kQueueMax) {
+  if (queue.size() >= kQueueMax) {
     lock.unlock();
     return reply(map_words(503, "the map has much to do: ask again in a moment"));
   }
-  queue_.push_back({request, std::move(if_none_match), std::move(reply), steady_now_us()});
+  queue.push_back({request, std::move(if_none_match), std::move(reply), steady_now_us()});
+  quick_count_.store(quick_.size(), std::memory_order_relaxed);
   lock.unlock();
   threads_.wake(*this);
 }
 
+MapService::Job MapService::take_next() {
+  const bool takes_quick = !quick_.empty() && (queue_.empty() || quick_in_row_ < kQuickInRowMax);
+  quick_in_row_ = takes_quick ? quick_in_row_ + 1 : 0;
+  std::deque<Job>& queue = takes_quick ? quick_ : queue_;
+  Job job = std::move(queue.front());
+  queue.pop_front();
+  quick_count_.store(quick_.size(), std::memory_order_relaxed);
+  return job;
+}
+
 bool MapService::turn() {
   std::unique_lock lock(mutex_);
-  if (queue_.empty()) return false;
-  Job job = std::move(queue_.front());
-  queue_.pop_front();
+  if (queue_.empty() && quick_.empty()) return false;
+  Job job = take_next();
   lock.unlock();
   const TimeUs begun_us = steady_now_us();
   turn_ends_us_ = begun_us + job.turn * kTurnUs;
+  short_turn_ends_us_ = begun_us + job.turn * kShortTurnUs;
   std::optional<MapAnswer> answer;
   if (begun_us - job.asked_us <= kAnswerUsMax) answer = serve(job);
   const TimeUs now_us = steady_now_us();
@@ -96,11 +116,13 @@ bool MapService::turn() {
     lock.lock();
     queue_.push_back(std::move(job));  // may exceed kQueueMax by this one
   }
-  return !queue_.empty();
+  return !queue_.empty() || !quick_.empty();
 }
 
 bool MapService::should_continue() const {
-  return !is_stopping_.load(std::memory_order_relaxed) && steady_now_us() < turn_ends_us_;
+  const bool is_waited_for = quick_count_.load(std::memory_order_relaxed) > 0;
+  return !is_stopping_.load(std::memory_order_relaxed) &&
+         steady_now_us() < (is_waited_for ? short_turn_ends_us_ : turn_ends_us_);
 }
 
 std::optional<MapAnswer> MapService::serve(const Job& job) {

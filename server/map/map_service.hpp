@@ -2,6 +2,8 @@
 // a queue with a bound. Drawing that takes long is done in turns, and other requests are served
 // between them: what a turn made is kept in the caches, and the next turn begins there. All caches
 // together have a bound, and nothing is written to the disk.
+// Requests that draw nothing, such as the one for the state of the map, are served before those that
+// draw, and end a turn of drawing early.
 // Threads: ask() by any. Replies are called on one of the shared threads, by ask(), or by the
 // destructor.
 #pragma once
@@ -35,9 +37,13 @@ MapAnswer map_words(unsigned status, const std::string& sentence);
 
 class MapService final : MapThreads::Map {
  public:
-  static constexpr std::size_t kQueueMax = 256;
+  static constexpr std::size_t kQueueMax = 256;  // of requests that draw, and of others
   /// The time of a first turn. The n-th one has n times as much.
   static constexpr TimeUs kTurnUs = 200'000;
+  /// A turn of drawing has at least so long, for its n-th turn n times as long, while others wait.
+  static constexpr TimeUs kShortTurnUs = 25'000;
+  /// After so many requests that draw nothing, one that draws has a turn.
+  static constexpr int kQuickInRowMax = 16;
   /// A request that was not answered within this time is answered with "ask again".
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
@@ -70,6 +76,8 @@ class MapService final : MapThreads::Map {
     std::uint64_t work_us = 0;
   };
   bool turn() override;
+  /// Takes the next job. Requires that there is one, and the mutex.
+  Job take_next();
   /// Returns the answer, or nullopt if the job needs another turn.
   std::optional<MapAnswer> serve(const Job& job);
   std::optional<MapAnswer> serve(const TilePictureRequest& request,
@@ -91,9 +99,12 @@ class MapService final : MapThreads::Map {
   MapWorld world_;
   TimeUs warned_us_ = 0;  // the time of the last warning; 0: none
   TimeUs turn_ends_us_ = 0;
+  TimeUs short_turn_ends_us_ = 0;  // if quick requests wait
+  int quick_in_row_ = 0;
 
-  std::mutex mutex_;  // a leaf: guards the queue
-  std::deque<Job> queue_;
+  std::mutex mutex_;  // a leaf: guards the queues
+  std::deque<Job> queue_, quick_;
+  std::atomic<std::size_t> quick_count_{0};  // in quick_
   std::atomic<bool> is_stopping_{false};
 };
 

@@ -1,6 +1,7 @@
 #include "server/rollback/restore_plan.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "common/edits/apply/edit_changes.hpp"
@@ -25,6 +26,39 @@ std::vector<Difference> inside(const std::vector<Difference>& all,
   return out;
 }
 
+/// The points of a chunk before each rollback, and before each undo of one, so that an edit that
+/// takes one back can return to it.
+class RestorePoints {
+ public:
+  /// Returns the point to which the record returns, or null: its subject is no rollback whose point
+  /// is kept.
+  const RestorePoint* target_of(const EditRecord& record) const {
+    const auto group = group_of_.find(record.subject);
+    if (group == group_of_.end()) return nullptr;
+    const auto point = points_.find(group->second);
+    return point == points_.end() ? nullptr : &point->second;
+  }
+  /// Keeps the point before the record if it begins a rollback in this chunk, or an undo of one.
+  void add(const EditRecord& record, ChunkRestore& restore, ApplyScratch& scratch) {
+    const bool is_rollback = record.cause == Cause::rollback;
+    const bool is_undo = record.cause == Cause::undo && group_of_.contains(record.subject);
+    if (!is_rollback && !is_undo) return;
+    const auto first =
+        first_of_.try_emplace({record.op.author, record.op.instance}, record.version.seq);
+    group_of_[record.version.seq] = first.first->second;
+    if (!first.second) return;
+    points_.emplace(record.version.seq, restore.point(scratch));
+    if (points_.size() > kPointsMax) points_.erase(points_.begin());
+  }
+
+ private:
+  // Of a chunk that was rolled back more often, the oldest rollbacks are edits like others.
+  static constexpr std::size_t kPointsMax = 64;
+  std::map<std::pair<AuthorId, ClientInstance>, Sequence> first_of_;  // in this chunk
+  std::map<Sequence, Sequence> group_of_;                             // first edit, by edit
+  std::map<Sequence, RestorePoint> points_;                           // by first edit
+};
+
 }  // namespace
 
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
@@ -40,6 +74,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
   plan.version = before->version;
   ChunkRestore restore(std::move(before->voxels), origin);
   const VoxelBox here = box_of(key.at, edge);
+  RestorePoints points;
   auto next = selected.begin();
   const auto read = logs_.visit(key, selected.front(), end, [&](const EditRecord& record) {
     while (next != selected.end() && *next < record.version.seq) ++next;
@@ -48,7 +83,13 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
       ++plan.edits;
       plan.subject = record.version.seq;
     }
-    restore.add(record.edit, is_selected, scratch_.apply);
+    const RestorePoint* const target = is_selected ? nullptr : points.target_of(record);
+    points.add(record, restore, scratch_.apply);
+    if (target != nullptr) {
+      restore.add_return(record.edit, *target, scratch_.apply);
+    } else {
+      restore.add(record.edit, is_selected, scratch_.apply);
+    }
     plan.version = record.version;
   });
   if (!read) return failure(read.error());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <utility>
 
 namespace runstone {
@@ -37,42 +36,83 @@ StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id) {
   return group;
 }
 
-StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max) {
-  std::map<std::pair<AuthorId, ClientInstance>, RollbackGroup> by_instance;
-  std::map<Sequence, std::pair<AuthorId, ClientInstance>> group_of;  // by edit
+namespace {
+
+using GroupKey = std::pair<AuthorId, ClientInstance>;
+
+/// The rollbacks of a log and the undos of them.
+struct Groups {
+  std::map<GroupKey, RollbackGroup> rollbacks, undos;
+  std::map<Sequence, Sequence> group_of;  // id, by edit
+};
+
+RollbackGroup& add(Groups& groups, std::map<GroupKey, RollbackGroup>& kind,
+                   const EditRecord& record) {
+  RollbackGroup& group = kind[{record.op.author, record.op.instance}];
+  if (group.id == 0) {
+    group.id = record.version.seq;
+    group.op = record.op;
+    group.cause = record.cause;
+    group.time_us = record.time_us;
+  }
+  group.edits.push_back(record.version.seq);
+  groups.group_of[record.version.seq] = group.id;
+  return group;
+}
+
+StoreResult<Groups> read_groups(LogReader& reader) {
+  Groups groups;
   LogQuery query;
   query.cause = Cause::rollback;
   auto read = reader.query_log(query, [&](const EditRecord& record) {
-    const std::pair instance{record.op.author, record.op.instance};
-    RollbackGroup& group = by_instance[instance];
-    if (group.id == 0) {
-      group.id = record.version.seq;
-      group.op = record.op;
-      group.time_us = record.time_us;
-    }
-    group.edits.push_back(record.version.seq);
-    group_of[record.version.seq] = instance;
+    add(groups, groups.rollbacks, record);
     return true;
   });
   if (!read) return failure(read.error());
   query.cause = Cause::undo;
-  std::optional<OperationId> undo;
-  Sequence undo_id = 0;
   read = reader.query_log(query, [&](const EditRecord& record) {
-    if (record.op.seq == kGroupBegins) {
-      undo = record.op;
-      undo_id = record.version.seq;
-    }
-    const auto answered = group_of.find(record.subject);
-    if (answered != group_of.end() && undo && undo->instance == record.op.instance) {
-      by_instance[answered->second].taken_back_by = undo_id;
-    }
+    // An undo of a player is no group: nothing begins it.
+    const bool begins = record.op.seq == kGroupBegins;
+    const bool is_in_group =
+        begins || groups.undos.contains({record.op.author, record.op.instance});
+    if (!is_in_group) return true;
+    const auto subject = groups.group_of.find(record.subject);
+    RollbackGroup& undo = add(groups, groups.undos, record);
+    if (subject != groups.group_of.end()) undo.takes_back = subject->second;
     return true;
   });
   if (!read) return failure(read.error());
+  return groups;
+}
+
+/// Returns the undos in force by the group that they take back: those that no undo in force takes
+/// back in turn. Of several for one group the newest is kept.
+std::map<Sequence, Sequence> undos_in_force(const Groups& groups) {
+  std::map<Sequence, Sequence> target_of;  // by id
+  for (const auto& [key, undo] : groups.undos) {
+    if (undo.takes_back != 0) target_of[undo.id] = undo.takes_back;
+  }
+  std::map<Sequence, Sequence> taken_back_by;
+  // An undo is newer than what it takes back, so it is decided before it.
+  for (auto undo = target_of.rbegin(); undo != target_of.rend(); ++undo) {
+    if (!taken_back_by.contains(undo->first)) taken_back_by.try_emplace(undo->second, undo->first);
+  }
+  return taken_back_by;
+}
+
+}  // namespace
+
+StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max) {
+  auto groups = read_groups(reader);
+  if (!groups) return failure(groups.error());
+  const std::map<Sequence, Sequence> taken_back_by = undos_in_force(*groups);
   std::vector<RollbackGroup> out;
-  out.reserve(by_instance.size());
-  for (auto& [instance, group] : by_instance) out.push_back(std::move(group));
+  out.reserve(groups->rollbacks.size());
+  for (auto& [key, group] : groups->rollbacks) {
+    if (const auto by = taken_back_by.find(group.id); by != taken_back_by.end())
+      group.taken_back_by = by->second;
+    out.push_back(std::move(group));
+  }
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   if (out.size() > count_max)
     out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(count_max));

@@ -18,8 +18,9 @@ struct RollbackGroup {
   Cause cause = Cause::rollback;
   TimeUs time_us = 0;           // of its first edit, UTC
   std::vector<Sequence> edits;  // ascending
-  /// The newest group with cause undo whose edits have one of these edits as their subject, or 0 if
-  /// there is none.
+  /// Of an undo: the group that has the subjects of its edits, or 0 if there is none.
+  Sequence takes_back = 0;
+  /// Of a rollback: the newest undo of it that no other undo has taken back, or 0 if there is none.
   Sequence taken_back_by = 0;
 };
 

@@ -46,6 +46,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.sessions_max = config.sessions_max;
   world.sessions_per_key = config.sessions_per_key;
   world.sessions_per_address = config.sessions_per_address;
+  world.range_seats_percent = config.range_seats_percent;
   world.names_per_key = config.names_per_key;
   world.names_per_address = config.names_per_address;
   world.reserved_names = folded_reserved_names(config.reserved_names);

@@ -2,17 +2,15 @@
 
 #include <sys/stat.h>
 
-#include <fstream>
-#include <iterator>
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 namespace {
 
 Result<std::string, std::string> read_pem(const char* setting, const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in || text.empty())
-    return failure(std::string(setting) + " = \"" + file + "\": cannot be read, or is empty");
+  auto text = read_file(file, kSmallFileBytesMax);
+  if (!text) return failure(std::string(setting) + " = " + text.error());
+  if (text->empty()) return failure(std::string(setting) + " = " + file + ": is empty");
   return text;
 }
 

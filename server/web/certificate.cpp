@@ -5,15 +5,14 @@
 #include <sys/stat.h>
 
 #include <ctime>
-#include <fstream>
 #include <utility>
+
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr TimeUs kQuietUs = 2'000'000;
-
-constexpr std::size_t kPemBytesMax = 1024 * 1024;
 
 struct ReadCertificate {
   TlsContext context;
@@ -38,16 +37,6 @@ std::optional<std::string> fault_of_time(SSL_CTX* context) {
   return std::nullopt;
 }
 
-/// Returns the text of a file, or nullopt if it cannot be read or is far too long.
-std::optional<std::string> text_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string out(kPemBytesMax, '\0');
-  in.read(out.data(), static_cast<std::streamsize>(out.size()));
-  if (!in.eof() || in.bad()) return std::nullopt;
-  out.resize(static_cast<std::size_t>(in.gcount()));
-  return out;
-}
-
 Result<ReadCertificate, std::string> read_files(const std::string& chain_file,
                                                 const std::string& key_file) {
   struct stat about{};
@@ -55,10 +44,10 @@ Result<ReadCertificate, std::string> read_files(const std::string& chain_file,
     return failure("tls_key = \"" + key_file +
                    "\": every user of this machine can read the secret key: chmod o-r it");
   }
-  const auto chain = text_of(chain_file);
-  if (!chain) return failure("tls_certificate = \"" + chain_file + "\": cannot be read");
-  const auto key = text_of(key_file);
-  if (!key) return failure("tls_key = \"" + key_file + "\": cannot be read");
+  const auto chain = read_file(chain_file, kSmallFileBytesMax);
+  if (!chain) return failure("tls_certificate = " + chain.error());
+  const auto key = read_file(key_file, kSmallFileBytesMax);
+  if (!key) return failure("tls_key = " + key.error());
   auto context = TlsContext::server(*chain, *key);
   if (!context)
     return failure("\"" + chain_file + "\" and \"" + key_file + "\": " + context.error());

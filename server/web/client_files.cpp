@@ -2,12 +2,10 @@
 
 #include <array>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <optional>
 #include <utility>
 
 #include "common/core/hex.hpp"
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 namespace {
@@ -31,12 +29,8 @@ constexpr std::array<KnownFile, 11> kFiles = {{
     {"DejaVuSans.ttf", "font/ttf"},
 }};
 
-std::optional<std::string> read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::string out((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  return in.bad() ? std::nullopt : std::optional(std::move(out));
-}
+// The largest file of the client has some 4 MiB.
+constexpr std::size_t kClientFileBytesMax = std::size_t{64} << 20;
 
 /// Returns a number that differs for different files with near certainty (FNV-1a).
 std::uint64_t number_of(std::string_view bytes) {
@@ -68,13 +62,13 @@ Result<ClientFiles, std::string> ClientFiles::load(const std::string& folder) {
   ClientFiles out;
   for (const auto& [name, type] : kFiles) {
     const std::string path = folder + '/' + std::string(name);
-    auto bytes = read_file(path);
-    if (!bytes) return failure(path + " cannot be read");
+    auto bytes = read_file(path, kClientFileBytesMax);
+    if (!bytes) return failure(bytes.error());
     Forms forms;
     forms.plain = file_of(type, "", *std::move(bytes));
-    if (auto packed = read_file(path + ".gz"))
+    if (auto packed = read_file(path + ".gz", kClientFileBytesMax))
       forms.gzip = file_of(type, "gzip", *std::move(packed));
-    if (auto packed = read_file(path + ".br"))
+    if (auto packed = read_file(path + ".br", kClientFileBytesMax))
       forms.brotli = file_of(type, "br", *std::move(packed));
     out.files_[std::string(kClientPath) + std::string(name == kPage ? "" : name)] =
         std::move(forms);

@@ -91,6 +91,13 @@ boost::asio::awaitable<MapAnswer> MapGate::answer(AddressBlock from, std::string
   co_return out;
 }
 
+boost::asio::awaitable<MapAnswer> MapGate::recent_edits() {
+  if (is_stopped_ || service_ == nullptr) co_return map_words(503, "the gateway stops");
+  MapAnswer out = co_await wait_for(RecentEditsRequest(), std::string());
+  counters_.map_work_us += out.work_us;
+  co_return out;
+}
+
 boost::asio::awaitable<MapAnswer> MapGate::wait_for(MapRequest request, std::string if_none_match) {
   const auto waiting = std::make_shared<Waiting>(io_);
   // The last reference to the timer must end on this thread, so the reply gives its own away.

@@ -45,6 +45,8 @@ class MapGate {
   /// of drawing.
   boost::asio::awaitable<MapAnswer> answer(AddressBlock from, std::string_view target,
                                            std::string if_none_match);
+  /// Returns the newest edits, for pages of the gateway. No address pays.
+  boost::asio::awaitable<MapAnswer> recent_edits();
   std::size_t cache_bytes() const { return service_ == nullptr ? 0 : service_->cache_bytes(); }
   /// Ends the drawing. Requests that wait are answered, and later ones are
   /// answered that the gateway stops.

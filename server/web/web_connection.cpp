@@ -169,7 +169,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   const std::string_view path = path_of(place.target);
   const bool is_read = request.method() == http::verb::get || request.method() == http::verb::head;
   const bool is_for_map = is_read && path.starts_with(kMapDataPath);
-  if (is_for_map || path == kStatusPath) {
+  if (is_for_map) {
     // An answer of the map comes after at most this time.
     constexpr auto kMapSeconds = static_cast<std::uint64_t>(MapService::kAnswerUsMax / 1'000'000);
     self->stream_.allow_s(self->state_.config.handshake_s + kMapSeconds + 2);
@@ -193,10 +193,9 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
   }
   std::shared_ptr<const ServerStatus> status = kNoStatus;
   std::string recent_edits;
-  if (is_read && path == kStatusPath && world.map.is_on()) {
-    const MapAnswer recent =
-        co_await world.map.answer(self->from_, kRecentEditsPath, std::string());
-    if (recent.status == 200 && recent.body != nullptr) recent_edits = *recent.body;
+  if (is_read && path == kStatusPath) {
+    const std::shared_ptr<const std::string> recent = co_await world.recent_edits.newest();
+    if (recent != nullptr) recent_edits = *recent;
   }
   if (shows_status(place.target)) {
     status = co_await world.status.newest(steady_now_us());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "protocol/codec/frame_bytes.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace runstone {
 
@@ -32,6 +33,8 @@ std::optional<ByteView> FrameCutter::next() {
   broken_ = bytes == kFrameHeaderBytes || bytes > kFrameBytesMax;
   if (broken_ || left.size() < bytes) return std::nullopt;
   begin_ += bytes;
+  constexpr std::size_t kKindAt = 2;  // frame.hpp
+  has_goodbye_ = has_goodbye_ || left[kKindAt] == wire_number(kKindOf<Goodbye>);
   return left.first(bytes);
 }
 

@@ -39,6 +39,8 @@ class FrameCutter {
   void drop_taken();
   /// Returns true if the stream has a header that no frame has.
   bool broken() const { return broken_; }
+  /// Returns true if the server has said goodbye: one of the frames taken was its last message.
+  bool has_goodbye() const { return has_goodbye_; }
   /// Returns true if the stream stands between two frames.
   bool is_between_frames() const { return begin_ == end_; }
 
@@ -46,6 +48,7 @@ class FrameCutter {
   Bytes bytes_;
   std::size_t begin_ = 0, end_ = 0;  // what was read and not taken
   bool broken_ = false;
+  bool has_goodbye_ = false;
 };
 
 }  // namespace runstone

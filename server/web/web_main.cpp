@@ -5,7 +5,6 @@
 
 #include <exception>
 #include <iostream>
-#include <iterator>
 #include <string>
 
 #include "common/os/open_files.hpp"

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "server/web/map_gate.hpp"
+#include "server/web/recent_edits.hpp"
 #include "server/web/status_source.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_counters.hpp"
@@ -23,12 +24,14 @@ struct WebWorld {
       : name(std::move(name_)),
         config(config_),
         status(io, config_.gateway_socket + ".status"),
-        map(io, config_, map_share, counters) {}
+        map(io, config_, map_share, counters),
+        recent_edits(io, map) {}
 
   const std::string name;  // empty: the gateway has one server
   const WebConfig config;  // of the gateway, with the values of this server
   StatusSource status;
   MapGate map;
+  RecentEdits recent_edits;
 };
 
 }  // namespace runstone

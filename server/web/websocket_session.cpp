@@ -51,8 +51,10 @@ WebSocketSession::WebSocketSession(WebState& state, WebStream& stream, AddressBl
   });
   websocket_.binary(true);
   websocket_.auto_fragment(false);
-  // Longer messages are closed with words, see browser_to_server().
-  websocket_.read_message_max(0);
+  // Messages above kFrameBytesMax are closed with words, see browser_to_server(). Beast closes what
+  // no mistake of a client explains at once, by the length in its header, and without words.
+  constexpr std::size_t kMessageBytesMax = std::size_t{16} << 20;
+  websocket_.read_message_max(kMessageBytesMax);
 }
 
 boost::asio::awaitable<void> WebSocketSession::run(std::shared_ptr<WebSocketSession> self,
@@ -124,8 +126,9 @@ boost::asio::awaitable<void> WebSocketSession::browser_to_server(
           room, boost::asio::redirect_error(boost::asio::use_awaitable, error));
     } while (!error && !self->websocket_.is_message_done() && bytes <= kFrameBytesMax);
     // Beast has ended the WebSocket already.
-    if (error == boost::beast::websocket::condition::protocol_violation && !self->is_ending_)
-      self->charge_fault();
+    const bool is_fault = error == websocket::condition::protocol_violation ||
+                          error == websocket::error::message_too_big;
+    if (is_fault && !self->is_ending_) self->charge_fault();
     if (error || self->is_ending_) break;  // the browser has closed, or the close is under way
     if (!self->websocket_.got_binary()) {
       self->broke_rule(CloseCode::unknown_data, "only binary messages are read here");
@@ -200,8 +203,11 @@ void WebSocketSession::go_on() {
 void WebSocketSession::on_link_end() {
   if (cutter_.broken() || !cutter_.is_between_frames()) {
     end(CloseCode::internal_error, "the server's stream is broken");
-  } else if (has_answer_) {
+  } else if (cutter_.has_goodbye()) {
     end(CloseCode::normal, "the server has ended the session");
+  } else if (has_answer_) {
+    end(CloseCode::service_restart,
+        "the server has ended without a goodbye, and may be restarting: try again soon");
   } else {
     end(CloseCode::try_again_later, "the server has not taken the connection: try again soon");
   }

@@ -125,6 +125,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   WorldConfig& mine = rooms_->config;
   mine.sessions_per_key = config.sessions_per_key;
   mine.sessions_per_address = config.sessions_per_address;
+  mine.range_seats_percent = config.range_seats_percent;
   mine.idle_us_max = config.idle_us_max;
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;

@@ -74,7 +74,7 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
   test("the rollback window takes back what another player has built", async () => {
     const flat = await World.open(bin, files, ["--generator", "flat"]);
     try {
-      flat.control("role default moderator");
+      flat.control("role default moderator anyway");
       const bob = await Player.open(await somebody(), flat.address);
       await bob.joined("bob");
       await bob.complete();
@@ -172,7 +172,7 @@ export function addWindowCases({ test, bin, files, out, somebody, world }) {
   test("a field of a window takes the text of a phone's keyboard and of an input method", async () => {
     const flat = await World.open(bin, files, ["--generator", "flat"]);
     try {
-      flat.control("role default moderator");
+      flat.control("role default moderator anyway");
       const player = await Player.open(await somebody(), flat.address,
         { width: 390, height: 780, touch: true });
       await player.joined("typer");

@@ -47,6 +47,34 @@ void ChunkRestore::add(const EditDescriptor& edit, bool is_selected, ApplyScratc
   pending_is_selected_ = is_selected;
 }
 
+RestorePoint ChunkRestore::point(ApplyScratch& scratch) {
+  flush(scratch);
+  return {now(), restored()};
+}
+
+void ChunkRestore::add_return(const EditDescriptor& edit, const RestorePoint& before,
+                              ApplyScratch& scratch) {
+  flush(scratch);
+  if (!is_split_) restored_ = now_;
+  apply_stack(now_, digest_, origin_, {&edit, 1}, scratch, result_);
+  if (!result_.changed) return;
+  std::vector<Change> changes;
+  std::size_t i = 0, j = 0;
+  for (const Change& change : changes_of(scratch, result_)) {
+    for (VoxelIndex at = change.first; at < change.last;) {
+      while (before.now.runs[i].end <= at) ++i;
+      while (before.restored.runs[j].end <= at) ++j;
+      const Run then = before.now.runs[i], without = before.restored.runs[j];
+      const VoxelIndex last = std::min({change.last, then.end, without.end});
+      const bool returns = then.material == change.material;
+      changes.push_back({at, last, returns ? without.material : change.material});
+      at = last;
+    }
+  }
+  write_changes(restored_, changes, scratch);
+  is_split_ = now_.runs != restored_.runs;
+}
+
 void ChunkRestore::flush(ApplyScratch& scratch) {
   if (pending_.empty()) return;
   apply(pending_, pending_is_selected_, scratch);

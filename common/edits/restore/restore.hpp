@@ -11,6 +11,11 @@
 // selected, or the start if there is none, because exactly such writers write it. The writers after
 // that one are all selected, so they are the tail, and the material is that before the tail. If the
 // tail is empty, the last writer wrote both chunks, and both hold its material.
+//
+// Returns. An edit that takes a rollback back gives voxels the material that they had before that
+// rollback, and with it the writers that they had then: the rollback and its undo are no writers of
+// such a voxel. So the work of an author can be taken back, shown and found again after a rollback
+// of it was undone. A return into a voxel that had another material then is a writer like any other.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -34,6 +39,11 @@ struct Difference {
 void append_differences(const RunChunk& now, const RunChunk& restored,
                         std::vector<Difference>& out);
 
+/// A chunk at a moment of the log, to which later edits may return.
+struct RestorePoint {
+  RunChunk now, restored;
+};
+
 /// One chunk that follows the log. Thread: one.
 class ChunkRestore {
  public:
@@ -44,6 +54,11 @@ class ChunkRestore {
   /// a valid edit. Edits that are not selected are applied together until a selected edit has
   /// changed something here. Cost: that of apply_stack(), amortised.
   void add(const EditDescriptor& edit, bool is_selected, ApplyScratch& scratch);
+  /// Returns the chunk as it is before the next edit. Cost: O(runs), and that of flush().
+  RestorePoint point(ApplyScratch& scratch);
+  /// Adds the next edit, which is not selected and returns to `before`. Requires a point of this
+  /// chunk. Cost: that of apply_stack(), and O(runs).
+  void add_return(const EditDescriptor& edit, const RestorePoint& before, ApplyScratch& scratch);
   /// Applies the edits that add() has deferred. Call it before reading the chunks.
   void flush(ApplyScratch& scratch);
 

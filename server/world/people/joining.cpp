@@ -1,5 +1,6 @@
 #include "server/world/people/joining.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,17 @@ ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
 ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered) {
   const bool is_coded = of_chunks == ChunkEncoding::packed && offers(offered, ChunkEncoding::coded);
   return is_coded ? ChunkEncoding::coded : of_chunks;
+}
+
+/// A household has so many seats, however few the others leave.
+constexpr std::uint64_t kSeatsOfRangeMin = 8;
+
+/// Returns how many seats the addresses of one range may take while sessions from elsewhere take
+/// `elsewhere`: a share of those that the others leave. So whoever comes from another range finds a
+/// seat.
+std::uint64_t seats_of_range(const WorldConfig& config, std::size_t elsewhere) {
+  const std::uint64_t left = config.sessions_max - std::min(elsewhere, config.sessions_max);
+  return std::max(kSeatsOfRangeMin, (left * config.range_seats_percent + 99) / 100);
 }
 
 }  // namespace
@@ -58,12 +70,13 @@ Welcome Joining::welcome_of(const PublicKey& key) const {
 /// count, so that sockets which never authenticate do not keep players out, and not the session
 /// that this one replaces.
 std::string Joining::no_seat(const Session& session) const {
-  std::size_t all = 0, of_key = 0, of_address = 0;
+  std::size_t all = 0, of_key = 0, of_address = 0, of_range = 0;
   for (const Session* other : world_.sessions.open()) {
     if (other->key == session.key && other->instance == session.instance) continue;
     ++all;
     if (other->key == session.key) ++of_key;
     if (other->address == session.address) ++of_address;
+    if (address_range_of(other->address) == address_range_of(session.address)) ++of_range;
   }
   const WorldConfig& config = world_.config;
   const auto text = [](const char* who, std::size_t count) {
@@ -74,6 +87,13 @@ std::string Joining::no_seat(const Session& session) const {
     return text("a key has ", config.sessions_per_key);
   if (config.sessions_per_address != 0 && of_address >= config.sessions_per_address)
     return text("an address has ", config.sessions_per_address);
+  // Without a limit for addresses the host does not count by networks.
+  const bool counts_ranges =
+      config.sessions_per_address != 0 && !is_of_local_network(session.address);
+  const std::uint64_t range_max = seats_of_range(config, all - of_range);
+  if (counts_ranges && of_range >= range_max)
+    return text("while few seats are free, your range of addresses has ", range_max) +
+           " (range_seats_percent): come back later, or ask the server's host";
   return "";
 }
 

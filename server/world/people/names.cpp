@@ -5,8 +5,52 @@
 
 #include "common/names/folded_name.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
+#include "server/names/name_reference.hpp"
 
 namespace runstone {
+namespace {
+
+LookalikeNames lookalikes_of(const std::set<std::string>& reserved) {
+  LookalikeNames names;
+  for (const std::string& name : reserved) {
+    names.add(name, is_compared_whole(name) ? LookalikeNames::Compare::whole
+                                            : LookalikeNames::Compare::words);
+  }
+  return names;
+}
+
+}  // namespace
+
+Names::Names(const WorldConfig& config, WorldEnvironment& environment, Order& order,
+             const Rights& rights)
+    : config_(config),
+      environment_(environment),
+      order_(order),
+      rights_(rights),
+      reserved_(lookalikes_of(config.reserved_names)),
+      ledger_({config.names_per_address, config.names_per_address * kClaimPrice}) {}
+
+const LookalikeNames& Names::names_of_roles() const {
+  if (roles_revision_ == rights_.revision()) return roles_;
+  roles_ = LookalikeNames();
+  for (const auto& [name, role] : rights_.state().roles()) {
+    if (role.value.rights.and_in(kRightsOverOthers) != RightSet()) roles_.add(name);
+  }
+  roles_revision_ = rights_.revision();
+  return roles_;
+}
+
+/// Returns why nobody may newly have the name, as the end of a sentence, or nullopt.
+std::optional<std::string> Names::not_for_new_owners(const std::string& name,
+                                                     const std::string& folded) const {
+  if (const auto reference = read_as_reference(folded))
+    return "is refused: commands read it as " + *reference;
+  if (const auto like = reserved_.like(name))
+    return "looks like \"" + *like + "\", which is reserved";
+  if (const auto like = names_of_roles().like(name))
+    return "looks like \"" + *like + "\", a role of this world";
+  return std::nullopt;
+}
 
 std::optional<std::string> Names::refusal(const Session& session) const {
   const std::string named = "the name \"" + session.name + "\"";
@@ -19,6 +63,8 @@ std::optional<std::string> Names::refusal(const Session& session) const {
     return named + " belongs to the player with the key " + key_fingerprint(claim->key) +
            ": choose another name, or ask the server's host to release it";
   }
+  if (const auto why = not_for_new_owners(session.name, folded))
+    return named + " " + *why + ": choose another name";
   if (!session.has(kFeatureNames)) return std::nullopt;
   const std::vector<std::string> owned = order_.names().names_of(session.key);
   if (owned.size() < config_.names_per_key) return std::nullopt;

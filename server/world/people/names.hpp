@@ -5,7 +5,9 @@
 #include <string>
 
 #include "server/limits/address_ledger.hpp"
+#include "server/names/lookalike_names.hpp"
 #include "server/world/order/order.hpp"
+#include "server/world/rights/rights.hpp"
 #include "server/world/sessions/session.hpp"
 
 namespace runstone {
@@ -16,15 +18,16 @@ inline constexpr std::uint64_t kClaimPrice = 3'600;
 
 class Names {
  public:
-  Names(const WorldConfig& config, WorldEnvironment& environment, Order& order)
-      : config_(config),
-        environment_(environment),
-        order_(order),
-        ledger_({config.names_per_address, config.names_per_address * kClaimPrice}) {}
+  Names(const WorldConfig& config, WorldEnvironment& environment, Order& order,
+        const Rights& rights);
 
-  /// Returns why the session may not have its name, for goodbye name_refused, or nullopt. The name
-  /// breaks a rule of name_fault(), is reserved, belongs to another key, or the key owns
-  /// names_per_key others already. Changes nothing. Cost: O(log claims).
+  /// Returns why the session may not have its name, for goodbye name_refused, or nullopt:
+  ///   - the name breaks a rule of name_fault(), or is reserved;
+  ///   - it belongs to another key, or the key owns names_per_key others already;
+  ///   - its key does not own it yet, and commands would read it as a reference
+  ///     (name_reference.hpp), or it looks like a reserved name or like the name of a role with
+  ///     rights over others (lookalike_names.hpp).
+  /// Changes nothing. Cost: O(log claims), and that of LookalikeNames::like().
   std::optional<std::string> refusal(const Session& session) const;
   /// Makes the session's key own its name, if the client keeps its key (kFeatureNames) and nobody
   /// owns the name. Nothing is claimed while the log has no room, once the address has claimed
@@ -38,9 +41,19 @@ class Names {
   Result<NameClaim, std::string> release(const std::string& name);
 
  private:
+  /// Returns the names of the roles with rights over others. They are collected again after a change
+  /// of rights.
+  const LookalikeNames& names_of_roles() const;
+  std::optional<std::string> not_for_new_owners(const std::string& name,
+                                                const std::string& folded) const;
+
   const WorldConfig& config_;
   WorldEnvironment& environment_;
   Order& order_;
+  const Rights& rights_;
+  const LookalikeNames reserved_;
+  mutable LookalikeNames roles_;
+  mutable std::optional<std::uint64_t> roles_revision_;  // of Rights, when roles_ was made
   AddressLedger ledger_;
 };
 

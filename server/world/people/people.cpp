@@ -12,7 +12,7 @@ namespace runstone {
 People::People(const World& world, const WorldStart& start, const RandomBytes& random)
     : world_(world),
       random_(random),
-      names_(world.config, world.environment, world.order),
+      names_(world.config, world.environment, world.order, world.rights),
       presence_(world.config, world.sessions, world.order, world.rights),
       chat_(world.config, start, world.environment, world.sessions, world.order, world.rights),
       commands_(world.environment, world.sessions, world.ground),

@@ -219,7 +219,16 @@ TEST_CASE("a certificate that cannot be used stops the start before the world is
   SECTION("no key") { expected = "tls_certificate and tls_key: one of them is missing"; }
   SECTION("a key that is not there") {
     config.tls_key = folder / "nothing.pem";
-    expected = "cannot be read, or is empty";
+    expected = "nothing.pem: cannot be read: No such file";
+  }
+  SECTION("a key without end") {
+    config.tls_key = "/dev/zero";
+    expected = "tls_key = /dev/zero: is a device";
+  }
+  SECTION("a certificate that is a folder") {
+    config.tls_certificate = folder.path();
+    config.tls_key = made.key_file();
+    expected = folder.path() + ": is a folder";
   }
   SECTION("another certificate's key") {
     config.tls_key = other.key_file();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "server/web/web_frame.hpp"
 #include "tests/integration/server/web/fake_server.hpp"
 #include "tests/integration/server/web/web_bench.hpp"
@@ -168,7 +169,11 @@ TEST_CASE("a server that sends something else than frames ends the WebSocket, no
   Bytes cut = frame_of(100, 7);
   cut.pop_back();
   CHECK(close_after(cut) == 1011);
-  CHECK(close_after(frame_of(100, 7)) == 1000);
+  // A server that was killed says no goodbye.
+  CHECK(close_after(frame_of(100, 7)) == 1012);
+  Bytes goodbye = frame_of(100, 7);
+  goodbye[2] = wire_number(kKindOf<Goodbye>);
+  CHECK(close_after(goodbye) == 1000);
   WebPeer page(gateway->port());
   CHECK(page.get("/style.css").status == 200);
 }

@@ -44,7 +44,7 @@ TEST_CASE("edits are sorted by author, each at its time since the first of all",
   REQUIRE(log.has_value());
   CHECK(log->edits == 4);
   REQUIRE(log->authors.size() == 3);  // authors without edits are left out
-  CHECK(log->authors[0].name == "recorded server");
+  CHECK(log->authors[0].name == "recorded world");
   CHECK(log->authors[1].name == "ada");
   CHECK(log->authors[2].name == std::string(kPlayerNameBytesMax, 'b'));
   CHECK(log->authors[0].edits.at(0).offset_us == 1'500);
@@ -83,7 +83,7 @@ TEST_CASE("a file that is damaged or cut anywhere is rejected", "[bots][play]") 
 }
 
 TEST_CASE("names of recorded players become names of sessions", "[bots][play]") {
-  CHECK(session_name("ada", 0) == "recorded server");
+  CHECK(session_name("ada", 0) == "recorded world");
   CHECK(session_name("", 7) == "author 7");
   CHECK(session_name("a\nb", 7) == "author 7");
   CHECK(session_name("\xff", 7) == "author 7");

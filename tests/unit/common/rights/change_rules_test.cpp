@@ -64,21 +64,28 @@ TEST_CASE("only administrators change roles and the default role", "[rights]") {
     CHECK(world.allows(actor, DefineRole{guard}));
     CHECK(world.allows(actor, SetDefaultRole{kVisitorRole}));
   }
-  CHECK(world.why(kConsole, SetDefaultRole{"guard"}) == "There is no role \"guard\".");
+  CHECK(world.why(kConsole, SetDefaultRole{"guard"}) ==
+        "There is no role \"guard\" (roles lists them).");
 }
 
 TEST_CASE("a role in use is not removed, and a built-in one only as far as it was changed",
           "[rights]") {
   RulesWorld world;
-  CHECK(world.why(kConsole, RemoveRole{"guard"}) == "There is no role \"guard\".");
-  CHECK(world.why(kConsole, RemoveRole{"granter"}) == "A player has the role \"granter\".");
-  CHECK(world.why(kConsole, RemoveRole{kVisitorRole}) == "The role \"visitor\" is built in.");
+  CHECK(world.why(kConsole, RemoveRole{"guard"}) ==
+        "There is no role \"guard\" (roles lists them).");
+  CHECK(
+      world.why(kConsole, RemoveRole{"granter"}) ==
+      "A player has the role \"granter\": give the players with it another one first (grants lists them).");
+  CHECK(world.why(kConsole, RemoveRole{kVisitorRole}) ==
+        "The role \"visitor\" is built in, and nothing was changed of it.");
   world.make(DefineRole{{kBuilderRole, {Right::see}, 0, 0, 0}});
   CHECK(world.allows(kConsole, RemoveRole{kBuilderRole}));
   world.make(DefineRole{{"guard", {Right::see}, 0, 0, 0}});
   CHECK(world.allows(kConsole, RemoveRole{"guard"}));
   world.make(SetDefaultRole{"guard"});
-  CHECK(world.why(kConsole, RemoveRole{"guard"}) == "The role \"guard\" is the default role.");
+  CHECK(
+      world.why(kConsole, RemoveRole{"guard"}) ==
+      "The role \"guard\" is the default role: make another one the default first (role default NAME).");
 }
 
 TEST_CASE("a role is given within the rights of the giver, to players with fewer rights",
@@ -90,14 +97,16 @@ TEST_CASE("a role is given within the rights of the giver, to players with fewer
   CHECK(world.allows(player(kGranter), GrantRole{kStranger, "granter"}));
   CHECK(world.allows(player(kGranter), GrantRole{kMod, ""}));
   CHECK(world.why(player(kGranter), GrantRole{kMason, kAdministratorRole}) ==
-        "You lack the right \"administer\" and cannot give it.");
-  CHECK(world.why(player(kGranter), GrantRole{kRoot, kVisitorRole}) ==
-        "You can do this only to players who have fewer rights than you.");
+        "You lack the right \"administer\" and cannot give it: ask an administrator, or the host.");
+  CHECK(
+      world.why(player(kGranter), GrantRole{kRoot, kVisitorRole}) ==
+      "You can do this only to players who have fewer rights than you: ask an administrator, or the host.");
   world.make(GrantRole{kChief, "granter"});
   CHECK_FALSE(world.allows(player(kGranter), GrantRole{kChief, kVisitorRole}));
   CHECK(world.why(player(kGranter), GrantRole{kGranter, kVisitorRole}) ==
-        "You cannot do this to yourself.");
-  CHECK(world.why(player(kGranter), GrantRole{kMason, "pilot"}) == "There is no role \"pilot\".");
+        "You cannot do this to yourself: another administrator can, or the host at the console.");
+  CHECK(world.why(player(kGranter), GrantRole{kMason, "pilot"}) ==
+        "There is no role \"pilot\" (roles lists them).");
   CHECK(world.allows(kConsole, GrantRole{kRoot, kAdministratorRole}));
   CHECK_FALSE(world.allows(RightsActor{kMason, true}, GrantRole{kMason, kVisitorRole}));
 }
@@ -129,7 +138,7 @@ TEST_CASE("moderators restrict players with fewer rights and lift their restrict
   CHECK_FALSE(world.allows(player(kRoot), Restrict{RestrictionKind::mute, kRoot, 0, ""}));
   CHECK(world.why(player(kMason), ban(kStranger)) == "You need the right \"moderate\".");
   CHECK(world.why(player(kMod), Lift{RestrictionKind::ban, kMason}) ==
-        "There is no such restriction.");
+        "There is no such restriction (bans lists them).");
   world.make(ban(kMason));
   CHECK(world.allows(player(kMod), Lift{RestrictionKind::ban, kMason}));
   world.make(Restrict{RestrictionKind::mute, kMod, 0, ""});
@@ -156,7 +165,8 @@ TEST_CASE("bans of many addresses need an administrator", "[rights]") {
 
 TEST_CASE("the last administrator stays, whoever asks", "[rights]") {
   RulesWorld world;
-  const std::string last = "The world would have no administrator any more.";
+  const std::string last =
+      "The world would have no administrator any more: give another player a role with the rights see and administer first (grant PLAYER administrator).";
   const RightsActor op{kStranger, true};
   for (const RightsActor& actor : {kConsole, op}) {
     CHECK(world.why(actor, GrantRole{kRoot, kBuilderRole}) == last);
@@ -207,8 +217,9 @@ TEST_CASE("a builder claims ground within the quota", "[rights]") {
   ProtectedBox high = claim_of(kMason, "home", kPlot);
   high.priority = 1;
   CHECK_FALSE(world.allows(mason, Protect{high}));
-  CHECK(world.why(mason, Protect{claim_of(kMason, "land", columns(0, 0, 9, 9))}) ==
-        "Your role allows boxes of 1310720 voxels together.");
+  CHECK(
+      world.why(mason, Protect{claim_of(kMason, "land", columns(0, 0, 9, 9))}) ==
+      "Your role allows boxes of 1310720 voxels together: make it smaller, or remove one of yours first (unprotect NAME).");
   for (std::int32_t i = 0; i < 5; ++i) {
     const VoxelBox place = {{100 * i, 0, 0}, {100 * i + 64, 64, 32}};
     const Protect claim{claim_of(kMason, "claim-" + std::to_string(i), place)};
@@ -216,7 +227,7 @@ TEST_CASE("a builder claims ground within the quota", "[rights]") {
     world.make(claim);
   }
   CHECK(world.why(mason, Protect{claim_of(kMason, "more", {{0, 100, 0}, {1, 101, 1}})}) ==
-        "Your role allows 5 boxes.");
+        "Your role allows 5 boxes: remove one of yours first (unprotect NAME).");
   // A box that is replaced does not count.
   CHECK(world.allows(mason, Protect{claim_of(kMason, "claim-0", {{0, 0, 0}, {64, 64, 192}})}));
   CHECK_FALSE(
@@ -271,8 +282,9 @@ TEST_CASE("a change of members takes no ground back", "[rights]") {
 
 TEST_CASE("an administrator who may not join is none", "[rights]") {
   RulesWorld world;
-  CHECK(world.why(kConsole, DefineRole{{kAdministratorRole, {Right::administer}, 0, 0, 0}}) ==
-        "The world would have no administrator any more.");
+  CHECK(
+      world.why(kConsole, DefineRole{{kAdministratorRole, {Right::administer}, 0, 0, 0}}) ==
+      "The world would have no administrator any more: give another player a role with the rights see and administer first (grant PLAYER administrator).");
 }
 
 TEST_CASE("owners change their boxes, and protectors all of them", "[rights]") {
@@ -296,7 +308,8 @@ TEST_CASE("owners change their boxes, and protectors all of them", "[rights]") {
   CHECK_FALSE(world.allows(player(kMason), Protect{changed}));
   CHECK(world.allows(player(kMod), Protect{changed}));
   CHECK(world.allows(player(kMod), Unprotect{"home"}));
-  CHECK(world.why(kConsole, Unprotect{"house"}) == "There is no protected box \"house\".");
+  CHECK(world.why(kConsole, Unprotect{"house"}) ==
+        "There is no protected box \"house\" (protected lists them).");
   // Members can be changed without a quota, the place cannot.
   world.make(GrantRole{kMason, kVisitorRole});
   changed = home;
@@ -310,7 +323,7 @@ TEST_CASE("the roles of a box exist when they are added", "[rights]") {
   RulesWorld world;
   ProtectedBox home = claim_of(kMason, "home", kPlot);
   home.roles = {"guard"};
-  CHECK(world.why(kConsole, Protect{home}) == "There is no role \"guard\".");
+  CHECK(world.why(kConsole, Protect{home}) == "There is no role \"guard\" (roles lists them).");
   world.make(Protect{home});
   home.members = {kStranger};
   CHECK(world.allows(player(kMason), Protect{home}));

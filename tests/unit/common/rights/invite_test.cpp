@@ -91,7 +91,7 @@ TEST_CASE("who makes an invite gives only rights that are his", "[rights]") {
   world.make(GrantRole{kFirst, "granter"});
   CHECK(why(kFirst, kBuilderRole).empty());
   CHECK(why(kFirst, kModeratorRole).find("cannot give it") != std::string::npos);
-  CHECK(why(kFirst, "pilot") == "There is no role \"pilot\".");
+  CHECK(why(kFirst, "pilot") == "There is no role \"pilot\" (roles lists them).");
   CHECK(why(kFirst, kBuilderRole, kStart) == "The invite would have ended already.");
 }
 
@@ -101,7 +101,9 @@ TEST_CASE("an invite is for a role that may join, and ended ones leave room", "[
   const auto why = [&](const Invite& invite, TimeUs now_us) {
     return why_refused(world.state, console, CreateInvite{invite}, now_us).value_or("");
   };
-  CHECK(why({9, kNobodyRole, 1, kEnd}, kStart) == "Players with the role \"nobody\" may not join.");
+  CHECK(
+      why({9, kNobodyRole, 1, kEnd}, kStart) ==
+      "Players with the role \"nobody\" may not join: choose a role with the right see (roles lists them).");
   for (InviteId id = 100; world.state.invites().size() < kInvitesMax; ++id)
     world.make(CreateInvite{{id, kBuilderRole, 1, kEnd}});
   CHECK_FALSE(why({9, kBuilderRole, 1, 2 * kEnd}, kStart).empty());

@@ -63,8 +63,10 @@ TEST_CASE("administrators set a password, for a role that may join", "[rights]")
   const auto set = [](const std::string& role) { return SetPassword{{{role, {}, {}}}}; };
   CHECK(world.why(SetPassword{}) == "The world has no password.");
   CHECK(world.why(set(kBuilderRole)).empty());
-  CHECK(world.why(set(kNobodyRole)) == "Players with the role \"nobody\" may not join.");
-  CHECK(world.why(set("pilot")) == "There is no role \"pilot\".");
+  CHECK(
+      world.why(set(kNobodyRole)) ==
+      "Players with the role \"nobody\" may not join: choose a role with the right see (roles lists them).");
+  CHECK(world.why(set("pilot")) == "There is no role \"pilot\" (roles lists them).");
   world.make(GrantRole{kJoiner, kModeratorRole});
   CHECK(world.why(set(kBuilderRole), {kJoiner, false}) == "You need the right \"administer\".");
   world.set_password(kBuilderRole);

@@ -123,7 +123,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
         "1w) or when (2026-11-21T23:57:42Z, in UTC)");
   CHECK(mistake("log author #x") == "log author \"#x\": a number after #, or a name");
-  CHECK(mistake("log author") == "log author: a name, or # and a number, is missing");
+  CHECK(mistake("log author") ==
+        "log author: a name, # and a number, a key or a fingerprint, is missing");
   CHECK(
       mistake("log box 1 2 3 4 5") ==
       "log box: six numbers: x y z of one corner and of the opposite one, both inside is missing");

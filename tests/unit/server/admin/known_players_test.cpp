@@ -46,16 +46,46 @@ TEST_CASE("a word that means nobody or several players is refused", "[admin][rig
         "nobody with that fingerprint is known here (players and names list them)");
   CHECK(known.find("the bat").error() ==
         "several players have, own or had that name: the mole #2 " + key_fingerprint(kMole) +
-            ", the bat #3 " + key_fingerprint(kBat) + " (give #N, the fingerprint or the key)");
-
-  // A name that imitates a fingerprint does not hide the player who has it.
-  KnownPlayers::Sources sources;
-  sources.stored = {{1, kAna, "Ana"}, {2, kMole, key_fingerprint(kAna)}};
-  CHECK_FALSE(KnownPlayers(sources).find(key_fingerprint(kAna)).has_value());
+            " (say #2), the bat #3 " + key_fingerprint(kBat) + " (say #3)");
 
   KnownPlayers::Sources many;
   for (std::uint8_t i = 1; i <= 12; ++i) many.stored.push_back({i, PublicKey{i}, "x"});
-  CHECK(KnownPlayers(many).find("x").error().find(" and 2 more (give") != std::string::npos);
+  CHECK(KnownPlayers(many).find("x").error().find(" and 2 more") != std::string::npos);
+}
+
+TEST_CASE("a name that reads as a number or fingerprint never stands for another player",
+          "[admin][rights]") {
+  KnownPlayers::Sources sources;
+  sources.stored = {{1, kAna, "Ana"}, {2, kMole, "#1"}, {3, kBat, key_fingerprint(kAna)}};
+  const KnownPlayers known(sources);
+  const std::string ana = "Ana #1 " + key_fingerprint(kAna);
+  // Ana's number and fingerprint are names of others, so only her key means her alone.
+  CHECK(known.find("#1").error() == "that is also the name of a player; it may mean " + ana +
+                                        " (say " + to_hex(kAna) + "), #1 #2 " +
+                                        key_fingerprint(kMole) + " (say #2)");
+  CHECK(known.doubt_of(1) == known.find("#1").error());
+  CHECK(known.doubt_of(2) == std::nullopt);
+  CHECK(known.doubt_of(9) == std::nullopt);
+  CHECK_FALSE(known.find(key_fingerprint(kAna)).has_value());
+  CHECK(*known.find(to_hex(kAna)) == kAna);
+  CHECK(*known.find("#2") == kMole);
+  CHECK(*known.find("ana") == kAna);
+
+  // Without a player of that number the word means nobody, and the answer names the player.
+  sources.stored = {{2, kMole, "#7"}};
+  CHECK(KnownPlayers(sources).find("#7").error() ==
+        "nobody has that author number (players lists them). The player of that name is #7 #2 " +
+            key_fingerprint(kMole) + " (say #2)");
+  CHECK(KnownPlayers(sources).doubt_of(7).has_value());
+}
+
+TEST_CASE("the author and the name in use of a player are found", "[admin][rights]") {
+  const KnownPlayers known = players();
+  CHECK(known.author_of(kAna) == AuthorId{1});
+  CHECK(known.author_of(kOther) == std::nullopt);
+  CHECK(known.author_of(PublicKey{9}) == std::nullopt);
+  CHECK(known.has_name(kAna, "ANA"));
+  CHECK_FALSE(known.has_name(kAna, "ann"));
 }
 
 TEST_CASE("the text of a player has the fingerprint of the key", "[admin][rights]") {

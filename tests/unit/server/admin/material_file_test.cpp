@@ -88,12 +88,12 @@ TEST_CASE("materials add reads regular files only, for the console and control",
           "[admin][materials]") {
   AddBench bench;
   CHECK(bench.give({}, "materials add " + bench.folder.path()).text ==
-        "materials add: " + bench.folder.path() + ": is no file");
+        "materials add: " + bench.folder.path() + ": is a folder");
   CHECK(bench.give({}, "materials add " + (bench.folder / "none")).text.find("No such file") !=
         std::string::npos);
   const std::string pipe = bench.folder / "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK(bench.give({}, "materials add " + pipe).text.ends_with(": is no file"));
+  CHECK(bench.give({}, "materials add " + pipe).text.ends_with("a pipe or a socket, and no file"));
   const PublicKey key = key_pair_of(seed_of(1)).public_key;
   bench.join(1);
   CHECK(bench.give({1, {key, true}}, "materials add wool.toml").text ==

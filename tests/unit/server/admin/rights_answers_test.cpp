@@ -14,8 +14,9 @@ constexpr SessionId kFirst = 1, kSecond = 2;  // the key of session n is that of
 
 /// A world with two players, and its commands.
 struct RightsBench : RollbackBench {
-  RightsBench()
-      : services{bench.server, service,
+  explicit RightsBench(const WorldStart& start = {})
+      : RollbackBench(config(), start),
+        services{bench.server, service,
                  *this,        folder.path(),
                  {},           [this](const PublicKey& key) { return key == operator_key; }} {
     join(kFirst);
@@ -106,6 +107,95 @@ TEST_CASE("the console makes roles, and players need the right", "[admin][rights
   CHECK(has(bench.done("help"), "reload "));
 }
 
+TEST_CASE("a number or address that is also a player's name is refused with a word for each",
+          "[admin][rights][names]") {
+  // Player 2 owns these names from before nobody could newly have them.
+  WorldStart start;
+  for (const char* name : {"#1", "192.0.2.7"})
+    start.name_claims.push_back({name, name, RightsBench::key_of(2)});
+  RightsBench bench(start);
+  constexpr SessionId kThird = 3;
+  Hello hello = bench.bench.hello(2, kThird);
+  hello.name = "#1";
+  bench.bench.server.connected(kThird, bench.bench.now());
+  bench.bench.server.received(kThird, hello, bench.bench.now());
+  const auto welcome = bench.bench.environment.messages<Welcome>(kThird, 0);
+  REQUIRE(welcome.size() == 1);
+  bench.bench.server.received(kThird, bench.bench.client_auth(2, hello, welcome[0]),
+                              bench.bench.now());
+  const std::string one =
+      RightsBench::text_of(1) + " (say " + key_fingerprint(RightsBench::key_of(1)) + ")";
+  const std::string other = RightsBench::text_of(2) + " (say #2)";
+  for (const char* line : {"mute #1", "grant #1 moderator", "log author #1", "kick \"#1\"",
+                           "protect home 0 0 0 1 1 1 owner #1", "rollback preview author #1"}) {
+    CAPTURE(line);
+    const CommandAnswer answer = bench.console(line);
+    CHECK_FALSE(answer.is_ok);
+    CAPTURE(answer.text);
+    CHECK(has(answer.text, "\"#1\": that is also the name of a player; it may mean "));
+    CHECK(has(answer.text, one));
+    CHECK(has(answer.text, other));
+  }
+  CHECK(bench.head() == 0);
+  CHECK(bench.console("ban 192.0.2.7").text ==
+        "\"192.0.2.7\" is an address and the name of 192.0.2.7 #2 " +
+            key_fingerprint(RightsBench::key_of(2)) +
+            ": say address 192.0.2.7, or #2 for the player");
+  CHECK(bench.head() == 0);
+  CHECK(has(bench.done("ban address 192.0.2.7"), "everybody from 192.0.2.7, except"));
+  bench.done("unban address 192.0.2.7");
+  CHECK(has(bench.done("mute #2"), " is muted"));
+}
+
+TEST_CASE("a change with wide consequences says what it would do and asks for a word more",
+          "[admin][rights]") {
+  RightsBench bench;
+  const auto asked = [&](const std::string& line, const std::string& why) {
+    CAPTURE(line);
+    const Sequence before = bench.head();
+    const CommandAnswer answer = bench.console(line);
+    CHECK_FALSE(answer.is_ok);
+    CAPTURE(answer.text);
+    CHECK(has(answer.text, why));
+    CHECK(has(answer.text, "give the command as: " + line + " anyway"));
+    CHECK(bench.head() == before);
+  };
+  asked("role default administrator", "everybody without a granted role");
+  asked("role set builder see,moderate",
+        "would lose the rights build,claim,look_back,undo,chat (role set names all rights of a "
+        "role: role set builder see,build,claim,look_back,undo,chat,moderate keeps them)");
+  asked("role set builder see", "would lose the rights");
+  asked("role set builder see,chat,look_back,undo,claim,build,moderate", "would have the rights");
+  asked("ban 0.0.0.0/0", "from 0.0.0.0/0, 4294967296 addresses");
+  asked("ban ::/0 for 1h", "all addresses there are");
+  asked("ban address 10.0.0.0/15 reason spam", "131072 addresses");
+  asked("invite role administrator uses 5", "the first 5 players with the link");
+  bench.done("ban 10.1.0.0/16");
+  bench.done("invite role administrator");
+  bench.done("role set mason see,build");
+  bench.done("role set mason see,build,undo");
+
+  const JoinPassword password{"administrator", {1}, {2}};
+  const std::string verifier = verifier_text(password);
+  const CommandAnswer secret =
+      bench.console("password set role administrator verifier " + verifier);
+  CHECK(has(secret.text, "whoever knows the password would have the rights"));
+  CHECK_FALSE(has(secret.text, verifier));
+
+  CHECK(has(bench.done("role default administrator anyway"), "have the role administrator"));
+  CHECK(has(bench.done("ban 192.0.2.0/24"),
+            "everybody from 192.0.2.0/24, except administrators, is banned; players without a "
+            "granted role still join, because the default role administrator administers"));
+  bench.done("role default builder");
+  asked("rights undo " + std::to_string(bench.head()), "everybody without a granted role");
+  CHECK(has(bench.done("role set builder see anyway"), "role builder is see"));
+  bench.done("ban 0.0.0.0/0 for 1h reason \"all of them\" anyway");
+  // The word is also a name, and the text of a reason.
+  CHECK(has(bench.console("ban anyway").text, "nobody of that name"));
+  bench.done("ban 198.51.100.1 reason anyway");
+  CHECK(has(bench.done("bans"), "\"anyway\""));
+}
+
 TEST_CASE("control sets a password that the console and players cannot type", "[admin][rights]") {
   RightsBench bench;
   CHECK(has(bench.console("password set").text, "runstone-server control"));
@@ -152,7 +242,8 @@ TEST_CASE("a ban ends sessions and is listed until it is lifted", "[admin][right
   CHECK(bench.done("bans") == "nobody is banned, muted or frozen");
 
   CHECK(has(bench.done("ban 2001:db8::1"),
-            "everybody from 2001:db8::/64 is banned [a single IPv6 address means its /64]"));
+            "everybody from 2001:db8::/64, except administrators, is banned [a single IPv6 "
+            "address means its /64]"));
   bench.done("ban 192.0.2.0/24");
   CHECK(bench.console("unban 192.0.2.7").text ==
         "everybody from 192.0.2.7 is not banned, but 192.0.2.0/24 is (bans lists all)");

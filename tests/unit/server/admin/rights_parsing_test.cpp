@@ -55,6 +55,11 @@ TEST_CASE("commands about restrictions are parsed", "[admin][rights]") {
   const auto range = parsed<RestrictCommand>("ban 192.0.2.7/24").who;
   CHECK(range.player.empty());
   CHECK(range.range == AddressRange{address_block_v4(0xc0'00'02'00), 32 + 24});
+  CHECK(range.address == "192.0.2.7/24");
+  CHECK_FALSE(range.is_address);
+  CHECK(parsed<RestrictCommand>("ban address 192.0.2.7").who.is_address);
+  CHECK(parsed<RestrictCommand>("ban address for 1h").who.player == "address");
+  CHECK(parsed<RestrictCommand>("ban address").who.player == "address");
   const auto wide = parsed<RestrictCommand>("ban 2001:db8::1").who;
   CHECK(wide.is_widened);
   CHECK(wide.range == AddressRange{AddressBlock{0x2001'0db8'0000'0000}, 64});

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <latch>
+#include <string>
 
 #include "tests/support/core/temp_folder.hpp"
 
@@ -36,4 +37,34 @@ TEST_CASE("a full queue refuses at once, and a stop answers each request that wa
     may_end.count_down();
   }
   CHECK(answers == MapService::kQueueMax);
+}
+
+TEST_CASE("requests that draw nothing are answered before tiles, and do not starve them", "[map]") {
+  const TempFolder empty;
+  std::latch is_begun(1), may_end(1), is_done(4 + MapService::kQuickInRowMax + 1);
+  std::string order;  // the one thread of the maps writes it
+  MapThreads threads(1);
+  MapService service(threads, empty.path(), 1 << 20, [](const std::string&) {});
+  service.ask(RightsRequest{}, "", [&](const MapAnswer&) {
+    is_begun.count_down();
+    may_end.wait();
+  });
+  is_begun.wait();
+  const auto note = [&](char what) {
+    return [&, what](const MapAnswer&) {
+      order += what;
+      is_done.count_down();
+    };
+  };
+  for (int i = 0; i < 3; ++i) service.ask(TilePictureRequest{}, "", note('t'));
+  service.ask(MapStateRequest{}, "", note('s'));
+  for (int i = 0; i <= MapService::kQuickInRowMax; ++i)
+    service.ask(RecentEditsRequest{}, "", note('r'));
+  may_end.count_down();
+  is_done.wait();
+  CHECK(order.starts_with("sr"));
+  const std::size_t tile = order.find('t');
+  CHECK(tile > 2);
+  CHECK(tile < order.rfind('r'));  // it did not wait for all of them
+  CHECK(order.ends_with("tt"));
 }

@@ -21,8 +21,9 @@ inline constexpr SessionId kGriefer = 1, kBuilder = 2;
 
 class RollbackBench : public RollbackService::Workers {
  public:
-  explicit RollbackBench(WorldConfig c = config())
-      : bench(std::move(c)), service(bench.server, *this, [this](std::span<std::uint8_t> out) {
+  explicit RollbackBench(WorldConfig c = config(), const WorldStart& start = {})
+      : bench(std::move(c), start),
+        service(bench.server, *this, [this](std::span<std::uint8_t> out) {
           for (auto& byte : out) byte = static_cast<std::uint8_t>(++random_);
         }) {
     WorldMeta meta = sample_meta();

@@ -93,6 +93,67 @@ TEST_CASE("a rollback restores the world, and its undo restores the edits", "[ro
   }
 }
 
+TEST_CASE("edits that are there again after an undo of their rollback can be taken back again",
+          "[rollback]") {
+  Night night;
+  const auto griefed = night.digests();
+  const auto listed = [&] {
+    night.service.list(night.reply());
+    night.run_all();
+    return night.answer().text;
+  };
+  const auto undo = [&](const std::string& id) {
+    const Sequence first = night.bench.environment.records.back().version.seq + 1;
+    night.service.undo_rollback(id, 0, night.bench.now(), night.reply());
+    night.run_all();
+    CHECK(night.answer().is_ok);
+    return std::to_string(first);
+  };
+  night.service.apply(night.preview_id(), 0, night.reply());
+  night.run_all();
+  const std::string taken_back = undo("3");
+  CHECK(night.digests() == griefed);
+  CHECK(listed().find(", taken back by " + taken_back) != std::string::npos);
+
+  // The griefer's edit is there again, voxel by voxel.
+  const std::string again = night.preview_id();
+  CHECK(night.answer().text.find("6400 voxels in 16 chunks") != std::string::npos);
+  night.service.apply(again, 0, night.reply());
+  night.run_all();
+  CHECK(night.digests() == night.before);
+  undo(again);
+  CHECK(night.digests() == griefed);
+
+  // The undo is taken back: the rollback is in force, and can be undone once more.
+  const std::string redone = undo(taken_back);
+  CHECK(night.digests() == night.before);
+  CHECK(listed().find("rollback 3 ") == 0);
+  const std::string lines = listed();
+  CHECK(lines.substr(0, lines.find('\n')).find("taken back") == std::string::npos);
+  const std::string last = undo("3");
+  CHECK(night.digests() == griefed);
+  CHECK(listed().find(", taken back by " + last) != std::string::npos);
+  undo(redone);  // nothing is left of it to take back
+  CHECK(night.digests() == griefed);
+}
+
+TEST_CASE("work of others since a rollback stays theirs when the rollback is undone",
+          "[rollback]") {
+  Night night;
+  night.service.apply(night.preview_id(), 0, night.reply());
+  night.run_all();
+  night.fill(kBuilder, {{10, 0, 0}, {12, 2, 2}}, 3);
+  night.write_log();
+  night.service.undo_rollback("3", 0, night.bench.now(), night.reply());
+  night.run_all();
+  CHECK(night.at({10, 0, 0}) == 3);
+  CHECK(night.at({13, 0, 0}) == 1);
+  night.service.apply(night.preview_id(), 0, night.reply());
+  night.run_all();
+  CHECK(night.at({10, 0, 0}) == 3);
+  CHECK(night.at({13, 0, 0}) == kEmpty);
+}
+
 TEST_CASE("a rollback that matches no edit answers so", "[rollback]") {
   Night night;
   night.service.preview(of_author(99), night.bench.now(), night.reply());

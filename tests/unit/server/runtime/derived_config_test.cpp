@@ -22,6 +22,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   config.chunk_loads_per_second = 30;
   config.sessions_per_key = 6;
   config.sessions_per_address = 7;
+  config.range_seats_percent = 40;
   config.stop_s = 4;
   config.speed_max = 70;
   const WorldConfig world = world_config_of(config, sample_meta(), 4747);
@@ -44,6 +45,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.chunk_loads == Budget{30, 300});
   CHECK(world.sessions_per_key == 6);
   CHECK(world.sessions_per_address == 7);
+  CHECK(world.range_seats_percent == 40);
   CHECK(world.stop_us_max == 4'000'000);
   CHECK(world.speed_max == 70);
 }

@@ -6,6 +6,7 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "tests/support/codec/sample_frame.hpp"
 
 using namespace runstone;
@@ -58,6 +59,22 @@ TEST_CASE("a stream is cut into the same frames however it arrives", "[web]") {
   CHECK(cut == frames);
   CHECK(cutter.is_between_frames());
   CHECK_FALSE(cutter.broken());
+}
+
+TEST_CASE("a goodbye among the frames is noticed", "[web]") {
+  FrameCutter cutter;
+  const auto take = [&](const Bytes& frame) {
+    cutter.drop_taken();
+    std::copy(frame.begin(), frame.end(), cutter.room().begin());
+    cutter.add(frame.size());
+    REQUIRE(cutter.next().has_value());
+    return cutter.has_goodbye();
+  };
+  CHECK_FALSE(take(frame_of(20)));
+  Bytes goodbye = frame_of(20);
+  goodbye[2] = wire_number(kKindOf<Goodbye>);
+  CHECK(take(goodbye));
+  CHECK(take(frame_of(20)));
 }
 
 TEST_CASE("a stream with a header that no frame has is broken", "[web]") {

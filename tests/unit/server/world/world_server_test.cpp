@@ -247,6 +247,61 @@ TEST_CASE("a key and an address have a limited number of sessions", "[world]") {
   bench.join(8, 7, 1, kSchool);
 }
 
+TEST_CASE("a range of addresses takes a share of the seats that the others leave", "[world]") {
+  constexpr std::uint32_t kMany = 0xc0000200, kOther = 0xc6336401, kThird = 0xcb007101;
+  WorldConfig c = config();
+  c.sessions_max = 40;
+  c.sessions_per_address = 10;
+  c.range_seats_percent = 50;
+  SessionId session = 0;
+  // Returns the text of the refusal, or an empty text.
+  const auto enters = [&session](Bench& bench, AddressBlock from) -> std::string {
+    const auto who = static_cast<std::uint8_t>(++session);
+    bench.server.connected(session, bench.now(), from);
+    const Hello hello = bench.hello(who, 1);
+    bench.server.received(session, hello, bench.now());
+    const auto welcome = bench.environment.messages<Welcome>(session, 0);
+    if (welcome.empty()) return bench.environment.closed.back().text;
+    bench.server.received(session, bench.client_auth(who, hello, welcome[0]), bench.now());
+    return "";
+  };
+  const auto let_in = [&](Bench& bench, std::uint32_t first, int addresses) {
+    int in = 0;
+    for (int i = 0; i < 45; ++i) {
+      const auto at = first + static_cast<std::uint32_t>(i % addresses);
+      in += enters(bench, address_block_v4(at)).empty() ? 1 : 0;
+    }
+    return in;
+  };
+  SECTION("so newcomers from elsewhere get in") {
+    Bench bench(c);
+    CHECK(let_in(bench, kMany, 5) == 20);  // of one /24
+    CHECK(enters(bench, address_block_v4(kMany + 9)) ==
+          "while few seats are free, your range of addresses has 20 sessions at most "
+          "(range_seats_percent): come back later, or ask the server's host");
+    CHECK(let_in(bench, kOther, 5) == 10);  // half of what is left
+    CHECK(enters(bench, address_block_v4(kThird)).empty());
+  }
+  SECTION("which a host can change, for a school behind one address") {
+    c.range_seats_percent = 100;
+    c.sessions_per_address = 40;
+    Bench bench(c);
+    CHECK(let_in(bench, kMany, 1) == 40);
+  }
+  SECTION("not in a local network, and not without a limit for addresses") {
+    Bench local(c);
+    CHECK(let_in(local, 0xc0a80000, 5) == 40);
+    c.sessions_per_address = 0;
+    Bench open(c);
+    CHECK(let_in(open, kMany, 1) == 40);
+  }
+  SECTION("of eight seats at least") {
+    c.sessions_max = 10;
+    Bench bench(c);
+    CHECK(let_in(bench, kMany, 5) == 8);
+  }
+}
+
 TEST_CASE("seats are counted again when a session has proved its key", "[world]") {
   WorldConfig c = config();
   c.sessions_per_key = 1;

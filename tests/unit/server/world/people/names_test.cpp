@@ -169,6 +169,51 @@ TEST_CASE("reserved names and names with a fault are refused", "[world][names]")
   CHECK(bench.environment.names.empty());
 }
 
+TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a reference",
+          "[world][names]") {
+  WorldConfig c = config();
+  c.reserved_names = {"admin", "me", "server"};
+  NameBench bench(c);
+  const auto change = [&](const RightsChange& what) {
+    REQUIRE(bench.server.changes().change_rights(what, {}, 0, bench.now()).has_value());
+  };
+  change(DefineRole{{"captain", {Right::see, Right::moderate}, 0, 0, 0}});
+  SessionId session = 0;
+  const auto refused = [&](const std::string& name) {
+    CAPTURE(name);
+    CHECK_FALSE(bench.enters(++session, 1, name));
+    return bench.refusal(session);
+  };
+  CHECK(refused("adm\u0131n") ==
+        "the name \"adm\u0131n\" looks like \"admin\", which is reserved: choose another name");
+  CHECK(refused("[ADMIN] ana").find("looks like \"admin\"") != std::string::npos);
+  CHECK(refused("\u13daerver").find("looks like \"server\"") != std::string::npos);
+  CHECK(refused("Captain Ana").find("looks like \"captain\", a role") != std::string::npos);
+  CHECK(refused("moderat0r").find("looks like \"moderator\", a role") != std::string::npos);
+  CHECK(
+      refused("#1") ==
+      "the name \"#1\" is refused: commands read it as the number of a player: choose another name");
+  CHECK(refused("\uff03"
+                "1")
+            .find("the number of a player") != std::string::npos);
+  CHECK(refused("192.0.2.7").find("an address") != std::string::npos);
+  CHECK(refused(key_fingerprint(public_key_of(2))).find("a key") != std::string::npos);
+  CHECK(bench.environment.names.empty());
+
+  change(RemoveRole{"captain"});
+  CHECK_FALSE(bench.enters(++session, 3, "Captain Ana"));  // its claim is on its way to the disk
+  bench.write_names();
+  CHECK(bench.is_accepted(session));
+  change(DefineRole{{"captain", {Right::see, Right::moderate}, 0, 0, 0}});
+  CHECK(bench.enters(++session, 3, "Captain Ana"));  // the owner keeps the name
+  CHECK_FALSE(bench.enters(++session, 4, "Captain Bob"));
+  // Roles without rights over others are free: "builder" is what clients call their player at first.
+  CHECK_FALSE(bench.enters(++session, 5, "builder"));
+  CHECK(bench.refusal(session).empty());
+  CHECK_FALSE(bench.enters(++session, 6, "Call me Ana"));
+  CHECK(bench.refusal(session).empty());
+}
+
 TEST_CASE("an address claims so many names an hour, and its other players play without",
           "[world][names]") {
   WorldConfig c = config();
