@@ -9,6 +9,10 @@
 # libraries for embedders, so that neither what is measured nor the time to compile one changed file
 # depends on the preset.
 #
+# With clang, the headers of the standard library, and those of Asio, spdlog and CLI11, are then parsed
+# once for all modules (runstone_precompile). Builds that compile each file alone find missing includes,
+# so they do without.
+#
 # Command lines (options.cpp, *_options.cpp and what the regular expression COMMAND_LINE names) are
 # one more unit, which is optimised little: a command line is read once, and CLI11 is slow to
 # optimise. No other code may be in it: the linker keeps one copy of an inline function, which may be
@@ -16,6 +20,30 @@
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)
+endfunction()
+
+# runstone_precompile(NAME FLAGS LIBS lib... HEADERS header...): makes a precompiled header for modules
+# with these flags.
+function(runstone_precompile name flags)
+  cmake_parse_arguments(ARG "" "" "LIBS;HEADERS" ${ARGN})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cpp CONTENT "")
+  add_library(runstone_precompiled_${name} OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(runstone_precompiled_${name} PRIVATE ${ARG_LIBS})
+  target_compile_features(runstone_precompiled_${name} PRIVATE cxx_std_20)
+  target_compile_options(runstone_precompiled_${name} PRIVATE ${flags})
+  target_precompile_headers(runstone_precompiled_${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+# Lets a module use the precompiled header that fits its libraries.
+function(runstone_use_precompiled target libraries)
+  set(kind std)
+  if("runstone_asio" IN_LIST libraries)
+    set(kind asio)
+    if("spdlog::spdlog" IN_LIST libraries)
+      set(kind asio_log)
+    endif()
+  endif()
+  target_precompile_headers(${target} REUSE_FROM runstone_precompiled_${kind})
 endfunction()
 
 function(runstone_module folder)
@@ -59,6 +87,9 @@ function(runstone_module folder)
       list(APPEND libraries ${dep_name})
     endforeach()
     target_link_libraries(${name}_command_line PRIVATE ${libraries})
+    if(CMAKE_UNITY_BUILD AND TARGET runstone_precompiled_command_line)
+      target_precompile_headers(${name}_command_line REUSE_FROM runstone_precompiled_command_line)
+    endif()
     list(APPEND sources $<TARGET_OBJECTS:${name}_command_line>)
   endif()
   if(sources)
@@ -66,6 +97,8 @@ function(runstone_module folder)
     set(scope PUBLIC)
     if(ARG_SINGLE)
       set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+    elseif(CMAKE_UNITY_BUILD AND TARGET runstone_precompiled_std)
+      runstone_use_precompiled(${name} "${ARG_LIBS}")
     endif()
   else()
     add_library(${name} INTERFACE)
