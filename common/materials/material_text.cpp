@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -61,7 +61,7 @@ std::string look_text(const MaterialLook& look) {
   share("roughness", look.roughness, usual.roughness);
   share("emission", look.emission, usual.emission);
   if (look.pattern != usual.pattern)
-    add("pattern", quoted(kPatternNames[static_cast<std::size_t>(look.pattern)]));
+    add("pattern", toml_string(kPatternNames[static_cast<std::size_t>(look.pattern)]));
   return keys.empty() ? "{}" : "{" + keys + " }";
 }
 
@@ -71,8 +71,8 @@ std::string to_toml(const MaterialTable& table) {
   std::string out;
   for (const MaterialInfo& row : table.rows()) {
     if (!out.empty()) out += '\n';
-    out += "[[material]]\nname = " + quoted(row.name) + "\n";
-    out += "colour = " + quoted(colour_text(row.colour)) + "\n";
+    out += "[[material]]\nname = " + toml_string(row.name) + "\n";
+    out += "colour = " + toml_string(colour_text(row.colour)) + "\n";
     out += std::string("visibility = \"") +
            kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
     if (row.body != MaterialBody::solid)
