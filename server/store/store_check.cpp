@@ -71,15 +71,15 @@ StoreResult<void> SqlStore::check_eras() {
     std::vector<LogEra> found;
     TimeUs before_us = head->version.seq == 0 ? std::numeric_limits<TimeUs>::min() : head->time_us;
     Sequence wrong = 0;
-    auto read = log_.read(*range, range->first, range->last.version.seq,
-                          [&](const EditRecord& record) {
-                            if (corrects_time(record))
-                              found.push_back({record.version.seq, record.time_us});
-                            else if (record.time_us < before_us)
-                              wrong = record.version.seq;
-                            before_us = record.time_us;
-                            return wrong == 0;
-                          });
+    auto read =
+        log_.read(*range, range->first, range->last.version.seq, [&](const EditRecord& record) {
+          if (corrects_time(record))
+            found.push_back({record.version.seq, record.time_us});
+          else if (record.time_us < before_us)
+            wrong = record.version.seq;
+          before_us = record.time_us;
+          return wrong == 0;
+        });
     if (!read) return read;
     if (wrong != 0) {
       return failure(StoreError{StoreError::Kind::corrupt, file(),

@@ -35,10 +35,11 @@ void LogClock::begin(const Clocks& now) {
   }
   ahead_us_ = std::max<TimeUs>(0, last_us_ - time_us_);
   if (last_us_ - time_us_ <= kJumpUs) return;
-  warning_ = "the log ends at " + utc_text(last_us_) + ", but the wall clock reads " +
-             utc_text(now.utc_us) +
-             ": until it has reached that time, edits get the time of the log's end. If the wall clock "
-             "is right, the command `clock correct` ends that";
+  warning_ =
+      "the log ends at " + utc_text(last_us_) + ", but the wall clock reads " +
+      utc_text(now.utc_us) +
+      ": until it has reached that time, edits get the time of the log's end. If the wall clock "
+      "is right, the command `clock correct` ends that";
 }
 
 void LogClock::follow(TimeUs time_us, bool is_correction) {
