@@ -2,8 +2,8 @@
 // time in the log stays, and no later edit may have an earlier one. So the log's time does not
 // follow a jump of the wall clock at once:
 //   - It begins with the wall clock, or with another time if the wall clock is doubtful then: that
-//     is a jump, too (server/runtime/clock_check.hpp). From then on it advances with the steady clock, and is slewed
-//     towards the wall clock by at most kSlewPpm.
+//     is a jump, too (server/runtime/clock_check.hpp). From then on it advances with the steady
+//     clock, and is slewed towards the wall clock by at most kSlewPpm.
 //   - A wall clock that differs from it by more than kJumpUs has jumped. A jump is not slewed. If
 //     the wall clock keeps it for kAcceptUs, the log's time becomes the wall clock's: a time
 //     service may set a clock long after the start, and a suspended computer stops its steady
