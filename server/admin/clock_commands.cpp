@@ -77,13 +77,13 @@ void correct_clock(const CommandCall& call, const bool& is_confirmed) {
   call.answer("the time of the log goes on from " + before + " to " + now);
 }
 
-constexpr CommandRule kAdministrators = needs(Right::administer);
+constexpr CommandRule kClockAdministrators = needs(Right::administer);
 
 constexpr std::array<CommandRow, 2> kClockRows = {{
-    {"clock", kAdministrators,
+    {"clock", kClockAdministrators,
      "clock                     the time of the log and the wall clock, and how far they differ",
      alone<show_clock>()},
-    {"clock correct", kAdministrators,
+    {"clock correct", kClockAdministrators,
      "clock correct             make the time of the log that of the wall clock, after it was wrong",
      parsed_by<parse_correct, correct_clock>()},
 }};
