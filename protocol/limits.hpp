@@ -31,7 +31,9 @@ inline constexpr std::uint64_t kFeatureResume =
     4096;  // Resume, Resumed; a Durable may raise the epoch
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Only for a client that has the world's own key: another server of the same world.
-inline constexpr std::uint64_t kFeatureServers = 2048;  // FollowRequest to RelayCharge
+inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
+inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
+inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTimeCorrections;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |

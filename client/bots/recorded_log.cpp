@@ -11,9 +11,10 @@
 namespace runstone {
 namespace {
 
-/// Returns the time between two times of a file. They never decrease, but their difference may
-/// overflow.
+/// Returns the time between two times of a file, whose difference may overflow. It is 0 if the time
+/// falls, because the log corrects it there.
 TimeUs between(TimeUs first, TimeUs later) {
+  if (later < first) return 0;
   const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(first);
   return static_cast<TimeUs>(std::min<std::uint64_t>(
       apart, static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max())));
@@ -44,7 +45,7 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
   log.materials = *std::move(materials);
   std::map<AuthorId, RecordedAuthor> authors;
   std::vector<bool> used(kMaterialCountMax, false);
-  TimeUs first_us = 0;
+  TimeUs last_us = 0, passed_us = 0;
   std::string wrong;
   const auto read = reader->read({}, [&](const EditRecord& record) {
     if (const AddedMaterials* added = added_materials_of(record.edit)) {
@@ -54,7 +55,11 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
       return appended.has_value();
     }
     if (!has_voxels(record.edit)) return true;  // the live world has rights of its own
-    if (log.edits == 0) first_us = record.time_us;
+    const TimeUs step_us = log.edits == 0 ? 0 : between(last_us, record.time_us);
+    passed_us = step_us > std::numeric_limits<TimeUs>::max() - passed_us
+                    ? std::numeric_limits<TimeUs>::max()
+                    : passed_us + step_us;
+    last_us = record.time_us;
     if (!log.materials.knows(material_max(record.edit))) {
       wrong = "edit " + std::to_string(record.version.seq) + " uses material " +
               std::to_string(material_max(record.edit)) +
@@ -62,7 +67,7 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
       return false;
     }
     note_materials(record.edit, used);
-    authors[record.op.author].edits.push_back({between(first_us, record.time_us), record.edit});
+    authors[record.op.author].edits.push_back({passed_us, record.edit});
     ++log.edits;
     return true;
   });

@@ -242,6 +242,8 @@ class ChangeCheck {
     return refused_first_grant(change.key, password->role);
   }
 
+  Refusal refused_kind(const CorrectTime& /*change*/) const { return needs(Right::administer); }
+
   Refusal refused_kind(const CancelInvite& change) const {
     if (!rights_.has(Right::administer)) {
       if (auto lacks = needs(Right::grant)) return lacks;

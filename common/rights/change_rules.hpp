@@ -1,7 +1,7 @@
 // Change rules: who may make which change of rights. The rules:
 //   - Grants need the right `grant` or `administer`; restrictions need `moderate`; roles, the
-//     default role, the password, and bans of more addresses than an IPv4 /24 or an IPv6 /48 need
-//     `administer`.
+//     default role, the password, bans of more addresses than an IPv4 /24 or an IPv6 /48, and a
+//     correction of the time need `administer`.
 //   - A player gives only what lies within the player's own rights, and gives roles and
 //     restrictions to, and takes them from, only players who have fewer rights. Administrators act
 //     on everybody. No player acts on itself, and a banned player makes no change.
@@ -53,8 +53,9 @@ struct RightsRecord {
 };
 /// Returns the change that takes the record's change back: it restores what the records before it
 /// say of the same role, grant, default role, password, restriction or box. `records` are given in
-/// log order from the first to the newest. Returns nullopt if there is no record `seq`, or if it no
-/// longer decides anything, because a later one has replaced it. Cost: O(records log n).
+/// log order from the first to the newest. Returns nullopt if there is no record `seq`, if it
+/// corrects the time, or if it no longer decides anything, because a later one has replaced it. Ends
+/// are those that corrections of the time have moved. Cost: O(records log n).
 std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records, Sequence seq);
 
 }  // namespace runstone

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <variant>
 
 #include "common/rights/change_rules.hpp"
 
@@ -7,7 +8,16 @@ namespace {
 
 /// Names the part of the state that a change sets.
 struct ChangedCell {
-  enum class Kind : std::uint8_t { role, grant, default_role, restriction, box, invite, password };
+  enum class Kind : std::uint8_t {
+    role,
+    grant,
+    default_role,
+    restriction,
+    box,
+    invite,
+    password,
+    time
+  };
   Kind kind{};
   std::string name;  // of the role or box; the number of the invite
   RestrictionKind restriction{};
@@ -36,6 +46,7 @@ ChangedCell cell_of_kind(const CancelInvite& c) {
 }
 ChangedCell cell_of_kind(const SetPassword&) { return {CellKind::password, {}, {}, {}}; }
 ChangedCell cell_of_kind(const AcceptPassword& c) { return {CellKind::grant, {}, {}, c.key}; }
+ChangedCell cell_of_kind(const CorrectTime&) { return {CellKind::time, {}, {}, {}}; }
 
 /// Returns true if the role that a player gets on joining may depend on the record: if it is about
 /// invites, passwords or grants.
@@ -52,7 +63,8 @@ ChangedCell cell_of(const RightsChange& change) {
   return std::visit([](const auto& kind) { return cell_of_kind(kind); }, change);
 }
 
-/// Returns the change that gives the cell the value that it has in `state`.
+/// Returns the change that gives the cell the value that it has in `state`. Requires that the cell is
+/// not the time.
 RightsChange restoring(const RightsState& state, const ChangedCell& cell) {
   switch (cell.kind) {
     case CellKind::role: {
@@ -90,6 +102,7 @@ RightsChange restoring(const RightsState& state, const ChangedCell& cell) {
       return CreateInvite{invite};
     }
     case CellKind::box:
+    case CellKind::time:
       break;
   }
   const Decided<ProtectedBox>* box = state.find_box(cell.name);
@@ -105,13 +118,17 @@ std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records,
   });
   if (at == records.end()) return std::nullopt;
   const ChangedCell cell = cell_of(at->change);
+  if (cell.kind == CellKind::time) return std::nullopt;
   const bool is_replaced = std::any_of(at + 1, records.end(), [&](const RightsRecord& later) {
     return cell_of(later.change) == cell;
   });
   if (is_replaced) return std::nullopt;
   RightsState before;
-  for (auto record = records.begin(); record != at; ++record) {
-    if (cell_of(record->change) == cell || is_about_joining(record->change))
+  for (auto record = records.begin(); record != records.end(); ++record) {
+    const bool is_before =
+        record < at && (cell_of(record->change) == cell || is_about_joining(record->change));
+    // A later correction of the time moves the ends that were given before.
+    if (is_before || std::holds_alternative<CorrectTime>(record->change))
       before.apply(record->change, record->origin);
   }
   return restoring(before, cell);

@@ -14,7 +14,8 @@ namespace runstone {
 namespace {
 
 // The tag of a change is its index in the variant, plus 1. A role with quotas of its own has a tag of
-// its own, because the bytes of define_role have no room for them.
+// its own, because the bytes of define_role have no room for them. The tags behind it are the index
+// plus 2.
 enum class ChangeTag : std::uint8_t {
   define_role = 1,
   remove_role = 2,
@@ -29,14 +30,16 @@ enum class ChangeTag : std::uint8_t {
   cancel_invite = 11,
   set_password = 12,
   accept_password = 13,
-  define_role_with_quotas = 14
+  define_role_with_quotas = 14,
+  correct_time = 15
 };
-static_assert(std::variant_size_v<RightsChange> ==
-              static_cast<std::uint8_t>(ChangeTag::accept_password));
+static_assert(std::variant_size_v<RightsChange> + 1 ==
+              static_cast<std::uint8_t>(ChangeTag::correct_time));
 
 ChangeTag tag_of(const RightsChange& change) {
   const auto* define = std::get_if<DefineRole>(&change);
   if (define != nullptr && define->role.has_quotas()) return ChangeTag::define_role_with_quotas;
+  if (std::holds_alternative<CorrectTime>(change)) return ChangeTag::correct_time;
   return static_cast<ChangeTag>(change.index() + 1);
 }
 
@@ -172,6 +175,12 @@ Result<void> check_change(const SetPassword& change) {
 
 Result<void> check_change(const AcceptPassword& /*change*/) { return {}; }
 
+Result<void> check_change(const CorrectTime& change) {
+  if (change.back_us <= 0)
+    return fail(ErrorCode::bad_value, "correction of the time that sets nothing back");
+  return {};
+}
+
 void write_text(ByteWriter& w, std::string_view text) {
   w.varint(text.size());
   w.bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -265,6 +274,10 @@ void write_change(ByteWriter& w, const SetPassword& change) {
 
 void write_change(ByteWriter& w, const AcceptPassword& change) { w.bytes(change.key); }
 
+void write_change(ByteWriter& w, const CorrectTime& change) {
+  w.varint(static_cast<std::uint64_t>(change.back_us));
+}
+
 std::string read_text(ByteReader& r, std::size_t bytes_max, const char* what) {
   const ByteView text = r.bytes(static_cast<std::size_t>(r.varint_max(bytes_max, what)));
   return {text.begin(), text.end()};
@@ -315,10 +328,12 @@ Role read_role_with_quotas(ByteReader& r) {
   return role;
 }
 
-TimeUs read_end_time(ByteReader& r) {
+TimeUs read_time(ByteReader& r, const char* what) {
   constexpr auto kTimeMax = static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max());
-  return static_cast<TimeUs>(r.varint_max(kTimeMax, "end too late"));
+  return static_cast<TimeUs>(r.varint_max(kTimeMax, what));
 }
+
+TimeUs read_end_time(ByteReader& r) { return read_time(r, "end too late"); }
 
 Invite read_invite(ByteReader& r) {
   Invite invite;
@@ -425,6 +440,8 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
       return AcceptPassword{read_key(r)};
     case ChangeTag::define_role_with_quotas:
       return DefineRole{read_role_with_quotas(r)};
+    case ChangeTag::correct_time:
+      return CorrectTime{read_time(r, "correction of the time too large")};
   }
   r.reject(ErrorCode::unknown_kind, "unknown rights change");
   return RemoveRole{};

@@ -103,11 +103,19 @@ struct AcceptPassword {
   friend bool operator==(const AcceptPassword&, const AcceptPassword&) = default;
 };
 
+/// Sets the time of the log back: to the time of this record, which may be earlier than that of the
+/// record before it. Restrictions and invites whose records have later times were given by the wrong
+/// clock. They keep the time that they had left.
+struct CorrectTime {
+  TimeUs back_us = 0;  // how far the time of the log was ahead, above 0
+  friend bool operator==(const CorrectTime&, const CorrectTime&) = default;
+};
+
 // The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of
-// its own.
-using RightsChange =
-    std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift, Protect,
-                 Unprotect, CreateInvite, AcceptInvite, CancelInvite, SetPassword, AcceptPassword>;
+// its own, which comes before that of CorrectTime.
+using RightsChange = std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift,
+                                  Protect, Unprotect, CreateInvite, AcceptInvite, CancelInvite,
+                                  SetPassword, AcceptPassword, CorrectTime>;
 
 inline constexpr std::size_t kRightsChangeBytesMax = 4096;
 

@@ -130,6 +130,27 @@ void RightsState::apply_kind(const AcceptPassword& change, const ChangeOrigin& o
   grants_[change.key] = {password_.value->role, origin};
 }
 
+void RightsState::apply_kind(const CorrectTime& change, const ChangeOrigin& origin) {
+  // An end that an earlier correction has moved is right already.
+  const auto is_by_wrong_clock = [&](const ChangeOrigin& by) {
+    return by.seq > corrected_ && by.time_us > origin.time_us;
+  };
+  // An end of 0 would be none.
+  const auto move_back = [&](TimeUs& until_us) {
+    until_us = std::max<TimeUs>(1, until_us - change.back_us);
+  };
+  const auto correct = [&](Decided<Restrict>& restriction) {
+    if (restriction.value.until_us != 0 && is_by_wrong_clock(restriction.by))
+      move_back(restriction.value.until_us);
+  };
+  for (auto& [subject, restriction] : by_key_) correct(restriction);
+  for (auto& [range, ban] : address_bans_) correct(ban);
+  for (auto& [id, invite] : invites_) {
+    if (is_by_wrong_clock(invite.by)) move_back(invite.value.invite.until_us);
+  }
+  corrected_ = origin.seq;
+}
+
 const Decided<OpenInvite>* RightsState::usable_invite(InviteId id, TimeUs now_us) const {
   const auto found = invites_.find(id);
   if (found == invites_.end()) return nullptr;

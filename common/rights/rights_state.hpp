@@ -176,6 +176,7 @@ class RightsState {
   void apply_kind(const CancelInvite& change, const ChangeOrigin& origin);
   void apply_kind(const SetPassword& change, const ChangeOrigin& origin);
   void apply_kind(const AcceptPassword& change, const ChangeOrigin& origin);
+  void apply_kind(const CorrectTime& change, const ChangeOrigin& origin);
   void remove_box(const std::string& name);
 
   std::map<std::string, Decided<Role>> roles_;
@@ -188,6 +189,7 @@ class RightsState {
   std::map<std::pair<PublicKey, RestrictionKind>, Decided<Restrict>> by_key_;
   std::map<AddressRange, Decided<Restrict>> address_bans_;
   std::array<std::uint32_t, 65> bans_of_length_{};  // by the bits of the prefix
+  Sequence corrected_ = 0;  // of the newest correction of the time, 0: there was none
 
   std::map<std::string, Decided<ProtectedBox>> boxes_;
   BoxIndex index_;

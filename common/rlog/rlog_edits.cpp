@@ -40,6 +40,7 @@ void RlogEditsWriter::add(const EditRecord& record) {
     first_ = record.version.seq;
     first_us_ = last_us_ = record.time_us;
   }
+  RUNSTONE_ASSERT(count_ == 0 || !corrects_time(record));
   RUNSTONE_ASSERT(record.version.seq == first_ + count_ && record.version.epoch >= epoch_ &&
                   record.time_us >= last_us_ && count_ < kRlogCountMax);
   const RlogClient client{record.op.author, record.op.instance};
@@ -167,6 +168,10 @@ Result<EditRecord> RlogEditsReader::next() {
   record.edit = *std::move(edit);
   record.subject = back == 0 ? 0 : seq_ - back;
   if (const auto numbers = validate_fields(record); !numbers) return failure(numbers.error());
+  if (!is_first && corrects_time(record)) {
+    return fail(ErrorCode::not_canonical, "a correction of the time is not the first of its block",
+                begins_[kDescriptor] + descriptor_at);
+  }
   clients_seen_ = std::max(clients_seen_, static_cast<std::size_t>(client) + 1);
   last = record.op.seq;
   epoch_ = record.version.epoch;

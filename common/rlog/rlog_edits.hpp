@@ -23,7 +23,7 @@ using RlogClient = std::pair<AuthorId, ClientInstance>;
 class RlogEditsWriter {
  public:
   /// Requires a valid record that continues the previous one: the next sequence; epoch and time do
-  /// not fall.
+  /// not fall. A record that corrects_time() must be the first of its block.
   void add(const EditRecord& record);
   std::uint32_t count() const { return count_; }
   /// Returns the bytes of the columns so far.

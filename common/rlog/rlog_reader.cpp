@@ -33,8 +33,9 @@ RlogResult<RlogBlock> RlogReader::read_any_header() {
   };
   if (block->position != position_) return bad("block stands at another place than it says");
   if (next_ != 0 && block->first != next_) return bad("block does not continue the sequence");
-  // The first edit of a log has no predecessor whose time could be later.
-  if (next_ > 1 && block->first_us < last_us_) return bad("time falls from block to block");
+  // read_block() checks that a block of edits may begin with an earlier time.
+  if (next_ > 1 && block->first_us < last_us_ && block->kind != RlogKind::edits)
+    return bad("time falls from block to block");
   if (next_ != 0 && block->kind != RlogKind::edits && block->first_us != last_us_) {
     return bad("time of a block without edits is not that of the edit before it");
   }
@@ -123,6 +124,8 @@ RlogResult<std::optional<RlogBlock>> RlogReader::next_block() {
                       next_, position_);
   }
   current_ = *header;
+  // The first edit of a log has no predecessor whose time could be later.
+  does_time_fall_ = next_ > 1 && header->first_us < last_us_;
   position_ += kRlogHeaderBytes + header->stored_bytes;
   checksum_ = header->header_checksum;
   next_ = header->first + header->count;
@@ -139,6 +142,10 @@ RlogResult<bool> RlogReader::read_block(const std::function<bool(const EditRecor
   for (std::uint32_t i = 0; i < block.count; ++i) {
     const auto record = edits->next();
     if (!record) return failure_at(record.error(), block.first + i, block.position);
+    if (i == 0 && does_time_fall_ && !corrects_time(*record)) {
+      return failure_at({ErrorCode::broken_invariant, "time falls from block to block", 0},
+                        block.first, block.position);
+    }
     epoch_ = record->version.epoch;
     if (!each(*record)) return false;
   }

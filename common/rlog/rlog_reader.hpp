@@ -20,7 +20,7 @@ namespace runstone {
 using RlogSource =
     std::function<std::optional<std::size_t>(std::uint64_t position, std::span<std::uint8_t> out)>;
 
-/// The first edit to read: not before this sequence and not before this time.
+/// The edits to read: those from this sequence on whose time is not before this one.
 struct RlogFrom {
   Sequence seq = 1;
   TimeUs time_us = std::numeric_limits<TimeUs>::min();  // UTC
@@ -60,6 +60,7 @@ class RlogReader {
   RlogWorld world_;
   std::vector<RlogPlayer> players_;
   std::optional<RlogBlock> current_;  // its payload may be read
+  bool does_time_fall_ = false;       // from the block before to the current one
   Bytes stored_, raw_;
   std::uint64_t position_ = 0, checksum_ = 0;
   Sequence next_ = 0;  // 0: before the world block

@@ -77,8 +77,13 @@ RlogResult<void> RlogWriter::add(const EditRecord& record) {
   if (record.log != 0) return bad("belongs to another log");
   if (record.version.seq != next_) return bad("does not continue the log");
   if (record.version.epoch < epoch_) return bad("epoch falls");
+  const bool begins_era = corrects_time(record);
   // The first edit of a log has no predecessor whose time could be later.
-  if (record.time_us < last_us_ && !(is_first_ && next_ == 1)) return bad("time falls");
+  if (record.time_us < last_us_ && !begins_era && !(is_first_ && next_ == 1))
+    return bad("time falls");
+  if (begins_era) {
+    if (auto written = write_edits(); !written) return written;
+  }
   edits_.add(record);
   ++next_;
   epoch_ = record.version.epoch;

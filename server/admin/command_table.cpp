@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "server/admin/clock_commands.hpp"
 #include "server/admin/ground_commands.hpp"
 #include "server/admin/host_commands.hpp"
 #include "server/admin/moderation_commands.hpp"
@@ -107,7 +108,7 @@ const std::vector<CommandRow>& command_table() {
     std::vector<CommandRow> rows;
     for (const auto& part :
          {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
-          role_commands(), password_commands(), host_commands()})
+          role_commands(), password_commands(), clock_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();
@@ -168,8 +169,9 @@ std::string logged_command(const std::string& line) {
 }
 
 void give_command(const CommandCall& call, const std::string& line) {
-  // Restrictions end by the clock of the log, which may be ahead of the system's.
-  const auto command = parse_command(line, std::max(call.now.utc_us, call.rights_time()));
+  // Ages refer to the time of the log, and restrictions end by it.
+  const bool has_log_time = call.world().order().authority().log_clock().has_begun();
+  const auto command = parse_command(line, has_log_time ? call.rights_time() : call.now.utc_us);
   if (!command) return call.refuse(command.error());
   if (auto why = why_not(call.caller, call.rights(), command->row->rule, call.rights_time()))
     return call.refuse(*std::move(why));

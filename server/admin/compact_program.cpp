@@ -41,13 +41,11 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
   const auto range = store.log_range();
   if (!range) return compaction_failure(range.error());
   const TimeUs cut_us = now_us - static_cast<TimeUs>(request.keep_days) * kDayUs;
-  const auto head = store.log_head();
-  if (!head) return compaction_failure(head.error());
-  const bool is_any_older = range->first <= range->last.version.seq && cut_us >= head->time_us;
-  const auto found =
-      is_any_older ? store.sequence_at(cut_us) : StoreResult<Sequence>(range->first - 1);
-  if (!found) return compaction_failure(found.error());
-  const Sequence at = *found;
+  const auto found = store.sequence_at(cut_us);
+  // What is older was compacted away.
+  const bool is_none_older = !found && found.error().kind == StoreError::Kind::bad_request;
+  if (!found && !is_none_older) return compaction_failure(found.error());
+  const Sequence at = is_none_older ? range->first - 1 : *found;
   if (at < range->first) {
     out << "nothing to compact: no edit of the log is older than " << request.keep_days
         << " days\n";

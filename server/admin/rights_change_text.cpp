@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
+#include <utility>
 #include <variant>
 
 #include "common/core/key_text.hpp"
@@ -54,8 +56,25 @@ std::string line_for(const SetPassword& change) {
 std::string line_for(const AcceptPassword& change) {
   return key_fingerprint(change.key) + " joined with the password";
 }
+std::string line_for(const CorrectTime& change) {
+  return "set the time of the log back by " + apart_text(change.back_us);
+}
 
 }  // namespace
+
+std::string apart_text(TimeUs us) {
+  constexpr std::array<std::pair<TimeUs, char>, 4> kUnits = {
+      {{86'400'000'000, 'd'}, {3'600'000'000, 'h'}, {60'000'000, 'm'}, {1'000'000, 's'}}};
+  std::string text;
+  std::size_t units = 0;
+  for (const auto& [unit_us, letter] : kUnits) {
+    const TimeUs count = us / unit_us;
+    us %= unit_us;
+    units += count != 0 || units != 0 ? 1 : 0;
+    if (count != 0 && units <= 2) text += std::to_string(count) + letter;
+  }
+  return text.empty() ? "less than 1s" : text;
+}
 
 std::string rights_text(RightSet rights) {
   std::string text;

@@ -27,6 +27,9 @@ std::string invite_id_text(InviteId invite);
 /// Returns text such as "9f86d081884c7d65: role builder, 5 uses, until 2026-12-01T00:00:00Z".
 std::string invite_text(const Invite& invite);
 
+/// Returns a length of time in its two greatest units, such as "730d2h", as commands take it.
+std::string apart_text(TimeUs us);
+
 /// Returns one line such as "banned 9M1Q-Z7CR-04KD until 2026-11-21T23:57:42Z: griefing". Players
 /// are named by the fingerprints of their keys.
 std::string rights_change_text(const RightsChange& change);

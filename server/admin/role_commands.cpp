@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <variant>
 #include <vector>
 
 #include "common/edits/descriptor/edit_descriptor.hpp"
@@ -230,6 +231,11 @@ void undo_record(const CommandCall& call, Sequence seq, const std::vector<Rights
   if (found == records.end()) {
     return call.refuse("record " + number +
                        " changes no rights (log cause rights lists those that do)");
+  }
+  if (std::holds_alternative<CorrectTime>(found->change)) {
+    return call.refuse("record " + number + " (" + rights_change_text(found->change) +
+                       ") cannot be taken back; if the clock is wrong, set it right and give the "
+                       "command clock correct again");
   }
   const auto inverse = inverse_of(records, seq);
   if (!inverse) {

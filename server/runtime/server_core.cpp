@@ -10,6 +10,7 @@
 #include "common/os/steady_clock.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/config_reload.hpp"
+#include "server/runtime/clock_check.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
 #include "server/runtime/logging.hpp"
@@ -84,6 +85,10 @@ Result<void, std::string> ServerCore::listen_for_gateway(const std::string& path
 Result<void, std::string> ServerCore::recover() {
   auto start = read_world_start(store_);
   if (!start) return failure(start.error());
+  const ClockCheck clock =
+      check_clock(read_clock_evidence(world_place(config_), start->log.last_time_us));
+  if (clock.warning) logger("world").warn("{}", *clock.warning);
+  start->log.begin_us = clock.begin_us;
   const auto epoch = store_.raise_epoch();
   if (!epoch) return failure(epoch.error().message());
   start->log.epoch = *epoch;

@@ -27,12 +27,22 @@ struct LogRange {
   friend bool operator==(const LogRange&, const LogRange&) = default;
 };
 
+/// The begin of an era: a record that corrects_time().
+struct LogEra {
+  Sequence first = 0;
+  TimeUs time_us = 0;  // UTC, of that record
+  friend bool operator==(const LogEra&, const LogEra&) = default;
+};
+
 /// Conditions on edits of the log: author, time, place and cause. A condition that is not set holds
-/// for every edit.
+/// for every edit. The times mean places in the log (LogReader::sequence_at()): where a record
+/// corrects the time, edits between them may have other times.
 struct LogQuery {
   std::optional<AuthorId> author;
-  TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
-  TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
+  // UTC. Edits behind the newest one whose time is earlier.
+  TimeUs from_us = std::numeric_limits<TimeUs>::min();
+  // Edits up to the newest one whose time is not later.
+  TimeUs until_us = std::numeric_limits<TimeUs>::max();
   std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
@@ -52,9 +62,9 @@ class LogReader : public virtual WorldInfo {
   /// Returns sequence, epoch and time of an edit, or nullopt if the log does not have it. The edit
   /// 0 is the state before the first one; an empty log has it.
   StoreResult<std::optional<LogEnd>> edit_at(Sequence seq);
-  /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the
-  /// sequence before the first edit of the log. Fails (bad_request) if all are later and one of
-  /// them was compacted away.
+  /// Returns the newest edit whose time (UTC) is not later than this one. If all edits are later,
+  /// returns the sequence before the first edit of the log. Fails (bad_request) if all are later and
+  /// one of them was compacted away. Cost: O(eras + log edits).
   virtual StoreResult<Sequence> sequence_at(TimeUs time_us) = 0;
   /// Calls `each` for the records first..last (both included) in order, until it returns false.
   /// Records outside log_range() are left out. Each checksum is verified, and so is that no

@@ -28,19 +28,37 @@ StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
   return time_->integer(0);
 }
 
-StoreResult<Sequence> LogSearch::first_at(TimeUs time, Sequence first, Sequence last) {
+StoreResult<Sequence> LogSearch::first_behind(TimeUs time, Sequence first, Sequence last) {
   Sequence end = last + 1;
   while (first < end) {
     const Sequence middle = first + (end - first) / 2;
     const auto there = time_of(middle);
     if (!there) return failed(there.error());
-    if (*there < time) {
+    if (*there <= time) {
       first = middle + 1;
     } else {
       end = middle;
     }
   }
   return first;
+}
+
+StoreResult<std::optional<Sequence>> LogSearch::newest_at(TimeUs time) {
+  Sequence last = range_.last.version.seq;
+  // The first time of an era is its earliest. So if that is later, all of the era is.
+  for (auto era = eras_.rbegin(); era != eras_.rend() && era->first >= range_.first; ++era) {
+    if (era->time_us <= time) {
+      const auto behind = first_behind(time, era->first, last);
+      if (!behind) return failed(behind.error());
+      return std::optional(*behind - 1);
+    }
+    last = era->first - 1;
+  }
+  const auto behind = first_behind(time, range_.first, last);
+  if (!behind) return failed(behind.error());
+  if (*behind > range_.first) return std::optional(*behind - 1);
+  if (head_.version.seq > 0 && head_.time_us <= time) return std::optional(head_.version.seq);
+  return std::optional<Sequence>();
 }
 
 StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
@@ -101,14 +119,14 @@ StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool
   Sequence last = std::min(query.last, range_.last.version.seq);
   if (first > last || query.from_us > query.until_us) return {};
   if (query.from_us != std::numeric_limits<TimeUs>::min()) {
-    const auto from = first_at(query.from_us, first, last);
-    if (!from) return failed(from.error());
-    first = *from;
+    const auto before = newest_at(query.from_us - 1);
+    if (!before) return failed(before.error());
+    if (*before) first = std::max(first, **before + 1);
   }
   if (query.until_us != std::numeric_limits<TimeUs>::max()) {
-    const auto behind = first_at(query.until_us + 1, first, last);
-    if (!behind) return failed(behind.error());
-    last = *behind - 1;
+    const auto until = newest_at(query.until_us);
+    if (!until) return failed(until.error());
+    last = std::min(last, until->value_or(0));
   }
   if (first > last) return {};
   if (query.box) {

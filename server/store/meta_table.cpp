@@ -258,6 +258,34 @@ StoreResult<void> MetaTable::put_log_head(const LogEnd& head) {
   return put("log_head", bytes);
 }
 
+StoreResult<std::vector<LogEra>> MetaTable::log_eras() {
+  const auto value = find(kLogErasKey);
+  if (!value) return failed(value.error());
+  std::vector<LogEra> eras;
+  if (!*value) return eras;
+  const auto* bytes = std::get_if<Bytes>(&**value);
+  if (bytes == nullptr || bytes->size() % 16 != 0)
+    return corrupt(kLogErasKey, "is no list of eras");
+  ByteReader reader(*bytes);
+  while (reader.offset() < bytes->size()) {
+    const Sequence first = reader.u64();
+    if (first == 0 || first > kSequenceMax || (!eras.empty() && first <= eras.back().first))
+      return corrupt(kLogErasKey, "is no list of eras");
+    eras.push_back({first, static_cast<TimeUs>(reader.u64())});
+  }
+  return eras;
+}
+
+StoreResult<void> MetaTable::put_log_eras(const std::vector<LogEra>& eras) {
+  Bytes bytes;
+  ByteWriter writer(bytes);
+  for (const LogEra& era : eras) {
+    writer.u64(era.first);
+    writer.u64(static_cast<std::uint64_t>(era.time_us));
+  }
+  return put(kLogErasKey, bytes);
+}
+
 StoreResult<std::optional<RowCounts>> MetaTable::row_counts() {
   const auto value = find("row_counts");
   if (!value) return failed(value.error());

@@ -1,6 +1,6 @@
 // MetaTable: the values that are pinned when a world is created, and the few that change: epoch,
-// checkpoint, the highest author number, head and end of the log, the folds and row counts of tables,
-// whether a program is writing the world, and the material table, which compactions extend.
+// checkpoint, the highest author number, head, end and eras of the log, the folds and row counts of
+// tables, whether a program is writing the world, and the material table, which compactions extend.
 // Threads: the one that owns the store.
 #pragma once
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
@@ -49,6 +50,9 @@ struct RowCounts {
   std::uint64_t lost_edits = 0;  // rows of the log whose loss was accepted
 };
 
+/// The key of the row that log_eras() reads. Only a world whose time was corrected has it.
+inline constexpr const char* kLogErasKey = "log_eras";
+
 class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
@@ -65,6 +69,10 @@ class MetaTable {
   /// there was none.
   StoreResult<LogEnd> log_head();
   StoreResult<void> put_log_head(const LogEnd& head);
+  /// Returns row `log_eras`: the eras that begin in the log, ascending, behind the first one. Some may
+  /// begin before the head of the log.
+  StoreResult<std::vector<LogEra>> log_eras();
+  StoreResult<void> put_log_eras(const std::vector<LogEra>& eras);
   /// Returns row `row_counts`, or nullopt if there is none or it does not count any more.
   StoreResult<std::optional<RowCounts>> row_counts();
   StoreResult<void> put_row_counts(const RowCounts& counts);

@@ -85,8 +85,8 @@ StoreResult<void> PostgresBackend::confirm_ownership() { return lease_->confirm(
 
 StoreResult<std::uint32_t> PostgresBackend::format() { return format_in(database_); }
 
-StoreResult<void> PostgresBackend::set_format() {
-  const std::string text = "UPDATE runstone_world SET format = " + std::to_string(kWorldFormat);
+StoreResult<void> PostgresBackend::set_format(std::uint32_t format) {
+  const std::string text = "UPDATE runstone_world SET format = " + std::to_string(format);
   return store_result(database_.run(text.c_str()));
 }
 

@@ -45,7 +45,7 @@ class PostgresBackend final : public WorldBackend {
   void give_up() override;
   StoreResult<void> confirm_ownership() override;
   StoreResult<std::uint32_t> format() override;
-  StoreResult<void> set_format() override;
+  StoreResult<void> set_format(std::uint32_t format) override;
   bool has_mark() const override { return false; }
   StoreResult<std::optional<DurableState>> read_mark(const WorldId&) override {
     return std::optional<DurableState>();

@@ -83,6 +83,11 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     const auto counts = meta_table_.row_counts();  // before the head moves
     if (!counts) return failed(counts.error());
     if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
+    auto eras = meta_table_.log_eras();
+    if (!eras) return failed(eras.error());
+    if (std::erase_if(*eras, [&](const LogEra& era) { return era.first <= keyframe; }) > 0) {
+      if (auto put = meta_table_.put_log_eras(*eras); !put) return put;
+    }
     if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
         !gone)
       return gone;

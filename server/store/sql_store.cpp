@@ -184,6 +184,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
     next.author_max = std::max(next.author_max, record.op.author);
     next.seq = record.version.seq;
   }
+  if (auto added = add_eras(records); !added) return added;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
   const auto author_max = meta_table_.counter("author_max");
@@ -192,6 +193,26 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
     if (auto put = meta_table_.put("author_max", std::int64_t{next.author_max}); !put) return put;
   }
   return segments_.flush();
+}
+
+StoreResult<void> SqlStore::add_eras(std::span<const EditRecord> records) {
+  std::vector<LogEra> added;
+  for (const EditRecord& record : records) {
+    if (corrects_time(record)) added.push_back({record.version.seq, record.time_us});
+  }
+  if (added.empty()) return {};
+  auto eras = meta_table_.log_eras();
+  if (!eras) return failed(eras.error());
+  eras->insert(eras->end(), added.begin(), added.end());
+  if (auto put = meta_table_.put_log_eras(*eras); !put) return put;
+  return raise_format(kWorldFormatOfEras);
+}
+
+StoreResult<void> SqlStore::raise_format(std::uint32_t format) {
+  const auto present = backend_->format();
+  if (!present) return failed(present.error());
+  if (*present >= format) return {};
+  return backend_->set_format(format);
 }
 
 StoreResult<void> SqlStore::save_chunks(ChunkTable& table, ChunkSpan chunks) {
@@ -310,10 +331,13 @@ StoreResult<void> SqlStore::query_log(const LogQuery& query, const EachRecord& e
     if (!head) return failed(head.error());
     const auto range = log_.range(*head);
     if (!range) return failed(range.error());
+    auto eras = meta_table_.log_eras();
+    if (!eras) return failed(eras.error());
     auto reader = log_.reader();
     if (!reader) return failed(reader.error());
     StoreResult<void> read;
-    auto searched = LogSearch(database(), segments_, *range).run(query, [&](Sequence seq) {
+    LogSearch search(database(), segments_, *head, *range, *std::move(eras));
+    auto searched = search.run(query, [&](Sequence seq) {
       const auto record = log_.read_one(*reader, seq);
       if (!record) read = failed(record.error());
       return record.has_value() && each(*record);
@@ -328,15 +352,16 @@ StoreResult<Sequence> SqlStore::sequence_at(TimeUs time_us) {
     if (!head) return failed(head.error());
     const auto range = log_.range(*head);
     if (!range) return failed(range.error());
-    if (head->version.seq > 0 && time_us < head->time_us) {
-      return refuse("edit_log", "begins at seq=" + std::to_string(range->first) +
-                                    ": what was before that time was compacted away");
-    }
     if (range->last.time_us <= time_us) return range->last.version.seq;
-    const auto behind = LogSearch(database(), segments_, *range)
-                            .first_at(time_us + 1, range->first, range->last.version.seq);
-    if (!behind) return behind;
-    return *behind - 1;
+    auto eras = meta_table_.log_eras();
+    if (!eras) return failed(eras.error());
+    const auto found =
+        LogSearch(database(), segments_, *head, *range, *std::move(eras)).newest_at(time_us);
+    if (!found) return failed(found.error());
+    if (*found) return **found;
+    if (head->version.seq == 0) return range->first - 1;
+    return refuse("edit_log", "begins at seq=" + std::to_string(range->first) +
+                                  ": what was before that time was compacted away");
   });
 }
 

@@ -187,6 +187,10 @@ class SqlStore final : public Store {
   /// that follows.
   StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records,
                            DurableState& next);
+  /// Lists the eras that begin at these records, in the caller's transaction.
+  StoreResult<void> add_eras(std::span<const EditRecord> records);
+  /// Makes the world one of this format unless it is of a later one, in the caller's transaction.
+  StoreResult<void> raise_format(std::uint32_t format);
   StoreResult<void> put_players(std::span<const PlayerRow> players);
   StoreResult<void> raise_watermarks(const Watermarks& marks);
   /// Adds to `lost` what the tables lack that have folds or counts, and counts the rest anew.
@@ -212,6 +216,8 @@ class SqlStore final : public Store {
   StoreResult<void> check_players(const FoldedRows<PlayerRow>& players);
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
+  /// Checks that times fall only where an era begins, and that each of them is listed.
+  StoreResult<void> check_eras();
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;

@@ -116,6 +116,11 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   if (!store->tiles_ && access != StoreAccess::read_only) {
     if (const auto converted = store->convert(); !converted) return failed(converted.error());
   }
+  // A copy has the row before it has the number.
+  if (rows->contains(kLogErasKey) && access != StoreAccess::read_only) {
+    const auto raised = store->transact([&] { return store->raise_format(kWorldFormatOfEras); });
+    if (!raised) return failed(raised.error());
+  }
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =
       rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};
@@ -134,7 +139,7 @@ StoreResult<void> SqlStore::convert() {
       if (auto added = convert_to_format_3(); !added) return added;
     }
     if (auto made = add_tables_of_format_4(database()); !made) return made;
-    if (auto marked = backend_->set_format(); !marked) return marked;
+    if (auto marked = raise_format(kWorldFormat); !marked) return marked;
     auto tiles = TileTable::open(database());
     if (!tiles) return failed(tiles.error());
     tiles_ = *std::move(tiles);
@@ -152,7 +157,7 @@ StoreResult<void> SqlStore::leave_tiles_of_other_rules() {
 
 StoreResult<void> SqlStore::delete_tiles() {
   if (auto cleared = tiles_->clear(); !cleared) return cleared;
-  if (auto marked = backend_->set_format(); !marked) return marked;
+  if (auto marked = raise_format(kWorldFormat); !marked) return marked;
   return meta_table_.put("tile_rules", std::int64_t{kTileRules});
 }
 

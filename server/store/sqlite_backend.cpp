@@ -114,8 +114,8 @@ StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool 
   return store_result(database.run(set.c_str()));
 }
 
-StoreResult<void> set_file_format(sql::Database& database) {
-  const std::string mark = "PRAGMA user_version=" + std::to_string(kWorldFormat);
+StoreResult<void> set_file_format(sql::Database& database, std::uint32_t format) {
+  const std::string mark = "PRAGMA user_version=" + std::to_string(format);
   return store_result(database.run(mark.c_str()));
 }
 
@@ -133,7 +133,7 @@ StoreResult<void> write_new_world(sql::Database& database, const FillWorld& fill
   if (auto filled = fill(database); !filled) return filled;
   const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId);
   if (auto marked = database.run(mark.c_str()); !marked) return failed(marked.error());
-  if (auto marked = set_file_format(database); !marked) return marked;
+  if (auto marked = set_file_format(database, kWorldFormat); !marked) return marked;
   return store_result(transaction->commit());
 }
 
@@ -172,7 +172,9 @@ StoreResult<std::uint32_t> SqliteBackend::format() {
   return static_cast<std::uint32_t>(*version);
 }
 
-StoreResult<void> SqliteBackend::set_format() { return set_file_format(database_); }
+StoreResult<void> SqliteBackend::set_format(std::uint32_t format) {
+  return set_file_format(database_, format);
+}
 
 StoreResult<std::optional<DurableState>> SqliteBackend::read_mark(const WorldId& world) {
   mark_ = std::make_unique<DurableMark>(folder_, world, vfs_);

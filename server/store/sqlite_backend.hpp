@@ -41,7 +41,7 @@ class SqliteBackend final : public WorldBackend {
 
   sql::Database& database() override { return database_; }
   StoreResult<std::uint32_t> format() override;
-  StoreResult<void> set_format() override;
+  StoreResult<void> set_format(std::uint32_t format) override;
   bool has_mark() const override { return true; }
   StoreResult<std::optional<DurableState>> read_mark(const WorldId& world) override;
   StoreResult<void> write_mark(const DurableState& state) override { return mark_->write(state); }

@@ -1,6 +1,8 @@
 // SqlStore::check(): verifies every row of every table, and the relations between the tables.
+#include <limits>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -56,6 +58,39 @@ StoreResult<void> SqlStore::check_marks_cover_log() {
                  "player_instance author=" + std::to_string(uncovered->author) +
                      " instance=" + std::to_string(uncovered->instance),
                  "is behind the log, which holds client edit " + std::to_string(uncovered->seq)});
+}
+
+StoreResult<void> SqlStore::check_eras() {
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto head = meta_table_.log_head();
+    if (!head) return failed(head.error());
+    const auto range = log_.range(*head);
+    if (!range) return failed(range.error());
+    const auto eras = meta_table_.log_eras();
+    if (!eras) return failed(eras.error());
+    std::vector<LogEra> found;
+    TimeUs before_us = head->version.seq == 0 ? std::numeric_limits<TimeUs>::min() : head->time_us;
+    Sequence wrong = 0;
+    auto read =
+        log_.read(*range, range->first, range->last.version.seq, [&](const EditRecord& record) {
+          if (corrects_time(record))
+            found.push_back({record.version.seq, record.time_us});
+          else if (record.time_us < before_us)
+            wrong = record.version.seq;
+          before_us = record.time_us;
+          return wrong == 0;
+        });
+    if (!read) return read;
+    if (wrong != 0) {
+      return failure(StoreError{StoreError::Kind::corrupt, file(),
+                                "edit_log seq=" + std::to_string(wrong),
+                                "is earlier than the edit before it, and corrects no time"});
+    }
+    if (found == *eras) return {};
+    return failure(StoreError{StoreError::Kind::corrupt, file(),
+                              std::string("meta key=") + kLogErasKey,
+                              "does not list the corrections of the time that the log holds"});
+  });
 }
 
 StoreResult<void> SqlStore::check_segments_cover_log() {
@@ -128,6 +163,7 @@ StoreResult<void> SqlStore::check() {
   // A watermark that the log proves to be missing is named before the rows are counted.
   if (auto marks = check_marks_cover_log(); !marks) return marks;
   if (const auto rows = high_waters(); !rows) return failed(rows.error());
+  if (auto eras = check_eras(); !eras) return eras;
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;

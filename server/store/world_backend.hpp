@@ -30,10 +30,10 @@ class WorldBackend {
   /// Fails (locked) if another program owns the world. Otherwise none does until the caller's
   /// transaction is over.
   virtual StoreResult<void> confirm_ownership() { return {}; }
-  /// Returns the world format that the database names (kWorldFormat).
+  /// Returns the world format that the database names.
   virtual StoreResult<std::uint32_t> format() = 0;
-  /// Makes it kWorldFormat, in the caller's transaction.
-  virtual StoreResult<void> set_format() = 0;
+  /// Makes it `format`, in the caller's transaction.
+  virtual StoreResult<void> set_format(std::uint32_t format) = 0;
 
   /// Returns true if the backend keeps a mark of how far the log was durable outside the database.
   /// Without it nobody notices that a database was put back from a backup: its rows fit each other.

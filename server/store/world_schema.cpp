@@ -199,10 +199,10 @@ StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return failure(StoreError{kind, file, "", std::move(what)});
   };
-  if (version > kWorldFormat) {
+  if (version > kWorldFormatOfEras) {
     return fail_as(StoreError::Kind::newer_version,
                    "is of world format " + std::to_string(version) +
-                       "; this program knows format " + std::to_string(kWorldFormat) +
+                       "; this program knows format " + std::to_string(kWorldFormatOfEras) +
                        ". Nothing was changed.");
   }
   if (version == 1) {

@@ -13,9 +13,12 @@ namespace runstone {
 
 /// "RunS": PRAGMA application_id of every world.
 inline constexpr std::uint32_t kApplicationId = 0x52756e53;
-/// PRAGMA user_version of every world: the version of the schema and of the contents of its
+/// PRAGMA user_version of a new world: the version of the schema and of the contents of its
 /// columns.
 inline constexpr std::uint32_t kWorldFormat = 5;
+/// The format of a world whose time was corrected (kLogErasKey). It has the schema of kWorldFormat. The
+/// number keeps programs away that cannot read such a correction.
+inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 
@@ -18,6 +19,11 @@ Result<void> validate_fields(const EditRecord& record) {
       (record.cause == Cause::materials) != (added_materials_of(record.edit) != nullptr))
     return fail(ErrorCode::bad_value, "the cause is not that of the edit");
   return {};
+}
+
+bool corrects_time(const EditRecord& record) {
+  const RightsChange* change = rights_change_of(record.edit);
+  return change != nullptr && std::holds_alternative<CorrectTime>(*change);
 }
 
 Bytes encode_record(const EditRecord& record) {

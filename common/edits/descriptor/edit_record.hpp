@@ -15,7 +15,7 @@ namespace runstone {
 struct EditRecord {
   Version version;  // epoch and sequence; 1 <= seq <= kSequenceMax
   OperationId op;
-  TimeUs time_us = 0;  // UTC, never decreasing along the log
+  TimeUs time_us = 0;  // UTC; along the log it decreases only at a record that corrects_time()
   Cause cause = Cause::player;
   EditDescriptor edit;
   // The edit that this one reverts or restores (rollback, undo, redo), or the first edit of the
@@ -34,6 +34,11 @@ inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 /// of the edit: a change of rights has the cause `rights`, new materials have the cause
 /// `materials`, and no other edit has one of these.
 Result<void> validate_fields(const EditRecord& record);
+
+/// Returns true for a record that corrects the time of the log. Its time alone may be earlier than that
+/// of the record before it. An *era* of the log begins at each such record; within an era times never
+/// decrease.
+bool corrects_time(const EditRecord& record);
 
 /// Returns the canonical bytes without the checksum: version byte, numbers, bounding box,
 /// descriptor. Requires validate_fields().

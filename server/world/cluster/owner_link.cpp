@@ -24,7 +24,7 @@ bool OwnerLink::connected(const std::optional<ChannelBinding>& binding, const Cl
   hello_ = {};
   hello_.key = config_.server_keys.public_key;
   hello_.name = "server";
-  hello_.features = kFeatureServers | kFeatureServerList;
+  hello_.features = kFeaturesOfServers | kFeatureServerList;
   // Each connection of this start sends one number, so that the owner knows which one it replaces.
   hello_.instance = earlier;
   if (earlier == 0) {

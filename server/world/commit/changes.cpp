@@ -109,6 +109,12 @@ Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
   return failure(why_not_ordered(ordered));
 }
 
+void Changes::accept_wall_clock() {
+  LogClock& clock = order_.authority().log_clock();
+  RUNSTONE_ASSERT(clock.time() <= clock.wall_us());
+  clock.accept_wall_clock();
+}
+
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,
                                                          const Clocks& now) {
   const MaterialTable& table = order_.materials();

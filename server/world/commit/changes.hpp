@@ -51,6 +51,9 @@ class Changes {
   /// its sequence, or why it was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
+  /// Makes the log's time that of the wall clock. Requires that the wall clock is not behind:
+  /// otherwise a CorrectTime does it.
+  void accept_wall_clock();
   /// Orders the addition of materials by the console, as one record of the log: all or none.
   /// Refuses bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them,
   /// and while the log takes no edits.

@@ -1,6 +1,7 @@
 // WorldStart: what the store remembers when a server starts. The log above the checkpoint follows
 // by WorldServer::replay_onto_stack().
 #pragma once
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct LogPosition {
   Sequence last = 0;        // last sequence in the log; every record of the log is durable
   Epoch last_epoch = 0;     // of that record
   TimeUs last_time_us = 0;  // of that record; 0 if the log is empty
+  // With which the log's time begins; nullopt: the wall clock.
+  std::optional<TimeUs> begin_us = std::nullopt;
 };
 
 /// The state that the store remembers.

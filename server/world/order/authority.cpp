@@ -22,7 +22,7 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
       epoch_(log.epoch),
       last_epoch_(log.last_epoch),
       head_(log.last),
-      log_clock_(log.last_time_us),
+      log_clock_(log.last_time_us, log.begin_us),
       chunks_(limits.chunk_edge),
       queue_(limits.chunk_edge) {}
 
@@ -50,7 +50,6 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
   log_clock_.advance(now);
   const std::vector<EditOffer> offers = queue_.take(large_room);
   if (offers.empty()) return std::nullopt;
-  const TimeUs time_us = log_clock_.stamp();
   OrderedBatch batch;
   batch.commit.epoch = last_epoch_ = epoch_;
   for (const EditOffer& offer : offers) {
@@ -68,7 +67,10 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
                           : offer.subject;
     const Sequence subject = ordered.subject;
     push(std::move(ordered), version, batch);
-    batch.records.push_back({version, offer.op, time_us, offer.cause, offer.edit, subject});
+    EditRecord& record = batch.records.emplace_back(
+        EditRecord{version, offer.op, 0, offer.cause, offer.edit, subject});
+    if (corrects_time(record)) log_clock_.accept_wall_clock();
+    record.time_us = log_clock_.stamp();
   }
   publish_touched(batch);
   return batch;
@@ -82,7 +84,7 @@ OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clo
     RUNSTONE_ASSERT(record.version.seq == head_ + 1);
     RUNSTONE_ASSERT(record.version.epoch == batch.commit.epoch);
     ++head_;
-    log_clock_.follow(record.time_us);
+    log_clock_.follow(record.time_us, corrects_time(record));
     resolved_.raise(record.op);
     OrderedEdit ordered;
     ordered.seq = head_;

@@ -1,8 +1,9 @@
 // LogClock: the time of the edit log. The wall clock may be set to a wrong time and back, but a
 // time in the log stays, and no later edit may have an earlier one. So the log's time does not
 // follow a jump of the wall clock at once:
-//   - It begins with the wall clock. From then on it advances with the steady clock, and is slewed
-//     towards the wall clock by at most kSlewPpm.
+//   - It begins with the wall clock, or with another time if the wall clock is doubtful then: that
+//     is a jump, too (server/runtime/clock_check.hpp). From then on it advances with the steady
+//     clock, and is slewed towards the wall clock by at most kSlewPpm.
 //   - A wall clock that differs from it by more than kJumpUs has jumped. A jump is not slewed. If
 //     the wall clock keeps it for kAcceptUs, the log's time becomes the wall clock's: a time
 //     service may set a clock long after the start, and a suspended computer stops its steady
@@ -11,6 +12,8 @@
 //     edits get the time of that edit again. Their order is that of their sequences. time(), by
 //     which restrictions end, goes on from there nevertheless: a clock that was ahead once must not
 //     make a mute of five seconds last for years.
+//   - The exception is a record that corrects the time (CorrectTime). The log's time becomes the wall
+//     clock's at it, and the times of edits go on from there.
 // Each jump makes a warning for the operator, and so does a log that ends ahead of the wall clock.
 // Pure: the times of both clocks are arguments. One thread.
 #pragma once
@@ -29,21 +32,30 @@ class LogClock {
   static constexpr TimeUs kAcceptUs = 60 * kJumpUs;
   static constexpr TimeUs kSlewPpm = 500;
 
-  /// `last_us` is the time of the last edit in the log, or 0 if the log is empty.
-  explicit LogClock(TimeUs last_us) : last_us_(last_us) {}
+  /// `last_us` is the time of the last edit in the log, or 0 if the log is empty. The log's time
+  /// begins with `begin_us`, which is at least `last_us`; nullopt: with the wall clock.
+  explicit LogClock(TimeUs last_us, std::optional<TimeUs> begin_us = std::nullopt)
+      : last_us_(last_us), begin_us_(begin_us) {}
 
   /// Reads both clocks. A jump is noticed by the next call.
   void advance(const Clocks& now);
   /// Returns the time for an edit that is ordered at the last advance().
   TimeUs stamp();
-  /// Reports an edit that another server has ordered at this time.
-  void follow(TimeUs time_us) {
-    last_us_ = std::max(last_us_, time_us);
-    ahead_us_ = std::max(ahead_us_, last_us_ - time_us_);
-  }
+  /// Reports an edit that another server has ordered at this time. `is_correction`: it corrects the
+  /// time.
+  void follow(TimeUs time_us, bool is_correction = false);
   /// Returns the log's time at the last advance(), or a later one if the log ends ahead of the wall
   /// clock: at least the time of the last edit, and always advancing with the steady clock.
   TimeUs time() const { return std::max(last_us_, time_us_ + ahead_us_); }
+  /// Returns the wall clock at the last advance().
+  TimeUs wall_us() const { return wall_us_; }
+  /// Returns true after the first advance().
+  bool has_begun() const { return steady_us_.has_value(); }
+  /// Returns true if the wall clock has jumped, and has not kept the jump for kAcceptUs.
+  bool has_jumped() const { return jump_.has_value(); }
+  /// Makes the log's time that of the wall clock at the last advance(). If it was ahead, the
+  /// next stamp() is for a record that corrects the time.
+  void accept_wall_clock();
   /// Returns the newest warning that was not taken, if there is one.
   std::optional<std::string> take_warning() { return std::exchange(warning_, std::nullopt); }
 
@@ -58,6 +70,8 @@ class LogClock {
   void jump(TimeUs error_us, const Clocks& now);
 
   TimeUs last_us_;                   // of the last edit
+  std::optional<TimeUs> begin_us_;   // of the log's time, if it does not begin with the wall clock
+  TimeUs wall_us_ = 0;               // the wall clock at steady_us_
   TimeUs time_us_ = 0;               // the log's time at steady_us_
   TimeUs ahead_us_ = 0;              // how far time() is ahead of time_us_
   std::optional<TimeUs> steady_us_;  // of the last advance(); nullopt before the first

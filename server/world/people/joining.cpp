@@ -245,8 +245,8 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   session.key = hello.key;
   session.instance = hello.instance;
   session.name = hello.name;
-  session.features = (offered_features() | kFeatureServers) & hello.features;
-  if (!is_server(session)) session.features &= ~kFeatureServers;
+  session.features = (offered_features() | kFeaturesOfServers) & hello.features;
+  if (!is_server(session)) session.features &= ~kFeaturesOfServers;
   // Before any signature: a banned address costs little.
   if (close_if_address_banned(session)) return;
   if (!is_server(session)) {

@@ -23,8 +23,8 @@ class Rights {
          Sessions& sessions);
 
   const RightsState& state() const { return state_; }
-  /// Returns the time by which restrictions end (UTC): that of the log, which a wrong clock does
-  /// not set back.
+  /// Returns the time by which restrictions end (UTC): that of the log, which only a CorrectTime sets
+  /// back.
   TimeUs time() const { return order_.authority().log_clock().time(); }
   /// Returns the sequence of the last change of rights in this run, or 0.
   Sequence newest() const { return newest_; }
@@ -80,6 +80,7 @@ class Rights {
   std::vector<RefusalRow> refusals() const { return refusals_.rows(); }
 
  private:
+  std::optional<std::string> correction_refusal() const;
   std::string refusal_text(const PublicKey& key, const RightsDecision& no) const;
 
   const WorldConfig& config_;

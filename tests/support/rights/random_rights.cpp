@@ -101,13 +101,15 @@ VoxelBox random_box_in(SplitMix64& rng, const VoxelBox& world, std::int32_t side
 
 RightsChange random_rights_change(SplitMix64& rng) {
   const RestrictionKind kind = any_kind(rng);
-  switch (rng.below(13)) {
+  switch (rng.below(14)) {
     case 0:
       return DefineRole{any_role(rng)};
     case 11:
       return SetPassword{any_password(rng, any_rights_name(rng))};
     case 12:
       return AcceptPassword{any_key(rng)};
+    case 13:
+      return CorrectTime{std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))};
     case 8:
       return CreateInvite{{rng.next(), any_rights_name(rng), 1 + rng.below(kInviteUsesMax),
                            std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))}};

@@ -100,6 +100,9 @@ TEST_CASE("each field of a change has its range", "[rights]") {
   CHECK(invalid(Lift{RestrictionKind::ban, AddressRange{AddressBlock{0}, 65}}) ==
         ErrorCode::not_canonical);
   CHECK(invalid(Unprotect{"x y"}) == ErrorCode::bad_value);
+  CHECK(invalid(CorrectTime{0}) == ErrorCode::bad_value);
+  CHECK(invalid(CorrectTime{-1}) == ErrorCode::bad_value);
+  CHECK(validate(CorrectTime{std::numeric_limits<TimeUs>::max()}).has_value());
 }
 
 TEST_CASE("each field of a protected box has its range", "[rights]") {
@@ -130,7 +133,7 @@ TEST_CASE("each field of a protected box has its range", "[rights]") {
 TEST_CASE("bytes that are no change are rejected with a reason", "[rights]") {
   CHECK(unreadable({}) == ErrorCode::truncated);
   CHECK(unreadable({0}) == ErrorCode::unknown_kind);
-  CHECK(unreadable({15}) == ErrorCode::unknown_kind);
+  CHECK(unreadable({16}) == ErrorCode::unknown_kind);
   CHECK(unreadable({2, 1, 'a', 0}) == ErrorCode::trailing_bytes);
   CHECK(unreadable({2, 0x81, 0, 'a'}) == ErrorCode::not_canonical);
   CHECK(unreadable({2, 33, 'a'}) == ErrorCode::bad_value);
@@ -138,6 +141,11 @@ TEST_CASE("bytes that are no change are rejected with a reason", "[rights]") {
   CHECK(unreadable({1, 1, 'a', 0x80, 0x20, 0, 0, 0}) == ErrorCode::bad_value);  // right 12
   CHECK(unreadable({1, 1, 'a', 0, 0, 0x80, 0x80, 0x80, 0x80, 0x10, 0}) == ErrorCode::bad_value);
   CHECK(unreadable({6, 0, 2}) == ErrorCode::unknown_kind);
+  CHECK(unreadable({15}) == ErrorCode::truncated);
+  CHECK(unreadable({15, 0}) == ErrorCode::bad_value);
+  CHECK(unreadable({15, 1, 0}) == ErrorCode::trailing_bytes);
+  CHECK(unreadable({15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1}) ==
+        ErrorCode::bad_value);  // above 63 bits
 
   // A box of one voxel without owner, members and roles, then with each field damaged.
   const Bytes box = {7, 1, 'a', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};

@@ -87,6 +87,44 @@ TEST_CASE("edits that do not continue the log are not written", "[rlog]") {
   CHECK(full.begin(sample_rlog_world(), {}).error().error.code == ErrorCode::io_failed);
 }
 
+TEST_CASE("time falls in an .rlog only at a correction, which begins a block", "[rlog][clock]") {
+  auto records = records_of(6, 1, 40);
+  constexpr TimeUs kYear = TimeUs{365} * 24 * 3600 * 1'000'000;
+  for (std::size_t i = 0; i < 20; ++i) records[i].time_us += 2 * kYear;
+  EditRecord& correction = records[20];
+  correction.cause = Cause::rights;
+  correction.subject = 0;
+  correction.edit = rights_edit(CorrectTime{2 * kYear});
+  Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
+  const RlogContents read = read_rlog(file);
+  if (read.error) FAIL(read.error->message());
+  CHECK(read.records == records);
+  // The world, 16 edits, 4 edits, 16 edits, 4 edits, the end and the length.
+  const auto begins = blocks_of(file);
+  REQUIRE(begins.size() == 7);
+  CHECK(read_rlog(file, {21}).records.front() == correction);
+  // Another edit in the place of the correction: its first byte is its kind.
+  records[20] = records[19];
+  records[20].version.seq = 21;
+  RlogWriter writer([](ByteView) { return true; });
+  REQUIRE(writer.begin(sample_rlog_world(), {}).has_value());
+  for (std::size_t i = 0; i < 21; ++i) REQUIRE(writer.add(records[i]).has_value());
+  CHECK(writer.add(records[21]).error().error.what == std::string("time falls"));
+}
+
+TEST_CASE("a block with a fallen time and no correction is rejected", "[rlog][clock][damage]") {
+  auto records = records_of(7, 1, 32);
+  Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
+  // The times in the headers of the first block of edits become later than those of the second one.
+  const std::size_t first = blocks_of(file)[1];
+  for (const std::size_t at : {std::size_t{24}, std::size_t{32}}) file[first + at + 6] += 1;
+  mend_rlog(file);
+  const RlogContents read = read_rlog(file);
+  REQUIRE(read.error.has_value());
+  CHECK(read.error->seq == 17);
+  CHECK(read.error->error.what == std::string("time falls from block to block"));
+}
+
 TEST_CASE("reading begins at a sequence or a time without unpacking earlier blocks", "[rlog]") {
   const auto records = records_of(2, 1, 100);
   Bytes file = rlog_of(sample_rlog_world(), sample_rlog_players(), records, kSmallBlocks);

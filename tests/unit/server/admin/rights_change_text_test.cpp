@@ -35,6 +35,8 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
   CHECK(rights_change_text(SetPassword{{{"mason", {1}, {2}}}}) ==
         "set a password for the role mason");
   CHECK(rights_change_text(SetPassword{}) == "removed the password");
+  CHECK(rights_change_text(CorrectTime{63'072'000'000'000 + 7'200'000'000 + 5'000'000}) ==
+        "set the time of the log back by 730d2h");
   CHECK(rights_change_text(AcceptPassword{key}) == ana + " joined with the password");
 }
 

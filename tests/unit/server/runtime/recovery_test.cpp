@@ -54,6 +54,25 @@ TEST_CASE("a start reads the state of the store and replays its log", "[server]"
   CHECK(world.order().chunks().version({0, touched.front()}) == records.back().version);
 }
 
+TEST_CASE("a start takes the time of the newest record, not the latest time", "[server][clock]") {
+  const TempFolder folder;
+  const auto records = make_world(folder / "world");
+  auto store = open_world(folder / "world", StoreAccess::read_write);
+  REQUIRE(store.has_value());
+  EditRecord correction;
+  correction.version = {1, kRecords + 1};
+  correction.op = {0, 1, 1};
+  correction.cause = Cause::rights;
+  correction.edit = rights_edit(CorrectTime{1000});
+  correction.time_us = records.back().time_us - 1000;
+  REQUIRE((*store)->append({}, std::span(&correction, 1)).has_value());
+  const auto start = read_world_start(**store);
+  REQUIRE(start.has_value());
+  CHECK(start->log.last_time_us == correction.time_us);
+  REQUIRE(start->rights.size() == 1);
+  CHECK(start->rights[0].change == RightsChange(CorrectTime{1000}));
+}
+
 TEST_CASE("the replay begins above the checkpoint", "[server]") {
   const TempFolder folder;
   make_world(folder / "world");

@@ -166,6 +166,21 @@ TEST_CASE("a follower gets every record with the rows of players, and the durabl
   CHECK(last.records.empty());
 }
 
+TEST_CASE("no correction of the time goes to a follower that cannot read it",
+          "[world][servers][clock]") {
+  WorldBench bench;
+  const auto refused = [&] {
+    return bench.server.rights().change_refusal(CorrectTime{1}, {}).has_value();
+  };
+  CHECK_FALSE(refused());
+  handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+  CHECK_FALSE(refused());
+  handshake(bench, kLink + 1, kWorldKey, kFeatureServers);
+  CHECK(refused());
+  bench.server.disconnected(kLink + 1);
+  CHECK_FALSE(refused());
+}
+
 TEST_CASE("a large commit goes to a follower in parts without gaps", "[world][servers]") {
   WorldBench bench;
   handshake(bench, kLink, kWorldKey, kFeatureServers);

@@ -266,6 +266,33 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
   CHECK(test::DenseChunk::of(late->voxels) == test::DenseChunk::of(early->voxels));
 }
 
+TEST_CASE("times fall at a record that corrects the time, and never elsewhere", "[world][clock]") {
+  constexpr TimeUs kAhead = 1'000'000'000'000;
+  Authority authority(limits(), {1, 7, 1, kNow.utc_us + kAhead});
+  (void)authority.enqueue(offer(1, box(0, 4), 1));
+  const EditOffer correction{{0, 9, 1}, Cause::rights, 0, rights_edit(CorrectTime{kAhead}), 0};
+  REQUIRE(authority.enqueue(correction).has_value());
+  (void)authority.enqueue(offer(2, box(0, 4), 1));
+  std::vector<EditRecord> records;
+  while (const auto batch = authority.commit(kNow))
+    records.insert(records.end(), batch->records.begin(), batch->records.end());
+  REQUIRE(records.size() == 3);
+  CHECK(records[0].time_us == kNow.utc_us + kAhead);
+  bool is_corrected = false;
+  for (const EditRecord& record : records) {
+    is_corrected = is_corrected || corrects_time(record);
+    CHECK(record.time_us == (is_corrected ? kNow.utc_us : kNow.utc_us + kAhead));
+  }
+  CHECK(is_corrected);
+  // A server that follows has the same times.
+  Authority follower(limits(), {1, 7, 1, kNow.utc_us + kAhead});
+  (void)follower.commit(kNow);
+  std::vector<LogPartRecord> parts;
+  for (const EditRecord& record : records) parts.push_back({record, 0});
+  (void)follower.follow(parts, kNow);
+  CHECK(follower.log_clock().time() == kNow.utc_us);
+}
+
 TEST_CASE("recovery puts records back on the stacks and skips those that a snapshot contains",
           "[world]") {
   // First run: five edits; the snapshot was taken after the second.

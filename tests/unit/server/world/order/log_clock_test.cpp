@@ -1,6 +1,7 @@
 #include "server/world/order/log_clock.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 namespace runstone {
 namespace {
@@ -160,6 +161,66 @@ TEST_CASE("restrictions end also at a server that took over from one whose clock
   CHECK(begin_us == kStart + 2 * kYear);
   clocks.pass(5 * kSecond);
   CHECK(clocks.log.time() == begin_us + 5 * kSecond);
+}
+
+TEST_CASE("a correction makes the time of the log the wall clock's, and edits go on from there",
+          "[world][clock]") {
+  ClockPair clocks(kStart + 2 * kYear);
+  clocks.pass(5 * kSecond);
+  CHECK(clocks.log.time() - clocks.log.wall_us() > kYear);
+  clocks.log.accept_wall_clock();
+  CHECK(clocks.log.stamp() == clocks.right());
+  CHECK(clocks.log.time() == clocks.right());
+  clocks.pass(kMinute);
+  CHECK(clocks.log.stamp() == clocks.right());
+}
+
+TEST_CASE("a correction takes over a jump that is not kept for long yet", "[world][clock]") {
+  ClockPair clocks;
+  clocks.wrong_us = GENERATE(-2 * kYear, 2 * kYear);
+  clocks.pass(kMinute);
+  CHECK(clocks.log.has_jumped());
+  CHECK(clocks.log.stamp() == clocks.right());
+  clocks.log.accept_wall_clock();
+  CHECK_FALSE(clocks.log.has_jumped());
+  clocks.pass(kMinute);
+  CHECK(clocks.log.stamp() == clocks.right() + clocks.wrong_us);
+  CHECK(clocks.log.time() == clocks.right() + clocks.wrong_us);
+}
+
+TEST_CASE("a server that follows takes a correction, also if its own clock is as wrong",
+          "[world][clock]") {
+  ClockPair clocks;
+  clocks.wrong_us = GENERATE(TimeUs{0}, 2 * kYear);
+  clocks.log = LogClock(0);
+  clocks.log.advance(clocks.now());
+  clocks.log.follow(clocks.right() + 2 * kYear);
+  CHECK(clocks.log.time() >= clocks.right() + 2 * kYear);
+  clocks.log.follow(clocks.right(), true);
+  CHECK(clocks.log.time() == clocks.right());
+  clocks.log.follow(clocks.right() + kSecond);
+  clocks.pass(kMinute);
+  CHECK(std::abs(clocks.log.time() - clocks.right()) <= kSecond);
+}
+
+TEST_CASE("a log whose start doubts the wall clock goes on from its own time for an hour",
+          "[world][clock]") {
+  ClockPair clocks;
+  clocks.wrong_us = 2 * kYear;
+  clocks.log = LogClock(kStart - kMinute, kStart);
+  clocks.log.advance(clocks.now());
+  CHECK(clocks.log.stamp() == kStart);
+  CHECK(clocks.log.has_jumped());
+  SECTION("and follows if it stays so") {
+    clocks.pass(LogClock::kAcceptUs + kSecond, kSecond);
+    CHECK(clocks.log.stamp() == clocks.right() + 2 * kYear);
+  }
+  SECTION("and does not if a time service sets it right") {
+    clocks.pass(kMinute, kSecond);
+    clocks.wrong_us = 0;
+    clocks.pass(LogClock::kAcceptUs + kMinute, kSecond);
+    CHECK(std::abs(clocks.log.stamp() - clocks.right()) < kMinute);
+  }
 }
 
 }  // namespace

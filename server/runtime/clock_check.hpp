@@ -1,0 +1,41 @@
+// ClockCheck: whether the wall clock can be right when a server starts. It is compared with all times
+// that the world knows: that of the last record of the log, and those at which the files of the world
+// were written. The rule:
+//   - The wall clock is more than kJumpUs behind one of them: it is wrong now, or was wrong then. The
+//     operator is warned.
+//   - The wall clock is more than kRestUs ahead of all of them, and the kernel does not say that a time
+//     service has set it: the world has rested for long, or the clock is wrong. The operator is warned.
+//     If the kernel says that no time service has set the clock, it is doubtful: the log's time goes on
+//     from the newest of these times, and treats the wall clock as one that has jumped (LogClock).
+// A clock that is wrong by less than kRestUs cannot be told from a right one.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+inline constexpr TimeUs kRestUs = TimeUs{30} * 24 * 3600 * 1'000'000;
+
+/// What a start knows about times (UTC).
+struct ClockEvidence {
+  TimeUs wall_us = 0;
+  TimeUs last_us = 0;     // of the last record of the log, 0: there is none
+  TimeUs written_us = 0;  // when the newest file of the world was written, 0: there is none
+  std::string file;       // the name of that file
+  std::optional<bool> is_synchronised;  // is_clock_synchronised()
+};
+
+struct ClockCheck {
+  std::optional<std::string> warning;
+  std::optional<TimeUs> begin_us;  // LogPosition::begin_us
+};
+
+ClockCheck check_clock(const ClockEvidence& evidence);
+
+/// Reads the clocks and the times of the files of a world, at a place. Call it before the world is
+/// changed.
+ClockEvidence read_clock_evidence(const std::string& place, TimeUs last_us);
+
+}  // namespace runstone

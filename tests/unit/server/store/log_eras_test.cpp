@@ -1,0 +1,172 @@
+// A log whose time was corrected: what a time means where times fall.
+#include <catch2/catch.hpp>
+#include <limits>
+#include <span>
+
+#include "server/store/copy_stored_world.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr TimeUs kMinute = 60'000'000;
+constexpr TimeUs kStart = TimeUs{500'000'000} * kMinute / 10;
+constexpr TimeUs kAhead = 2 * 365 * 24 * 60 * kMinute;
+
+void make_correction(EditRecord& record) {
+  record.cause = Cause::rights;
+  record.subject = 0;
+  record.edit = rights_edit(CorrectTime{kAhead});
+}
+
+/// Returns 40 edits, one each minute: 1 to 10 by a right clock, 11 to 20 by one that is ahead, 21 the
+/// correction, 22 to 30 by a right clock, 31 a correction by half an hour, from 32 on right.
+std::vector<EditRecord> corrected_records() {
+  SplitMix64 rng(1);
+  auto records = sample_records(rng, 1, 1, 40);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i].time_us = kStart + static_cast<TimeUs>(i + 1) * kMinute;
+    if (i >= 10 && i < 20) records[i].time_us += kAhead;
+    if (i >= 30) records[i].time_us -= 30 * kMinute;
+  }
+  make_correction(records[20]);
+  make_correction(records[30]);
+  return records;
+}
+
+TimeUs minute(TimeUs count) { return kStart + count * kMinute; }
+
+void make_world(const std::string& place, const std::vector<EditRecord>& records) {
+  auto store = create_world(place, sample_meta());
+  REQUIRE(store.has_value());
+  REQUIRE((*store)->raise_epoch().has_value());
+  // In several commits, so that the list of eras grows.
+  for (std::size_t at = 0; at < records.size(); at += 8)
+    REQUIRE((*store)->append({}, std::span(records).subspan(at, 8)).has_value());
+  const Keyframe keyframe{{records[24].version, records[24].time_us}, 0, {}};
+  REQUIRE((*store)->save_keyframe({}, keyframe).has_value());
+}
+
+/// The definition, by a scan of all records.
+Sequence newest_at(std::span<const EditRecord> records, TimeUs time_us) {
+  for (std::size_t i = records.size(); i-- > 0;) {
+    if (records[i].time_us <= time_us) return records[i].version.seq;
+  }
+  return 0;
+}
+
+std::vector<Sequence> found(Store& store, TimeUs from_us, TimeUs until_us) {
+  LogQuery query;
+  query.from_us = from_us;
+  query.until_us = until_us;
+  std::vector<Sequence> all;
+  const auto done = store.query_log(query, [&](const EditRecord& record) {
+    all.push_back(record.version.seq);
+    return true;
+  });
+  if (!done) FAIL(done.error().message());
+  return all;
+}
+
+std::vector<Sequence> range(Sequence first, Sequence last) {
+  std::vector<Sequence> all;
+  for (Sequence seq = first; seq <= last; ++seq) all.push_back(seq);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a moment is the newest edit that is not later, also where times fall",
+          "[store][clock]") {
+  TempPlace place;
+  const auto records = corrected_records();
+  make_world(place / "w", records);
+  auto store = *open_world(place / "w", StoreAccess::read_only);
+  std::vector<TimeUs> times{kStart, kStart + kAhead, 0, minute(100)};
+  for (const EditRecord& record : records)
+    for (const TimeUs near_us : {TimeUs{-1}, TimeUs{0}, TimeUs{1}})
+      times.push_back(record.time_us + near_us);
+  for (const TimeUs from_us : times) {
+    CAPTURE(from_us);
+    const Sequence at = newest_at(records, from_us);
+    CHECK(*store->sequence_at(from_us) == at);
+    const Sequence before = newest_at(records, from_us - 1);
+    CHECK(found(*store, from_us, std::numeric_limits<TimeUs>::max()) == range(before + 1, 40));
+    CHECK(found(*store, std::numeric_limits<TimeUs>::min(), from_us) == range(1, at));
+  }
+  // `since` ten minutes before the first correction: all that was made since, and by the wrong clock.
+  CHECK(found(*store, minute(11), minute(30)).back() == 40);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a compaction keeps the meaning of times", "[store][clock]") {
+  TempPlace place;
+  const auto records = corrected_records();
+  make_world(place / "w", records);
+  auto store = *open_world(place / "w", StoreAccess::read_write);
+  REQUIRE(store->compact(25).has_value());
+  CHECK(store->log_range()->first == 26);
+  for (const EditRecord& record : records) {
+    CAPTURE(record.version.seq);
+    const auto at = store->sequence_at(record.time_us);
+    const Sequence expected = newest_at(records, record.time_us);
+    if (expected >= 25) {
+      CHECK(*at == expected);
+    } else {
+      REQUIRE_FALSE(at.has_value());
+      CHECK(at.error().kind == StoreError::Kind::bad_request);
+    }
+  }
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]") {
+  TempPlace place;
+  auto records = corrected_records();
+  make_world(place / "w", records);
+  const auto format = [&](const std::string& file) {
+    return raw_sql(
+        file, place.is_postgres() ? "SELECT format FROM runstone_world" : "PRAGMA user_version");
+  };
+  CHECK(format(place / "w/world.sqlite") == "6");
+  const std::string copy = place / "copy";
+  const auto copied = copy_stored_world(place / "w", copy, {});
+  if (!copied) FAIL(copied.error().message());
+  CHECK(format(place / "copy/world.sqlite") == "6");
+  CHECK(*(*open_world(copy, StoreAccess::read_only))->sequence_at(minute(22)) ==
+        newest_at(records, minute(22)));
+  records.resize(8);
+  auto other = create_world(place / "plain", sample_meta());
+  REQUIRE(other.has_value());
+  REQUIRE((*other)->raise_epoch().has_value());
+  REQUIRE((*other)->append({}, records).has_value());
+  other->reset();
+  CHECK(format(place / "plain/world.sqlite") == "5");
+}
+
+TEST_CASE("the check names a fallen time without a correction, and a list of eras that lacks one",
+          "[store][clock][damage]") {
+  TempPlace place;
+  SECTION("a fallen time") {
+    auto store = *create_world(place / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    SplitMix64 rng(2);
+    auto records = sample_records(rng, 1, 1, 4);
+    records[2].time_us -= kMinute;
+    REQUIRE(store->append({}, records).has_value());
+    const auto check = store->check();
+    REQUIRE_FALSE(check.has_value());
+    CHECK(check.error().where == "edit_log seq=3");
+  }
+  SECTION("a lost list") {
+    make_world(place / "w", corrected_records());
+    raw_sql(place / "w/world.sqlite", "DELETE FROM meta WHERE key = 'log_eras'");
+    const auto check = (*open_world(place / "w", StoreAccess::read_only))->check();
+    REQUIRE_FALSE(check.has_value());
+    CHECK(check.error().where == "meta key=log_eras");
+  }
+}
+
+}  // namespace runstone::test
