@@ -34,12 +34,15 @@ struct CrashTally {
   std::uint64_t missing = 0;                               // of what was answered
   std::array<std::uint64_t, 3> compactions{};              // by CompactionEnd
   std::string error;  // of the first log that could not be read, or of a backup
-  std::uint64_t& compacted(CompactionEnd end) { return compactions[static_cast<std::size_t>(end)]; }
-  bool is_sound() {
+  void count(CompactionEnd end) { ++compactions[static_cast<std::size_t>(end)]; }
+  std::uint64_t compacted(CompactionEnd end) const {
+    return compactions[static_cast<std::size_t>(end)];
+  }
+  bool is_sound() const {
     return failed_starts == 0 && lost == 0 && repeated == 0 && missing == 0 && error.empty() &&
            compacted(CompactionEnd::failed) == 0;
   }
-  std::string summary() {
+  std::string summary() const {
     std::ostringstream out;
     out << cycles << " cycles, " << durable << " durable edits, of them " << mine
         << " of the builder, " << hostile << " of others, " << lost << " lost, " << repeated
@@ -103,7 +106,7 @@ void live_and_die(World& world, int cycles, bool is_verified, SplitMix64& random
     tally.add(builder.audit(world.folder()));
     tally.missing += rollbacks.audit();
     if (!tally.is_sound()) break;
-    ++tally.compacted(world.compact(random));
+    tally.count(world.compact(random));
     tally.add(builder.audit(world.folder()));
   }
   if (is_verified && tally.is_sound()) verify_world(world, changes, tally);
@@ -129,7 +132,6 @@ void crash_cycles(const char* how, int cycles) {
   const auto seconds =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin);
   WARN(how << ": " << tally.summary() << ", " << seconds.count() << " s");
-  CHECK(tally.error.empty());
   INFO(tally.error);
   CHECK(tally.is_sound());
   CHECK(tally.mine > 0);
