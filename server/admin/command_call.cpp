@@ -168,10 +168,10 @@ void CommandCall::change_rights(const RightsChange& change, const std::string& t
   const std::size_t sessions = world().session_count();
   const auto seq = world().changes().change_rights(change, caller.actor, caller.author, now);
   if (!seq) return refuse(seq.error());
-  std::string line = text + " (record " + std::to_string(*seq) + ")";
+  std::string answer_text = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world().session_count();
-  if (left < sessions) line += "; sessions ended: " + std::to_string(sessions - left);
-  answer_when_durable(*seq, line);
+  if (left < sessions) answer_text += "; sessions ended: " + std::to_string(sessions - left);
+  answer_when_durable(*seq, answer_text);
 }
 
 }  // namespace runstone
