@@ -40,11 +40,14 @@ const LookalikeNames& Names::names_of_roles() const {
   return roles_;
 }
 
-/// Returns why nobody may newly have the name, as the end of a sentence, or nullopt.
+/// Returns why the player may not newly have the name, as the end of a sentence, or nullopt.
 std::optional<std::string> Names::not_for_new_owners(const std::string& name,
-                                                     const std::string& folded) const {
-  if (const auto reference = read_as_reference(folded))
-    return "is refused: commands read it as " + *reference;
+                                                     const std::string& folded,
+                                                     const PublicKey& key) const {
+  // A fingerprint as the name of its own player means one player only.
+  const bool is_own = fingerprint_in(folded) == key_fingerprint(key);
+  const auto reference = read_as_reference(folded);
+  if (reference && !is_own) return "is refused: commands read it as " + *reference;
   if (const auto like = reserved_.like(name))
     return "looks like \"" + *like + "\", which is reserved";
   if (const auto like = names_of_roles().like(name))
@@ -63,7 +66,7 @@ std::optional<std::string> Names::refusal(const Session& session) const {
     return named + " belongs to the player with the key " + key_fingerprint(claim->key) +
            ": choose another name, or ask the server's host to release it";
   }
-  if (const auto why = not_for_new_owners(session.name, folded))
+  if (const auto why = not_for_new_owners(session.name, folded, session.key))
     return named + " " + *why + ": choose another name";
   if (!session.has(kFeatureNames)) return std::nullopt;
   const std::vector<std::string> owned = order_.names().names_of(session.key);

@@ -24,8 +24,8 @@ class Names {
   /// Returns why the session may not have its name, for goodbye name_refused, or nullopt:
   ///   - the name breaks a rule of name_fault(), or is reserved;
   ///   - it belongs to another key, or the key owns names_per_key others already;
-  ///   - its key does not own it yet, and commands would read it as a reference
-  ///     (name_reference.hpp), or it looks like a reserved name or like the name of a role with
+  ///   - its key does not own it yet, and commands would read it as a reference to another player
+  ///     or an address (name_reference.hpp), or it looks like a reserved name or like the name of a role with
   ///     rights over others (lookalike_names.hpp).
   /// Changes nothing. Cost: O(log claims), and that of LookalikeNames::like().
   std::optional<std::string> refusal(const Session& session) const;
@@ -44,8 +44,8 @@ class Names {
   /// Returns the names of the roles with rights over others. They are collected again after a change
   /// of rights.
   const LookalikeNames& names_of_roles() const;
-  std::optional<std::string> not_for_new_owners(const std::string& name,
-                                                const std::string& folded) const;
+  std::optional<std::string> not_for_new_owners(const std::string& name, const std::string& folded,
+                                                const PublicKey& key) const;
 
   const WorldConfig& config_;
   WorldEnvironment& environment_;

@@ -123,9 +123,8 @@ TEST_CASE("the tables have the columns of format 5", "[store][golden]") {
   CHECK(
       raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
       "author_max base_fold checkpoint chunk_edge epoch generator generator_parameters "
-      "generator_version log_head log_last materials name_claim_fold player_fold player_instance_fold "
-      "rights_record_fold seed "
-      "server_key_seed snapshot_fold spawn tile_rules world_id");
+      "generator_version log_head log_last materials name_claim_fold open_epoch player_fold "
+      "player_instance_fold rights_record_fold row_counts seed server_key_seed snapshot_fold spawn tile_rules world_id");
 }
 
 TEST_CASE("rows have the bytes and checksums of format 5", "[store][golden]") {
@@ -201,16 +200,16 @@ TEST_CASE("the mark of the durable log has the bytes of format 1", "[store][gold
   // world id, u64 sequence, u32 epoch, u32 highest author number, checksum
   CHECK(to_hex(all.first(40)) ==
         "0102030405060708090a0b0c0d0e0f10"
-        "0000000000000000"
-        "01000000"
-        "00000000"
-        "b0b8d79b2f382501");
-  CHECK(to_hex(all.subspan(4096, 40)) ==
-        "0102030405060708090a0b0c0d0e0f10"
         "0200000000000000"
         "01000000"
         "01000000"
         "de63444f483b92df");
+  CHECK(to_hex(all.subspan(4096, 40)) ==
+        "0102030405060708090a0b0c0d0e0f10"
+        "0000000000000000"
+        "01000000"
+        "00000000"
+        "b0b8d79b2f382501");
 }
 
 TEST_CASE("the head of a compacted log has the bytes of format 1", "[store][golden]") {

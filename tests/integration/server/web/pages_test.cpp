@@ -88,8 +88,8 @@ TEST_CASE("a gateway does not start with a folder that lacks the client", "[inte
   config.client_files = folder.path() + "/nothing";
   const auto gateway = WebGateway::start(config);
   REQUIRE_FALSE(gateway.has_value());
-  CHECK(gateway.error() ==
-        "client_files: " + folder.path() + "/nothing/client.html cannot be read");
+  CHECK(gateway.error() == "client_files: " + folder.path() +
+                               "/nothing/client.html: cannot be read: No such file or directory");
 }
 
 TEST_CASE("paths that lead elsewhere and broken requests get an answer in words", "[integration]") {

@@ -110,8 +110,9 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
 TEST_CASE("the environment sets fields and its errors name the variable", "[admin]") {
   Environment environment{{"RUNSTONE_IO_THREADS", "8"}};
   // They are for other programs.
-  for (const char* other : {"RUNSTONE_WEB_TITLE", "RUNSTONE_WEB_TITEL", "RUNSTONE_SERVER",
-                            "RUNSTONE_CLIENT", "RUNSTONE_BOT", "RUNSTONE_TEST_POSTGRES"})
+  for (const char* other :
+       {"RUNSTONE_WEB_TITLE", "RUNSTONE_WEB_TITEL", "RUNSTONE_SERVER", "RUNSTONE_CLIENT",
+        "RUNSTONE_BOT", "RUNSTONE_WEB", "RUNSTONE_TEST_POSTGRES"})
     environment[other] = "x";
   ServerConfig config;
   REQUIRE(read_config_environment(config, environment).has_value());

@@ -120,5 +120,5 @@ TEST_CASE("a folder without the client is named when the gateway starts", "[web]
   const TempFolder folder;
   const auto files = ClientFiles::load(folder.path());
   REQUIRE_FALSE(files.has_value());
-  CHECK(files.error() == folder.path() + "/client.html cannot be read");
+  CHECK(files.error() == folder.path() + "/client.html: cannot be read: No such file or directory");
 }

@@ -210,6 +210,9 @@ TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a 
   // Roles without rights over others are free: "builder" is what clients call their player at first.
   CHECK_FALSE(bench.enters(++session, 5, "builder"));
   CHECK(bench.refusal(session).empty());
+  // A fingerprint means its own player whether or not it is a name too.
+  CHECK_FALSE(bench.enters(++session, 7, key_fingerprint(public_key_of(7))));
+  CHECK(bench.refusal(session).empty());
   CHECK_FALSE(bench.enters(++session, 6, "Call me Ana"));
   CHECK(bench.refusal(session).empty());
 }
