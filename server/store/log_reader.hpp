@@ -44,6 +44,9 @@ struct LogQuery {
   // Edits up to the newest one whose time is not later.
   TimeUs until_us = std::numeric_limits<TimeUs>::max();
   std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
+  /// Of a query with a box: is asked with the bounding box of an edit, or with a box around those of
+  /// many edits. What it refuses is left out unread. Empty: refuses nothing.
+  std::function<bool(const VoxelBox&)> wants;
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };
