@@ -55,13 +55,6 @@ void write_ahead(const std::string& world) {
   REQUIRE((*store)->append({}, records).has_value());
 }
 
-Answer must(const std::string& world, const std::vector<std::string>& words) {
-  const Answer answer = control(world, words);
-  INFO(words.front() << ": " << answer.text);
-  CHECK(answer.is_ok);
-  return answer;
-}
-
 std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }

@@ -9,17 +9,6 @@
 #include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
-namespace {
-
-Answer must(const std::string& world, const std::vector<std::string>& words) {
-  const Answer answer = control(world, words);
-  INFO(words.front() << ": " << answer.text);
-  CHECK(answer.is_ok);
-  return answer;
-}
-
-}  // namespace
-
 TEST_CASE("roles, ground and bans hold at once and after a restart", "[integration][rights]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");

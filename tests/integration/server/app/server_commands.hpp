@@ -25,6 +25,14 @@ inline Answer control(const std::string& world, const std::vector<std::string>& 
   return {*done == ControlEnd::done, out.str()};
 }
 
+/// Sends a command as control(), and checks that it succeeds.
+inline Answer must(const std::string& world, const std::vector<std::string>& words) {
+  const Answer answer = control(world, words);
+  INFO(words.front() << ": " << answer.text);
+  CHECK(answer.is_ok);
+  return answer;
+}
+
 /// Sends a client's command and waits until it is done.
 inline Answer command(RawClient& client, const std::string& text) {
   static std::uint32_t id = 0;
