@@ -10,13 +10,14 @@
 
 #include "bench/network/attack_thread.hpp"
 #include "bench/network/edit_attacks.hpp"
+#include "bench/network/map_attacks.hpp"
 #include "bench/network/session_attacks.hpp"
 #include "bench/network/view_attacks.hpp"
 
 namespace runstone::bench {
 namespace {
 
-constexpr std::array<Attack, 22> kAttacks = {{
+constexpr std::array<Attack, 24> kAttacks = {{
     {kQuiet, "nobody attacks", stay_away, false},
     {"elsewhere", "as many threads copy bytes in the kernel: no attack, only a busy machine",
      keep_the_machine_busy, false},
@@ -49,8 +50,16 @@ constexpr std::array<Attack, 22> kAttacks = {{
      "a view of radius 64 on the ground, far from all others, and another one every 4 s",
      spread_views},
     {"seats", "as many sessions of one key as the server gives, which say nothing", take_seats},
+    {kSeatsByRange,
+     "as many sessions as the server gives to one /24 in which each thread has an address: each of "
+     "another key, held with pings",
+     take_seats_of_range},
     {"travel", "requests of the past, likewise", travel_too_often},
     {"commands", "command lines, likewise, half of them 1 KiB of nonsense", command_too_often},
+    {"map",
+     "random tiles of the gateway's map, eight at a time for each thread, each from an address of "
+     "another /24",
+     request_random_tiles, true, true},
 }};
 
 AttackOutcome play_thread(const std::function<void(AttackThread&)>& play, const AttackPlan& plan,

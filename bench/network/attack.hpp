@@ -23,9 +23,12 @@ struct Attack {
   const char* what;                    // a description for readers
   void (*play)(AttackThread& thread);  // one thread of the attack, until its time is over
   bool is_hostile = true;              // false: a row to compare with
+  bool needs_gateway = false;          // with a map
 };
 /// The attack in which nobody attacks. The other rows are compared with it.
 inline constexpr const char* kQuiet = "quiet";
+/// The attack that takes seats from one range of addresses. Newcomers come from others.
+inline constexpr const char* kSeatsByRange = "seats-by-range";
 /// Returns all attacks, by name.
 std::span<const Attack> all_attacks();
 
@@ -54,6 +57,7 @@ struct AttackPlan {
   // Attackers run only while a core has nothing else to do. Other programs on the machine may keep
   // them from running at all.
   bool uses_idle_cores = true;
+  std::uint16_t web_port = 0;  // of the gateway; 0: there is none
 };
 
 /// A running attack by several clients, each on a thread of its own. The threads have the lowest

@@ -20,6 +20,9 @@
 #include "bench/network/echo_probe.hpp"
 #include "bench/network/fleet.hpp"
 #include "bench/network/join_probe.hpp"
+#include "bench/network/page_probe.hpp"
+#include "bench/network/page_times.hpp"
+#include "tests/support/tls/pem_files.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -55,23 +58,62 @@ class AttackRun {
       : testbed_(testbed), options_(testbed.options()), link_(link), attack_(attack) {}
 
   Result<AttackResult, std::string> run() {
-    auto server = start_attacked_server(testbed_, link_, {});
-    if (!server) return failure(server.error());
-    server_ = *std::move(server);
+    if (const auto started = start(); !started) return failure(started.error());
     out_.name = attack_.name;
     out_.is_hostile = attack_.is_hostile;
     for (const AttackPhase phase : kAttackPhases) {
       if (const auto done = play(phase); !done) return failure(done.error());
     }
     if (const auto ended = stop(); !ended) return failure(ended.error());
+    if (web_) {
+      if (const auto ended = testbed_.stop_server(*web_); !ended) return failure(ended.error());
+    }
     out_.logged = reasons_in(server_.program->log());
     return out_;
   }
 
  private:
+  /// Starts the server and, if the attack needs it, a gateway with default settings and a map.
+  Done start() {
+    std::vector<std::string> flags;
+    const std::string socket = testbed_.fresh("web.sock");
+    if (attack_.needs_gateway) flags = {"--gateway-socket", socket};
+    auto server = start_attacked_server(testbed_, link_, flags);
+    if (!server) return failure(server.error());
+    server_ = *std::move(server);
+    if (!attack_.needs_gateway) return {};
+    flags = {"--world", server_.world};
+    if (!options_.insecure) {
+      pem_.emplace("localhost");
+      flags.insert(flags.end(),
+                   {"--tls-certificate", pem_->chain_file(), "--tls-key", pem_->key_file()});
+    }
+    auto web = testbed_.start_gateway(link_, socket, flags);
+    if (!web) return failure(web.error());
+    web_ = *std::move(web);
+    out_.has_gateway = true;
+    return {};
+  }
+
   AttackPlan plan(double seconds, std::uint64_t seed) const {
-    return {server_.port,       options_.attackers, options_.attacker_addresses, seconds, seed,
-            !options_.insecure, !options_.quick};
+    const std::uint16_t web_port = web_ ? web_->port : 0;
+    return {server_.port,
+            options_.attackers,
+            options_.attacker_addresses,
+            seconds,
+            seed,
+            !options_.insecure,
+            !options_.quick,
+            web_port};
+  }
+
+  /// Starts a reader for each page, if there is a gateway.
+  std::vector<std::unique_ptr<PageProbe>> start_readers() const {
+    std::vector<std::unique_ptr<PageProbe>> out;
+    if (!web_) return out;
+    for (const char* page : kProbedPages)
+      out.push_back(std::make_unique<PageProbe>(web_->port, page, !options_.insecure));
+    return out;
   }
 
   Done play(AttackPhase phase) {
@@ -95,12 +137,15 @@ class AttackRun {
       attack.emplace(attack_.play, plan(seconds, options_.seed));
       probe.emplace(server_.port, !options_.insecure);
     }
+    const auto readers = start_readers();
     double& phase_mb = out_.resident_mb[phase];
     for (double waited = 0; waited < seconds; waited += kLookSeconds) {
       const double now_mb = look();
       phase_mb = phase == during ? std::max(phase_mb, now_mb) : now_mb;
       if (!pause_for(kLookSeconds)) return failure("interrupted");
     }
+    for (std::size_t page = 0; page < readers.size(); ++page)
+      out_.pages[phase].pages[page] = page_times(readers[page]->finish());
     out_.server_cores[phase] = (server_.program->core_seconds() - cores_before) / seconds;
     if (phase == during) {
       out_.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
@@ -146,6 +191,8 @@ class AttackRun {
   TestbedLink& link_;
   const Attack& attack_;
   TestbedServer server_;
+  std::optional<test::PemFiles> pem_;
+  std::optional<TestbedServer> web_;
   double written_before_kb_ = 0;  // before the attack began
   AttackResult out_;
 };

@@ -8,12 +8,14 @@
 #include "bench/network/attack.hpp"
 #include "bench/network/fleet.hpp"
 #include "bench/network/join_probe.hpp"
+#include "bench/network/page_times.hpp"
 
 namespace runstone::bench {
 
 /// The phases in which honest builders edit.
 enum AttackPhase : std::uint8_t { before, during, after };
 inline constexpr std::array<AttackPhase, 3> kAttackPhases = {before, during, after};
+inline constexpr std::array<const char*, 3> kPhaseNames = {"before", "during", "after"};
 
 struct AttackResult {
   std::string name;
@@ -22,6 +24,8 @@ struct AttackResult {
   // The round trip of a message to a plain Asio server during the attack: the load of the machine.
   double echo_p99_ms = 0;
   JoinProbe::Joins joins;
+  bool has_gateway = false;
+  std::array<PageTimes, 3> pages;  // by phase; empty without a gateway
   AttackOutcome outcome;
   // The reasons in the server's log. The log may drop lines.
   std::map<std::string, std::uint64_t> logged;

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "bench/network/attacked_server.hpp"
+#include "bench/network/page_table.hpp"
 
 namespace runstone::bench {
 namespace {
 
-constexpr std::array<const char*, 3> kPhaseNames = {"before", "during", "after"};
 // The targets.
 constexpr double kOfQuietMax = 2, kAttackedMsMax = 10;
 constexpr double kDiskKbMax = 100;
@@ -90,6 +90,15 @@ std::string times(const FleetReport& seen) {
                      number_text(seen.max_ms));
 }
 
+/// Returns the target that newcomers from other ranges find a seat.
+Target newcomers_target(const AttackResult& result) {
+  const JoinProbe::Joins& joins = result.joins;
+  return {fmt::format("{}: newcomers from other ranges who found a seat", result.name), "all",
+          fmt::format("{} of {}, the slowest after {} ms", joins.open, joins.tried,
+                      number_text(joins.slowest_ms)),
+          joins.tried > 0 && joins.open == joins.tried ? Verdict::met : Verdict::missed};
+}
+
 std::string load_row(const AttackResult& result, const AttackResult& quiet,
                      const NetOptions& options) {
   return fmt::format(
@@ -131,6 +140,7 @@ void add_attack_figures(std::span<const AttackResult> results, const NetOptions&
                         std::vector<Figure>& figures) {
   for (const AttackResult& result : results) {
     add_figures_of(result, results.front(), options, figures);
+    add_page_figures(result, figures);
   }
 }
 
@@ -160,6 +170,10 @@ void add_attack_targets(std::span<const AttackResult> results, const NetOptions&
       [&](const AttackResult& result) { return disk_kb_s_each(result, quiet, options); });
   add("orderly stop", "s", kStopSecondsMax,
       [](const AttackResult& result) { return result.stop_s; });
+  for (const AttackResult& result : results) {
+    if (result.name == kSeatsByRange) targets.push_back(newcomers_target(result));
+  }
+  add_page_targets(results, targets);
 }
 
 std::string attack_tables(std::span<const AttackResult> results, const NetOptions& options) {
@@ -190,13 +204,14 @@ std::string attack_tables(std::span<const AttackResult> results, const NetOption
       "bots disconnected, rules broken | newcomers accepted, slowest ms | "
       "server MB before, peak, after | server cores before, during | bots' cores | attackers' cores |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n"
-      "{}\n"
+      "{}{}\n"
       "| attack | connections | MB sent, received | answers to the attackers | "
       "reasons in the server's log |\n"
       "|---|---|---|---|---|\n"
       "{}\n{}",
       options.attack_bots, kAttackedEditsPerSecond, options.attack_seconds, options.attackers,
-      options.attacker_addresses, options.attack_seconds, loads, builders, answers, list);
+      options.attacker_addresses, options.attack_seconds, loads, builders, page_table(results),
+      answers, list);
 }
 
 }  // namespace runstone::bench

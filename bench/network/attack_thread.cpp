@@ -18,6 +18,7 @@ constexpr int kSmallBuffer = 4 * 1024;
 AttackThread::AttackThread(const AttackPlan& plan, unsigned index,
                            const std::atomic<bool>& is_stopped)
     : port_(plan.port),
+      web_port_(plan.web_port),
       index_(index),
       addresses_(plan.addresses),
       address_(address(index % plan.addresses)),
@@ -42,7 +43,7 @@ void AttackThread::pause_ms(int ms) const {
 std::unique_ptr<AttackClient> AttackThread::connect(std::uint32_t from, int receive_bytes) {
   if (!may_connect()) return nullptr;
   ++outcome.connections;
-  return std::make_unique<AttackClient>(port_, from, tls_ ? &*tls_ : nullptr, receive_bytes);
+  return std::make_unique<AttackClient>(port_, from, tls(), receive_bytes);
 }
 
 std::unique_ptr<AttackClient> AttackThread::join(int receive_bytes, std::uint64_t features) {

@@ -27,6 +27,8 @@ class AttackThread {
   /// Returns address `n` of attackers with several: 127.0.0.2, 127.0.1.2 and so on. Each is of
   /// another /24, because a server limits what comes from one.
   static constexpr std::uint32_t address(unsigned n) { return kAttackers + (n << 8); }
+  /// Returns address `n` of attackers who share a /24 that nobody else uses: 127.3.3.1 and so on.
+  static constexpr std::uint32_t address_of_range(unsigned n) { return 0x7F030301 + n % 254; }
 
   /// `is_stopped` ends the attack early. It must outlive the thread.
   AttackThread(const AttackPlan& plan, unsigned index, const std::atomic<bool>& is_stopped);
@@ -61,12 +63,16 @@ class AttackThread {
 
   std::uint32_t own_address() const { return address_; }
   unsigned addresses() const { return addresses_; }
+  /// Returns the port of the gateway. Requires that there is one.
+  std::uint16_t web_port() const { return web_port_; }
+  /// Returns null if server and gateway do not encrypt.
+  const TlsContext* tls() const { return tls_ ? &*tls_ : nullptr; }
 
   AttackOutcome outcome;
 
  private:
   using Clock = std::chrono::steady_clock;
-  const std::uint16_t port_;
+  const std::uint16_t port_, web_port_;
   const unsigned index_, addresses_;
   const std::uint32_t address_;
   const std::atomic<bool>& is_stopped_;

@@ -10,7 +10,8 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint32_t kAddress = 0x7F020202;  // 127.2.2.2, which nobody else uses
+// 127.2.2.2, 127.2.3.2 and so on, which nobody else uses: each is of another /24.
+constexpr std::uint32_t kAddress = 0x7F020202, kAddresses = 8;
 constexpr int kNewcomerMsMax = 5'000;
 constexpr double kPauseSeconds = 0.1;
 
@@ -34,7 +35,8 @@ void JoinProbe::run(std::uint16_t port, bool is_encrypted) {
   const TlsContext tls = TlsContext::client();
   for (std::uint64_t who = 0; !is_over_ && !interrupted(); ++who) {
     const auto began = std::chrono::steady_clock::now();
-    AttackClient newcomer(port, kAddress, is_encrypted ? &tls : nullptr);
+    const std::uint32_t from = kAddress + (static_cast<std::uint32_t>(who % kAddresses) << 8);
+    AttackClient newcomer(port, from, is_encrypted ? &tls : nullptr);
     ++joins_.tried;
     if (newcomer.open_session(mix64(~who), 1, kNewcomerMsMax)) {
       ++joins_.open;

@@ -80,6 +80,38 @@ void take_seats(AttackThread& thread) {
   for (const auto& seat : seats) thread.end(*seat);
 }
 
+void take_seats_of_range(AttackThread& thread) {
+  constexpr std::size_t kSeatsMax = 100;
+  constexpr int kWaitMs = 1'000, kPauseMs = 20;
+  constexpr double kPingSeconds = 2, kAgainSeconds = 0.25;
+  const std::uint32_t from = AttackThread::address_of_range(thread.index());
+  std::vector<std::unique_ptr<AttackClient>> seats;
+  double next_ping = kPingSeconds, next_join = 0;
+  for (; !thread.is_over(); thread.pause_ms(kPauseMs)) {
+    if (seats.size() < kSeatsMax && thread.seconds() >= next_join) {
+      auto client = thread.connect(from);
+      if (client != nullptr && client->open_session(thread.random().next(), 1, kWaitMs)) {
+        seats.push_back(std::move(client));
+      } else if (client != nullptr) {
+        thread.end(*client);
+        next_join = thread.seconds() + kAgainSeconds;
+      }
+    }
+    const bool pings = thread.seconds() >= next_ping;
+    if (pings) next_ping += kPingSeconds;
+    for (const auto& seat : seats) {
+      if (pings) seat->queue(Ping{1});
+      seat->flush();
+      seat->read();
+    }
+    std::erase_if(seats, [&](const auto& seat) {
+      if (!seat->is_open()) thread.end(*seat);
+      return !seat->is_open();
+    });
+  }
+  for (const auto& seat : seats) thread.end(*seat);
+}
+
 void command_too_often(AttackThread& thread) {
   std::uint32_t id = 0;
   const auto command = [&](AttackClient& client) {

@@ -7,6 +7,7 @@ namespace runstone::bench {
 class AttackThread;
 
 void take_seats(AttackThread& thread);
+void take_seats_of_range(AttackThread& thread);
 void command_too_often(AttackThread& thread);
 void open_halfway(AttackThread& thread);
 void shake_hands(AttackThread& thread);

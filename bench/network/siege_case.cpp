@@ -32,14 +32,15 @@ std::uint64_t errors_in(const std::string& log) {
   return out;
 }
 
-/// Returns the attacks that take turns: the hostile ones that the options name, or all of them.
+/// Returns the attacks that take turns: the hostile ones that the options name, or all of them. A
+/// siege has no gateway.
 std::vector<const Attack*> siege_attacks(const NetOptions& options) {
   std::vector<const Attack*> out;
   for (const Attack& attack : all_attacks()) {
     const auto& wanted = options.attacks;
     const bool is_wanted =
         wanted.empty() || std::find(wanted.begin(), wanted.end(), attack.name) != wanted.end();
-    if (attack.is_hostile && is_wanted) out.push_back(&attack);
+    if (attack.is_hostile && !attack.needs_gateway && is_wanted) out.push_back(&attack);
   }
   return out;
 }

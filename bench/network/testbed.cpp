@@ -82,8 +82,10 @@ Result<TestbedServer, std::string> Testbed::start_server(TestbedLink& link,
                                     port_file};
   words.insert(words.end(), flags.begin(), flags.end());
   if (options_.insecure) words.insert(words.end(), {"--insecure", "--i-know"});
-  return wait_for_port(link, port_file,
-                       Child::start(link.server_side(), std::move(words), fresh("server.log")));
+  auto server = wait_for_port(
+      link, port_file, Child::start(link.server_side(), std::move(words), fresh("server.log")));
+  if (server) server->world = world;
+  return server;
 }
 
 Result<TestbedServer, std::string> Testbed::start_gateway(TestbedLink& link,

@@ -30,6 +30,7 @@ struct TestbedServer {
   std::unique_ptr<Child> program;
   std::string address;     // HOST:PORT for clients
   std::uint16_t port = 0;  // the port on which the server listens, without the link
+  std::string world = {};  // its folder; empty for a gateway
 };
 
 class Testbed {

@@ -98,7 +98,8 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
 void CommandServices::tick(const Clocks& now) {
   for (Waiting& each : std::exchange(waiting, {})) {
     const Order& order = world.order();
-    if (order.durable() >= each.needed) {
+    if (order.durable() >= each.needed &&
+        order.names().durable_change() >= each.needed_name_change) {
       each.begin();
     } else if (each.is_work ? !order.accepts_edits()
                             : order.ownership().is(OwnershipState::log_lost)) {
@@ -112,6 +113,15 @@ void CommandServices::tick(const Clocks& now) {
 }
 
 void CommandCall::answer_when_durable(Sequence record, const std::string& text) const {
+  answer_when_durable(record, 0, text);
+}
+
+void CommandCall::answer_when_names_durable(const std::string& text) const {
+  answer_when_durable(0, world().order().names().last_change(), text);
+}
+
+void CommandCall::answer_when_durable(Sequence record, std::uint64_t name_change,
+                                      const std::string& text) const {
   services.waiting.push_back(
       {record, [call = *this, text] { call.answer(text); },
        [call = *this, text] {
@@ -125,7 +135,7 @@ void CommandCall::answer_when_durable(Sequence record, const std::string& text) 
              order.is_disk_full() ? std::string(": ") + order.disk_reason() : "";
          call.reply(CommandAnswer::unsaved(text + "; in force, not on disk yet" + why));
        },
-       now.steady_us + kAnswerUnsavedUs, false});
+       now.steady_us + kAnswerUnsavedUs, false, name_change});
 }
 
 void CommandCall::with_players(const std::vector<std::string>& words,

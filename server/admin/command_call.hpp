@@ -1,6 +1,7 @@
 // CommandCall: one command under way, with its caller, what commands work on, and the way to
 // answer. Thread: the world strand. Reads from the disk run on the workers.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -46,7 +47,7 @@ struct CommandServices {
   /// Returns true if the server's settings name the key as an operator's.
   const std::function<bool(const PublicKey&)> is_operator;
 
-  /// A command that goes on when the log is on disk up to a sequence.
+  /// A command that goes on when the log is on disk up to a record, and the names up to a change.
   struct Waiting {
     Sequence needed = 0;
     std::function<void()> begin;
@@ -58,6 +59,7 @@ struct CommandServices {
     std::function<void()> report = {};
     TimeUs report_us = 0;
     bool is_work = true;  // otherwise an answer to what is done
+    std::uint64_t needed_name_change = 0;
   };
   std::vector<Waiting> waiting = {};
 
@@ -107,10 +109,16 @@ struct CommandCall {
   /// Answers a command whose record is ordered, and in force, when it is on disk. If that takes
   /// kAnswerUnsavedUs, or the disk is full, an answer that is_unsaved comes before.
   void answer_when_durable(Sequence record, const std::string& text) const;
+  /// Answers a command that has changed names as answer_when_durable() answers one with a record.
+  void answer_when_names_durable(const std::string& text) const;
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
   /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
   /// which hazard_of() warns must be confirmed.
   void change_rights(const RightsChange& change, const std::string& text) const;
+
+ private:
+  void answer_when_durable(Sequence record, std::uint64_t name_change,
+                           const std::string& text) const;
 };
 
 inline std::string error_text(const StoreError& error) { return error.message(); }

@@ -24,8 +24,9 @@ Result<std::string, std::string> parse_name(WordReader& reader) {
 void release_name(const CommandCall& call, const std::string& name) {
   const auto released = call.world().people().names().release(name);
   if (!released) return call.refuse("names release: " + released.error());
-  call.answer("\"" + released->name + "\" was owned by " + key_fingerprint(released->key) +
-              "; the next player who joins under it owns it");
+  call.answer_when_names_durable("\"" + released->name + "\" was owned by " +
+                                 key_fingerprint(released->key) +
+                                 "; the next player who joins under it owns it");
 }
 
 Result<std::string, std::string> parse_material_file(WordReader& reader) {

@@ -249,7 +249,9 @@ DurableLog::Events ServerCore::log_events() {
     commands_->tick(now);
   };
   events.on_names_written = [this](std::size_t count) {
-    world_->names_durable(count, read_clocks());
+    const Clocks now = read_clocks();
+    world_->names_durable(count, now);
+    commands_->tick(now);
   };
   events.on_snapshots_saved = [this] { world_->snapshots_saved(read_clocks()); };
   events.on_space = [this](DiskSpace space) {

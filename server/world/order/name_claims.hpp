@@ -66,6 +66,10 @@ class NameClaims {
 
   /// Reports that `count` more changes are on disk, the oldest first.
   void names_durable(std::size_t count) { durable_ += count; }
+  /// Returns the number of the last change of this run. The first one has the number 1.
+  std::uint64_t last_change() const { return queued_; }
+  /// Returns the number of the last change that is on disk, with all before it.
+  std::uint64_t durable_change() const { return durable_; }
   /// Returns true if the claim of this name is on disk. Requires that somebody owns it.
   bool is_durable(const std::string& folded) const {
     return by_folded_.at(folded).number <= durable_;

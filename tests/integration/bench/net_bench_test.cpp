@@ -214,6 +214,33 @@ TEST_CASE(
     CHECK(figure(testbed, "attack", "half-open", "told closed without a word") > 0);
 }
 
+TEST_CASE("newcomers find seats and readers get pages while strangers take both", "[testbed]") {
+  std::string tables;
+  const json testbed =
+      run_testbed({"--experiments", "attack", "--attacks", "seats-by-range,map", "--attack-seconds",
+                   "2", "--attackers", "3", "--attack-bots", "3"},
+                  tables);
+  for (const char* attack : {"quiet", "seats-by-range", "map"}) {
+    CAPTURE(attack);
+    CHECK(figure(testbed, "attack", attack, "during_disconnects") == 0);
+    CHECK(figure(testbed, "attack", attack, "during_violations") == 0);
+    CHECK(figure(testbed, "attack", attack, "joins_open") > 0);
+    CHECK(figure(testbed, "attack", attack, "joins_open") ==
+          figure(testbed, "attack", attack, "joins_tried"));
+  }
+  CHECK(figure(testbed, "attack", "seats-by-range", "told still connected") > 0);
+  for (const std::string phase : {"before", "during", "after"}) {
+    for (const std::string page : {"status", "map_state"}) {
+      CAPTURE(phase, page);
+      CHECK(figure(testbed, "attack", "map", phase + "_" + page + "_answers") > 0);
+      CHECK(figure(testbed, "attack", "map", phase + "_" + page + "_failed") == 0);
+    }
+  }
+  CHECK(figure(testbed, "attack", "map", "told status 200") > 0);
+  CHECK(testbed["bars"].size() == 7);
+  CHECK(tables.find("| map | /map/state.json |") != std::string::npos);
+}
+
 TEST_CASE("strangers are held or refused, and builders keep their connections", "[testbed]") {
   std::string tables;
   const json testbed = run_testbed({"--experiments", "strangers", "--attacks",

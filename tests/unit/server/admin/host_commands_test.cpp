@@ -1,4 +1,4 @@
-// The commands `servers` and `handover`.
+// The commands `servers`, `handover` and `names release`.
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -80,6 +80,61 @@ TEST_CASE("a program that cannot hand a world over says so", "[admin][servers]")
   const CommandAnswer refused = bench.give("handover");
   CHECK_FALSE(refused.is_ok);
   CHECK(refused.text == "this server cannot do that");
+}
+
+/// A world in which somebody owns the name "Ana".
+struct NameBench : RollbackBench {
+  NameBench()
+      : RollbackBench(config(), start_with_name()),
+        services{bench.server,  service, *this,
+                 folder.path(), {},      [](const PublicKey&) {
+                   return false; }} {}
+  void release() { give_command({services, {}, bench.now(), reply()}, "names release ana"); }
+  /// Lets commands go on at a time after now.
+  void tick_later(TimeUs later_us) {
+    services.tick({bench.now().steady_us + later_us, bench.now().utc_us});
+  }
+  CommandServices services;
+
+ private:
+  static WorldStart start_with_name() {
+    WorldStart start;
+    start.name_claims.push_back({"ana", "Ana", PublicKey{7}});
+    return start;
+  }
+};
+
+TEST_CASE("a name is released at once, and the answer comes when that is on disk",
+          "[admin][names]") {
+  NameBench bench;
+  bench.release();
+  CHECK(bench.bench.server.order().names().size() == 0);
+  REQUIRE(bench.bench.environment.names.size() == 1);
+  bench.tick_later(0);
+  CHECK(bench.answers.empty());
+  SECTION("on disk in time") {
+    bench.bench.server.names_durable(1, bench.bench.now());
+    bench.tick_later(0);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK(bench.answer().is_ok);
+    CHECK(bench.answer().text.starts_with("\"Ana\" was owned by "));
+  }
+  SECTION("late") {
+    bench.tick_later(kAnswerUnsavedUs);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK(bench.answers[0].is_unsaved);
+    bench.bench.server.names_durable(1, bench.bench.now());
+    bench.tick_later(kAnswerUnsavedUs);
+    REQUIRE(bench.answers.size() == 2);
+    CHECK(bench.answer().is_ok);
+  }
+  SECTION("never") {
+    bench.bench.server.log_failed();
+    bench.tick_later(0);
+    REQUIRE(bench.answers.size() == 1);
+    CHECK_FALSE(bench.answer().is_ok);
+    CHECK(bench.answer().text.find("NOT on disk") != std::string::npos);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,144 @@
+// Dying worlds: worlds whose servers die at random moments, and whose compactions are cut: by kill -9,
+// or by a loss of power on a disk in memory.
+#pragma once
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "common/core/hash.hpp"
+#include "server/admin/compact_program.hpp"
+#include "tests/integration/server/app/server_process.hpp"
+#include "tests/support/sql/power_loss_vfs.hpp"
+
+namespace runstone::test {
+
+/// Returns the default limits and budgets. Snapshots are so frequent that crashes interrupt them.
+inline ServerConfig attacked_config(const std::string& world) {
+  ServerConfig config;
+  config.world = world;
+  config.listen = "127.0.0.1:0";
+  config.log_level = LogLevel::error;
+  config.snapshot_edits = 100;
+  config.names_per_address = 0;  // the host claims many
+  config.disk_reserve_mib = 0;   // the test also runs on a nearly full disk
+  return config;
+}
+
+/// How a compaction ended.
+enum class CompactionEnd { done, cut, failed };
+
+/// Compacts a world that no server runs. Returns true if it succeeded.
+inline bool compact_all(const std::string& folder, bool shrinks) {
+  constexpr TimeUs kLaterUs = 2'000'000'000'000'000;  // than any edit
+  std::ostringstream out;
+  const auto done = compact_world({folder, 0, shrinks}, kLaterUs, out);
+  if (!done) std::fprintf(stderr, "%s\n", done.error().c_str());
+  return done.has_value();
+}
+
+/// A world whose servers are killed.
+class KilledWorld {
+ public:
+  /// A backup reads the files while the server writes them.
+  static constexpr bool kHasFiles = true;
+  explicit KilledWorld(std::uint64_t /*seed*/) {}
+
+  const std::string& folder() const { return folder_.path(); }
+  /// Starts a server. Returns its port, or 0 if the start failed.
+  std::uint16_t start() {
+    process_.emplace([this] { return attacked_config(folder()); });
+    if (process_->port() == 0) WARN(process_->failure());
+    return process_->port();
+  }
+  void die() { process_->kill(); }
+  /// Compacts the world in another process, which is killed at a random moment if it is not faster.
+  /// Requires that this process has no second thread.
+  CompactionEnd compact(SplitMix64& random) const {
+    constexpr std::uint32_t kMsMax = 300;
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) ::_exit(compact_all(folder(), true) ? 0 : 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(random.below(kMsMax)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (WIFSIGNALED(status)) return CompactionEnd::cut;
+    return WEXITSTATUS(status) == 0 ? CompactionEnd::done : CompactionEnd::failed;
+  }
+  /// Stops the server in order. Returns true if every edit is in the log.
+  bool stop() { return process_->stop(); }
+
+ private:
+  TempFolder folder_;
+  std::optional<ServerProcess> process_;
+};
+
+/// A world on a disk whose power fails. The disk is in memory.
+class PowerLossWorld {
+ public:
+  static constexpr bool kHasFiles = false;
+
+  explicit PowerLossWorld(std::uint64_t seed) : chance_(seed) {
+    start_logging(LogLevel::error);
+    // A server without power logs an error for each chunk that it wanted to read.
+    for (const char* module : {"world", "store"}) logger(module).set_level(spdlog::level::off);
+    vfs_.make_default();
+    REQUIRE(open_or_create_world(folder(), flat_creation()).has_value());
+    // The server looks for this file on the real disk, where it is empty.
+    std::ofstream(folder_ / "world.sqlite") << "its content is in memory";
+  }
+
+  const std::string& folder() const { return folder_.path(); }
+  std::uint16_t start() {
+    auto server = Server::start(attacked_config(folder()), {});
+    if (!server) {
+      WARN(server.error());
+      return 0;
+    }
+    server_ = *std::move(server);
+    return server_->port();
+  }
+  /// The power fails during one of the next operations of the disk. The server cannot write any
+  /// more, and its memory is lost.
+  void die() {
+    vfs_.cut_after(1 + chance_.below(kOperationsMax));
+    server_->stop();
+    server_.reset();
+    vfs_.power_loss(chance_);
+  }
+  /// Compacts the world. The power fails at a random operation of the disk if there are so many.
+  CompactionEnd compact(SplitMix64& random) {
+    constexpr std::uint32_t kDoublingsMax = 12;
+    vfs_.cut_after(1 + random.below(1U << random.below(kDoublingsMax)));
+    const bool is_done = compact_all(folder(), false);
+    const bool is_cut = vfs_.is_cut();
+    vfs_.power_loss(chance_);
+    return is_cut ? CompactionEnd::cut : is_done ? CompactionEnd::done : CompactionEnd::failed;
+  }
+  bool stop() {
+    const bool is_durable = server_->stop().state.is_durable();
+    server_.reset();
+    return is_durable;
+  }
+  void ignore_syncs() { vfs_.ignore_syncs(); }
+
+ private:
+  static constexpr std::uint32_t kOperationsMax = 40;  // a few commits
+
+  TempFolder folder_;
+  SplitMix64 chance_;
+  PowerLossVfs vfs_;
+  std::unique_ptr<Server> server_;
+};
+
+}  // namespace runstone::test
