@@ -18,6 +18,35 @@ std::size_t bytes_of(const EditRecord& record) {
   return bytes;
 }
 
+VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
+  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
+}
+
+/// Returns true if one of the chunks, the keys of a map, overlaps a box that is not empty. Cost:
+/// O(log chunks) for each chunk of a box with few of them; of larger boxes O(1), and the answer may
+/// then be true for a box between the chunks.
+template <class Map>
+bool overlaps_one_of(const Map& chunks, const VoxelBox& box, std::int32_t edge) {
+  constexpr std::int64_t kLookedForMax = 64;
+  const ChunkCoord low = chunk_of(box.min, edge),
+                   high = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
+  std::int64_t count = 1;
+  for (const std::int64_t side :
+       {std::int64_t{high.x} - low.x + 1, std::int64_t{high.y} - low.y + 1,
+        std::int64_t{high.z} - low.z + 1}) {
+    count *= side;
+    if (count > kLookedForMax) return true;
+  }
+  for (std::int32_t x = low.x; x <= high.x; ++x) {
+    for (std::int32_t y = low.y; y <= high.y; ++y) {
+      const auto at = chunks.lower_bound({0, {x, y, low.z}});
+      if (at != chunks.end() && at->first <= ChunkKey{0, {x, y, high.z}}) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 StoreResult<void> ChunkLogs::read(const ChunkKey& key, Sequence first, Sequence last,
@@ -67,9 +96,61 @@ StoreResult<void> ChunkLogs::keep(const ChunkKey& key, Kept& kept, Sequence firs
   return {};
 }
 
+StoreResult<bool> ChunkLogs::read_ahead(const std::vector<Need>& needs, Sequence last) {
+  ahead_ = {};
+  if (needs.empty()) return true;
+  const std::int32_t edge = reader_.meta().chunk_edge;
+  LogQuery query;
+  query.first = kSequenceMax;
+  query.last = last;
+  for (const Need& need : needs) {
+    ahead_.chunks[need.key].first = need.first;
+    const VoxelBox box = box_of(need.key.at, edge);
+    query.box = query.box ? join(*query.box, box) : box;
+    query.first = std::min(query.first, need.first);
+  }
+  ahead_.last = last;
+  if (query.first > last) return true;
+  query.wants = [&](const VoxelBox& box) {
+    return box.empty() || overlaps_one_of(ahead_.chunks, box, edge);
+  };
+  bool is_wanted = true;
+  std::size_t bytes = 0;
+  const auto done = reader_.query_log(query, [&](const EditRecord& record) {
+    is_wanted = !should_continue_ || should_continue_();
+    bool is_kept = false;
+    for (const ChunkCoord at : touched_chunks(record.edit, edge)) {
+      const auto chunk = ahead_.chunks.find({0, at});
+      if (chunk == ahead_.chunks.end() || record.version.seq < chunk->second.first) continue;
+      chunk->second.records.push_back(ahead_.records.size());
+      bytes += sizeof(std::size_t);
+      is_kept = true;
+    }
+    if (is_kept) {
+      ahead_.records.push_back(record);
+      bytes += bytes_of(record);
+    }
+    return is_wanted && bytes <= kAheadBytesMax;
+  });
+  const bool is_complete = done && is_wanted && bytes <= kAheadBytesMax;
+  if (!is_complete) ahead_ = {};
+  if (!done) return failure(done.error());
+  if (!is_wanted) return cancelled(reader_);
+  return is_complete;
+}
+
 StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence last,
                                    const Each& each) {
   if (first > last) return {};
+  const auto ahead = ahead_.chunks.find(key);
+  if (ahead != ahead_.chunks.end() && ahead->second.first <= first && last <= ahead_.last) {
+    for (const std::size_t place : ahead->second.records) {
+      const EditRecord& record = ahead_.records[place];
+      if (record.version.seq > last) break;
+      if (record.version.seq >= first) each(record);
+    }
+    return {};
+  }
   if (kept_bytes_max_ == 0) return read(key, first, last, each);
   Kept& kept = kept_[key];
   if (!kept.is_too_large) {

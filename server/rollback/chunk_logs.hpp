@@ -1,5 +1,7 @@
 // ChunkLogs: reads the edits of the log that touch a chunk, one chunk at a time. It can keep the
-// records of a chunk, for a caller that reads the same chunk several times. It blocks on the disk.
+// records of a chunk, for a caller that reads the same chunk several times, and read those of many
+// chunks in one pass: edits that lie scattered share their entries in the index by place, so that
+// each chunk alone would read all of them. It blocks on the disk.
 // Threads: one, which alone uses the reader.
 #pragma once
 #include <cstddef>
@@ -30,7 +32,29 @@ class ChunkLogs {
   /// LogReader::query_log(), and with cancelled.
   StoreResult<void> visit(const ChunkKey& key, Sequence first, Sequence last, const Each& each);
 
+  /// The edits of one chunk that visit() will be asked for: those from `first` on.
+  struct Need {
+    ChunkKey key;
+    Sequence first = 1;
+  };
+  /// Reads the edits up to `last` that touch these chunks, in one pass. Until the next call, visit()
+  /// of these chunks reads no disk. Returns false if the records take more than kAheadBytesMax:
+  /// nothing is kept then, and visit() reads the disk. Fails as visit(). Cost: O(segments of the
+  /// index around all of the chunks + edits of those that may touch one).
+  StoreResult<bool> read_ahead(const std::vector<Need>& needs, Sequence last);
+
  private:
+  static constexpr std::size_t kAheadBytesMax = std::size_t{64} << 20;
+  /// The records of read_ahead(). An edit may touch many chunks, so each has the places of its own.
+  struct Ahead {
+    struct Of {
+      Sequence first = 1;
+      std::vector<std::size_t> records;  // places in `records`, ascending
+    };
+    Sequence last = 0;
+    std::vector<EditRecord> records;
+    std::map<ChunkKey, Of> chunks;
+  };
   /// All edits of a chunk with sequences first..last.
   struct Kept {
     Sequence first = 1, last = 0;
@@ -46,6 +70,7 @@ class ChunkLogs {
   std::size_t kept_bytes_max_;
   std::size_t kept_bytes_ = 0;
   std::map<ChunkKey, Kept> kept_;
+  Ahead ahead_;
 };
 
 }  // namespace runstone

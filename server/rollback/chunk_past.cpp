@@ -7,7 +7,6 @@
 #include "server/history/base_chunk.hpp"
 
 namespace runstone {
-namespace {
 
 StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                                Sequence at) {
@@ -32,26 +31,25 @@ StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, 
   return chunk;
 }
 
-}  // namespace
-
-StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
-                              Sequence at, ReplayScratch& scratch) {
-  ChunkLogs logs(reader);
-  return chunk_past(reader, generator, logs, key, at, scratch);
-}
-
-StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
-                              const ChunkKey& key, Sequence at, ReplayScratch& scratch) {
-  auto start = stored_form(reader, generator, key, at);
-  if (!start || start->version.seq >= at) return start;
-  const Sequence first = start->version.seq + 1;
-  ReplayedChunk replayed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
+StoreResult<Chunk> replayed_to(Chunk stored, const ChunkKey& key, std::int32_t edge,
+                               ChunkLogs& logs, Sequence at, ReplayScratch& scratch) {
+  if (stored.version.seq >= at) return stored;
+  const Sequence first = stored.version.seq + 1;
+  ReplayedChunk replayed(std::move(stored), origin_of(key.at, edge));
   const auto read = logs.visit(key, first, at, [&](const EditRecord& record) {
     replayed.add(record.edit, record.version, scratch);
   });
   if (!read) return failure(read.error());
   replayed.flush(scratch);
   return std::move(replayed.chunk());
+}
+
+StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
+                              Sequence at, ReplayScratch& scratch) {
+  auto stored = stored_form(reader, generator, key, at);
+  if (!stored) return stored;
+  ChunkLogs logs(reader);
+  return replayed_to(*std::move(stored), key, reader.meta().chunk_edge, logs, at, scratch);
 }
 
 }  // namespace runstone

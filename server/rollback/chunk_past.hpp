@@ -17,8 +17,14 @@ namespace runstone {
 /// edits before it.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                               Sequence at, ReplayScratch& scratch);
-/// Returns the chunk of chunk_past(), and reads the log through `logs`, which must use `reader`.
-StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
-                              const ChunkKey& key, Sequence at, ReplayScratch& scratch);
+
+/// The two steps of chunk_past(), for callers that read the log of many chunks at once.
+/// Returns the newest stored form of a chunk that is not younger than `at`.
+StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
+                               Sequence at);
+/// Returns that form with the edits up to `at`, which are read through `logs`. `edge` is that of the
+/// world's chunks.
+StoreResult<Chunk> replayed_to(Chunk stored, const ChunkKey& key, std::int32_t edge,
+                               ChunkLogs& logs, Sequence at, ReplayScratch& scratch);
 
 }  // namespace runstone

@@ -9,28 +9,45 @@
 #include "server/rollback/restore_plan.hpp"
 
 namespace runstone {
+namespace {
+
+RestoredChunk restored_chunk(const ChunkKey& key, const StoreResult<RestorePlan>& plan,
+                             bool is_careful, const Selection& selection) {
+  RestoredChunk chunk;
+  chunk.key = key;
+  if (!plan) {
+    chunk.error = plan.error().message();
+    return chunk;
+  }
+  const VoxelPos origin = origin_of(key.at, selection.chunk_edge);
+  chunk.version = plan->version;
+  chunk.subject = plan->subject;
+  chunk.voxels = plan->voxels;
+  chunk.edits = is_careful ? careful_restore_pastes(plan->now, plan->differences, origin)
+                           : restore_pastes(plan->now, plan->differences, origin);
+  return chunk;
+}
+
+}  // namespace
 
 std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& generator,
                                           const RestoreWork& work,
                                           const ShouldContinue& should_continue) {
   RestorePlanner planner(reader, generator, should_continue);
+  std::vector<RestorePlanner::Item> items;
+  for (const RestoreWork::Item& item : work.items)
+    items.push_back({item.key, work.selection->chunks.at(item.key)});
   std::vector<RestoredChunk> out;
-  for (const RestoreWork::Item& item : work.items) {
-    RestoredChunk chunk;
-    chunk.key = item.key;
-    const auto plan =
-        planner.plan(item.key, work.selection->chunks.at(item.key), work.selection->box, work.end);
-    if (plan) {
-      const VoxelPos origin = origin_of(item.key.at, work.selection->chunk_edge);
-      chunk.version = plan->version;
-      chunk.subject = plan->subject;
-      chunk.voxels = plan->voxels;
-      chunk.edits = item.is_careful ? careful_restore_pastes(plan->now, plan->differences, origin)
-                                    : restore_pastes(plan->now, plan->differences, origin);
-    } else {
-      chunk.error = plan.error().message();
-    }
-    out.push_back(std::move(chunk));
+  planner.plan_all(items, work.selection->box, work.end,
+                   [&](const ChunkKey& key, const StoreResult<RestorePlan>& plan) {
+                     const bool is_careful = work.items[out.size()].is_careful;
+                     out.push_back(restored_chunk(key, plan, is_careful, *work.selection));
+                     return true;
+                   });
+  for (std::size_t i = out.size(); i < items.size(); ++i) {
+    out.push_back({});  // no longer wanted
+    out.back().key = items[i].key;
+    out.back().error = out[i - 1].error;
   }
   return out;
 }

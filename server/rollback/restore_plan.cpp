@@ -64,10 +64,51 @@ class RestorePoints {
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
                                               std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
+  auto stored = stored_form(reader_, generator_, key, selected.front() - 1);
+  if (!stored) return failure(stored.error());
+  return plan_from(*std::move(stored), {key, selected}, box, end);
+}
+
+void RestorePlanner::plan_all(std::span<const Item> items, const std::optional<VoxelBox>& box,
+                              Sequence end, const EachPlan& each) {
+  std::size_t batch_max = kBatchChunks;
+  while (!items.empty()) {
+    const auto batch = items.first(std::min(items.size(), batch_max));
+    std::vector<StoreResult<Chunk>> stored;
+    std::vector<ChunkLogs::Need> needs;
+    for (const Item& item : batch) {
+      if (should_continue_ && !should_continue_()) {
+        each(batch.front().key, cancelled(reader_));
+        return;
+      }
+      stored.push_back(stored_form(reader_, generator_, item.key, item.selected.front() - 1));
+      if (stored.back()) needs.push_back({item.key, stored.back()->version.seq + 1});
+    }
+    const auto read = logs_.read_ahead(needs, end);
+    if (read && !*read && batch.size() > 1) {
+      batch_max = batch.size() / 2;
+      continue;
+    }
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (read && stored[i]) {
+        if (!each(batch[i].key, plan_from(*std::move(stored[i]), batch[i], box, end))) return;
+      } else {
+        const StoreError& why = read ? stored[i].error() : read.error();
+        if (!each(batch[i].key, failure(why))) return;
+      }
+    }
+    items = items.subspan(batch.size());
+  }
+}
+
+StoreResult<RestorePlan> RestorePlanner::plan_from(Chunk stored, const Item& item,
+                                                   const std::optional<VoxelBox>& box,
+                                                   Sequence end) {
   if (should_continue_ && !should_continue_()) return cancelled(reader_);
-  auto before = chunk_past(reader_, generator_, logs_, key, selected.front() - 1, scratch_);
-  if (!before) return failure(before.error());
+  const auto& [key, selected] = item;
   const std::int32_t edge = reader_.meta().chunk_edge;
+  auto before = replayed_to(std::move(stored), key, edge, logs_, selected.front() - 1, scratch_);
+  if (!before) return failure(before.error());
   const VoxelPos origin = origin_of(key.at, edge);
   RestorePlan plan;
   plan.key = key;

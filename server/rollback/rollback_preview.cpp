@@ -24,22 +24,33 @@ void RollbackPreview::compute(WorldReader& reader, const Generator& generator,
     return;
   }
   selection = std::make_shared<const Selection>(*std::move(selected));
-  RestorePlanner planner(reader, generator, should_continue);
-  for (const auto& [key, edits] : selection->chunks) {
-    if (!should_continue()) {
-      error = "cancelled";
-      return;
-    }
-    const auto plan = planner.plan(key, edits, selection->box, end);
-    if (!plan) {
-      error = plan.error().message();
-      return;
-    }
-    voxels += plan->voxels;
-    chunks += plan->voxels > 0 ? 1 : 0;
-    if (view_plan && plan->voxels > 0) view_plan(*plan);
-  }
+  std::vector<RestorePlanner::Item> items;
+  items.reserve(selection->chunks.size());
+  for (const auto& [key, edits] : selection->chunks) items.push_back({key, edits});
+  progress->edits.store(selection->edits);
+  progress->chunks.store(items.size());
+  RestorePlanner(reader, generator, should_continue)
+      .plan_all(items, selection->box, end,
+                [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+                  if (!plan) {
+                    error = should_continue() ? plan.error().message() : "cancelled";
+                    return false;
+                  }
+                  ++progress->chunks_done;
+                  voxels += plan->voxels;
+                  chunks += plan->voxels > 0 ? 1 : 0;
+                  if (view_plan && plan->voxels > 0) view_plan(*plan);
+                  return true;
+                });
+  if (!error.empty()) return;
   if (summarise && voxels > 0) summary = summarise(reader, generator, id(), should_continue);
+}
+
+std::string RollbackPreview::progress_text() const {
+  const std::uint64_t chunks_all = progress->chunks.load();
+  if (chunks_all == 0) return "looking for the edits";
+  return counted(progress->edits.load(), "edit") + ", " +
+         std::to_string(progress->chunks_done.load()) + " of " + counted(chunks_all, "chunk");
 }
 
 std::string RollbackPreview::text_of_nothing() const {

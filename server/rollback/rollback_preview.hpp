@@ -28,6 +28,12 @@ struct RollbackPreview {
   State state = State::computing;
   /// The world strand clears it when nobody wants the preview any more. Threads: any.
   std::shared_ptr<std::atomic<bool>> is_wanted = std::make_shared<std::atomic<bool>>(true);
+  /// How far compute() is. Threads: any.
+  struct Progress {
+    std::atomic<std::uint64_t> edits = 0;  // selected; 0 while they are looked for
+    std::atomic<std::uint64_t> chunks = 0, chunks_done = 0;
+  };
+  std::shared_ptr<Progress> progress = std::make_shared<Progress>();
   Sequence rollback = 0;  // first edit of the rollback; 0 until it has written one
 
   // The worker writes these in compute(). The world strand reads them after the worker has
@@ -42,6 +48,8 @@ struct RollbackPreview {
   /// durable. Blocks on the disk. Both functions may be empty.
   void compute(WorldReader& reader, const Generator& generator, const SelectionFilter& filter,
                Sequence end, const PlanViewer& view_plan, const Summary& summarise);
+  /// Returns how far compute() is, as the end of "p1: ". Thread: the world strand.
+  std::string progress_text() const;
   /// Returns true if the rollback would change nothing. Requires that compute() succeeded, as for
   /// the texts below.
   bool is_empty() const { return selection->edits == 0 || voxels == 0; }

@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kPreviewsMax = 16;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
+// A preview that takes longer than the first time answers with its progress at the second interval.
+constexpr TimeUs kFirstReportUs = 300'000, kReportIntervalUs = 2'000'000;
 
 constexpr const char* kNotNow =
     "not now: the server stops, its log cannot be written, or another server owns the world";
@@ -141,6 +143,7 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
       previews_.begin()->second->is_wanted->store(false);
       previews_.erase(previews_.begin());
     }
+    computing_.push_back({preview, reply});
     SelectionFilter until_now = filter;
     until_now.last = std::min(filter.last, world_.order().durable());
     workers_.run(
@@ -156,6 +159,7 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
 
 void RollbackService::answer_preview(RollbackPreview& preview, const std::string& reader_error,
                                      const CommandReply& reply) {
+  std::erase_if(computing_, [&](const Computing& c) { return c.preview.get() == &preview; });
   const std::string& error = reader_error.empty() ? preview.error : reader_error;
   if (!error.empty()) {
     previews_.erase(preview.number);
@@ -193,7 +197,8 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
                   "rollback apply: there is no preview \"" + id + "\" (rollback list names them)");
   }
   if (preview->state == RollbackPreview::State::computing) {
-    return refuse(reply, "rollback apply: " + id + " is still being computed");
+    return refuse(
+        reply, "rollback apply: " + id + " is still being computed: " + preview->progress_text());
   }
   if (preview->state == RollbackPreview::State::applied) {
     return refuse(reply, "rollback apply: " + id + " was applied before");
@@ -287,7 +292,7 @@ void RollbackService::list(CommandReply reply) {
   std::string text;
   for (const auto& [number, preview] : previews_) {
     if (preview->state == RollbackPreview::State::computing)
-      text += preview->id() + " is being computed\n";
+      text += preview->id() + " is being computed: " + preview->progress_text() + "\n";
     if (preview->state == RollbackPreview::State::ready) {
       text += preview->id() + " preview: " + counted(preview->selection->edits, "edit") + ", " +
               counted(preview->voxels, "voxel") + "\n";
@@ -355,6 +360,17 @@ void RollbackService::step(Job& job, const Clocks& now) {
       });
 }
 
+void RollbackService::report_previews(const Clocks& now) {
+  for (Computing& c : computing_) {
+    if (c.report_us == 0) c.report_us = now.steady_us + kFirstReportUs;
+    if (now.steady_us < c.report_us) continue;
+    c.report_us = now.steady_us + kReportIntervalUs;
+    c.reply(CommandAnswer::progress("preview " + c.preview->id() +
+                                    " is being computed: " + c.preview->progress_text() +
+                                    "; `rollback cancel " + c.preview->id() + "` ends it"));
+  }
+}
+
 void RollbackService::report_wait(Job& job) const {
   if (!job.player_change_of || job.has_reported_wait || job.wait_text().empty()) return;
   job.has_reported_wait = true;
@@ -413,6 +429,7 @@ void RollbackService::tick(const Clocks& now) {
       refuse(w.reply, kNotNow);
     }
   }
+  report_previews(now);
   const std::vector<std::shared_ptr<Job>> jobs(jobs_.begin(), jobs_.end());
   for (const auto& job : jobs) {
     step(*job, now);

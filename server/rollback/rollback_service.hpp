@@ -51,8 +51,9 @@ class RollbackService {
     change_player_actions(author, Cause::redo, now, std::move(reply));
   }
 
-  /// Answers what a rollback of these edits would do, and keeps the preview under an id ("p1").
-  /// Changes nothing. The functions are those of RollbackPreview::compute().
+  /// Answers what a rollback of these edits would do, and keeps the preview under an id ("p1"). If
+  /// that takes longer than a moment, answers with the id and the progress come before. Changes
+  /// nothing. The functions are those of RollbackPreview::compute().
   void preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
                RollbackPreview::PlanViewer view_plan = {}, RollbackPreview::Summary summarise = {});
   /// Begins to carry out a preview. `author` gives the command; 0 is the server.
@@ -81,6 +82,13 @@ class RollbackService {
     std::function<void()> begin;
     CommandReply reply;
   };
+  /// A preview that a worker computes, and who waits for it.
+  struct Computing {
+    std::shared_ptr<RollbackPreview> preview;
+    CommandReply reply;
+    TimeUs report_us =
+        0;  // when the next answer about its progress is due, steady clock; 0: none yet
+  };
   using SearchResult = StoreResult<PlayerActionSearch>;
 
   void change_player_actions(AuthorId author, Cause cause, const Clocks& now, CommandReply reply);
@@ -95,6 +103,8 @@ class RollbackService {
   void when_durable(const Clocks& now, const CommandReply& reply, std::function<void()> begin);
   Job& start_job(RestoreOrder order, std::string name, CommandReply reply);
   void step(Job& job, const Clocks& now);
+  /// Answers how far the previews are that take long.
+  void report_previews(const Clocks& now);
   /// Answers once that an undo or redo waits.
   void report_wait(Job& job) const;
   bool answer_if_ended(Job& job);
@@ -111,6 +121,7 @@ class RollbackService {
   Workers& workers_;
   RandomBytes random_;
   std::map<std::uint64_t, std::shared_ptr<RollbackPreview>> previews_;  // by number
+  std::vector<Computing> computing_;
   std::list<std::shared_ptr<Job>> jobs_;
   std::vector<Waiting> waiting_;
   std::set<AuthorId> player_changes_;  // authors with an undo or redo under way

@@ -34,6 +34,9 @@ struct LogQuery {
   TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
   TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
   std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
+  /// Of a query with a box: is asked with the bounding box of an edit, or with a box around those of
+  /// many edits. What it refuses is left out unread. Empty: refuses nothing.
+  std::function<bool(const VoxelBox&)> wants;
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };

@@ -10,6 +10,15 @@ namespace {
 // The edits that a statement finds at most. PostgreSQL returns all of them at once.
 constexpr std::size_t kPortion = 65'536;
 
+/// Returns the bounding box of a row of matching(), which follows its sequence.
+VoxelBox box_in(sql::Statement& row) {
+  const auto coordinate = [&](int column) {
+    return static_cast<std::int32_t>(row.integer(column));
+  };
+  return {{coordinate(1), coordinate(2), coordinate(3)},
+          {coordinate(4), coordinate(5), coordinate(6)}};
+}
+
 }  // namespace
 
 StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
@@ -47,7 +56,9 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
                                                 std::optional<AuthorId> author) const {
   // The index is named, because the planner has no statistics, and a wrong index would read the
   // whole log.
-  std::string text = "SELECT seq FROM edit_log";
+  std::string text = query.wants
+                         ? "SELECT seq, min_x, min_y, min_z, max_x, max_y, max_z FROM edit_log"
+                         : "SELECT seq FROM edit_log";
   const bool by_cause = !author && query.cause && *query.cause != Cause::player;
   text += indexed_by(database_, author ? "edit_log_author" : by_cause ? "edit_log_cause" : nullptr);
   text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
@@ -75,7 +86,7 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
 StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query, Sequence first,
                                                           Sequence last) {
   std::vector<Sequence> found;
-  const auto segments = segments_.find(query.box, query.author, first, last);
+  const auto segments = segments_.find(query, first, last);
   if (!segments) return failed(segments.error());
   // The author of each segment is bound below, so the statement needs a condition on the author.
   auto rows = matching(query, query.author.value_or(0));
@@ -89,6 +100,7 @@ StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query,
       const auto more = rows->step();
       if (!more) return failed(more.error());
       if (!*more) break;
+      if (query.wants && !query.wants(box_in(*rows))) continue;
       found.push_back(static_cast<Sequence>(rows->integer(0)));
     }
   }

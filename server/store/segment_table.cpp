@@ -95,9 +95,10 @@ StoreResult<void> SegmentTable::write(Open& open) {
                           .run());
 }
 
-StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<VoxelBox>& box,
-                                                        std::optional<AuthorId> author,
-                                                        Sequence first, Sequence last) {
+StoreResult<std::vector<LogSegment>> SegmentTable::find(const LogQuery& query, Sequence first,
+                                                        Sequence last) {
+  const std::optional<VoxelBox>& box = query.box;
+  const std::optional<AuthorId> author = query.author;
   std::string text =
       "SELECT first_seq, last_seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM log_box "
       "WHERE first_seq <= ?1 AND last_seq >= ?2";
@@ -124,11 +125,12 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
     const auto more = rows->step();
     if (!more) return failed(more.error());
     if (!*more) break;
+    const VoxelBox around{{coordinate(3), coordinate(4), coordinate(5)},
+                          {coordinate(6), coordinate(7), coordinate(8)}};
+    if (query.wants && !query.wants(around)) continue;
     segments.push_back({static_cast<Sequence>(rows->integer(0)),
                         static_cast<Sequence>(rows->integer(1)),
-                        static_cast<AuthorId>(rows->integer(2)),
-                        {{coordinate(3), coordinate(4), coordinate(5)},
-                         {coordinate(6), coordinate(7), coordinate(8)}}});
+                        static_cast<AuthorId>(rows->integer(2)), around});
   }
   std::sort(segments.begin(), segments.end(),
             [](const LogSegment& a, const LogSegment& b) { return a.first < b.first; });

@@ -14,6 +14,7 @@
 
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/sql/database.hpp"
+#include "server/store/log_reader.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {
@@ -41,11 +42,9 @@ class SegmentTable {
   /// each author begins a new segment, as after a start.
   void forget() { open_.clear(); }
 
-  /// Returns the segments that may hold edits in the box, of the author, and of first..last, by
-  /// their first sequence.
-  StoreResult<std::vector<LogSegment>> find(const std::optional<VoxelBox>& box,
-                                            std::optional<AuthorId> author, Sequence first,
-                                            Sequence last);
+  /// Returns the segments that may hold edits of first..last that answer the query, by their first
+  /// sequence. Only author, box and `wants` of the query count.
+  StoreResult<std::vector<LogSegment>> find(const LogQuery& query, Sequence first, Sequence last);
 
  private:
   SegmentTable(sql::Database& database, sql::Statement put)

@@ -62,7 +62,7 @@ StoreResult<void> SqlStore::check_segments_cover_log() {
   // The range is read before the segments, because a running server adds to both.
   const auto range = log_range();
   if (!range) return failed(range.error());
-  const auto segments = segments_.find(std::nullopt, std::nullopt, 1, kSequenceMax);
+  const auto segments = segments_.find({}, 1, kSequenceMax);
   if (!segments) return failed(segments.error());
   std::map<AuthorId, const LogSegment*> open;
   auto next = segments->begin();

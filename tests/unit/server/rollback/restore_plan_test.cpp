@@ -157,6 +157,32 @@ DenseChunk pasted(const RunChunk& onto, VoxelPos origin,
 
 }  // namespace
 
+/// Requires that the plans of all chunks at once are those of each alone.
+void check_plan_all(RestorePlanner& planner, const Selection& selection, Sequence end) {
+  std::vector<RestorePlanner::Item> items;
+  for (const auto& [key, edits] : selection.chunks) items.push_back({key, edits});
+  std::vector<RestorePlan> all;
+  planner.plan_all(items, selection.box, end,
+                   [&](const ChunkKey& key, StoreResult<RestorePlan> plan) {
+                     REQUIRE(plan.has_value());
+                     REQUIRE(plan->key == key);
+                     all.push_back(*std::move(plan));
+                     return true;
+                   });
+  REQUIRE(all.size() == items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto alone = planner.plan(items[i].key, items[i].selected, selection.box, end);
+    REQUIRE(alone.has_value());
+    REQUIRE(all[i].key == items[i].key);
+    REQUIRE(all[i].version == alone->version);
+    REQUIRE(all[i].edits == alone->edits);
+    REQUIRE(all[i].subject == alone->subject);
+    REQUIRE(all[i].voxels == alone->voxels);
+    REQUIRE(DenseChunk::of(all[i].now) == DenseChunk::of(alone->now));
+    REQUIRE(DenseChunk::of(all[i].restored) == DenseChunk::of(alone->restored));
+  }
+}
+
 TEST_CASE("plans from the log equal the history of each voxel", "[rollback]") {
   std::size_t with_box = 0, changed = 0, empty = 0;
   for (std::uint64_t seed = 1; seed <= 14; ++seed) {
@@ -187,6 +213,7 @@ TEST_CASE("plans from the log equal the history of each voxel", "[rollback]") {
         REQUIRE(selection->last == *selected.rbegin());
       }
       empty += selected.empty() ? 1 : 0;
+      check_plan_all(planner, *selection, end);
       int looked = 0;
       for (const auto& [key, edits] : selection->chunks) {
         if (++looked > 4) break;
@@ -215,6 +242,67 @@ TEST_CASE("plans from the log equal the history of each voxel", "[rollback]") {
   CHECK(with_box > 20);
   CHECK(changed > 60);
   CHECK(empty < 30);
+}
+
+TEST_CASE("plans of many chunks read scattered edits once", "[rollback]") {
+  constexpr int kSide = 24;  // chunks
+  TempFolder folder;
+  WorldMeta meta = sample_meta();
+  REQUIRE(create_world(folder.path(), meta).has_value());
+  const auto store = *open_world(folder.path(), StoreAccess::read_write);
+  REQUIRE(store->raise_epoch().has_value());
+  SplitMix64 rng(9);
+  std::vector<EditRecord> records;
+  for (Sequence seq = 1; seq <= kSide * kSide; ++seq) {
+    EditRecord record = sample_record(rng, 1, seq);
+    record.op.author = 1;
+    record.cause = Cause::player;
+    record.subject = 0;
+    const std::int32_t x = rng.between(0, kSide * kSampleEdge - 1);
+    const std::int32_t z = rng.between(0, kSide * kSampleEdge - 1);
+    record.edit = {SetVoxel{{x, 0, z}}, {}, 1};
+    records.push_back(record);
+  }
+  const std::vector<PlayerRow> players = {sample_player(1)};
+  REQUIRE(store->append(players, records).has_value());
+  GeneratorPin pin;
+  pin.name = "empty";
+  const auto generator = *make_generator(pin, meta.materials);
+  const auto selection = select_edits(*store, SelectionFilter{});
+  REQUIRE(selection.has_value());
+  REQUIRE(selection->chunks.size() > 300);
+
+  std::uint64_t read = 0;
+  RestorePlanner planner(*store, *generator, [&] { return ++read > 0; });
+  std::vector<RestorePlanner::Item> items;
+  for (const auto& [key, edits] : selection->chunks) items.push_back({key, edits});
+  std::uint64_t voxels = 0;
+  const auto count = [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+    REQUIRE(plan.has_value());
+    voxels += plan->voxels;
+    return true;
+  };
+  planner.plan_all(items, std::nullopt, records.size(), count);
+  // Once for each record, and for each chunk when its form is read and when it is planned.
+  CHECK(read <= records.size() + 2 * items.size());
+  CHECK(voxels > 500);
+  check_plan_all(planner, *selection, records.size());
+  planner.plan_all({}, std::nullopt, records.size(), count);
+
+  SECTION("until the result is no longer wanted") {
+    int left = 40;
+    RestorePlanner cancelled(*store, *generator, [&] { return left-- > 0; });
+    std::size_t plans = 0;
+    std::string why;
+    cancelled.plan_all(items, std::nullopt, records.size(),
+                       [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+                         plans += plan ? 1 : 0;
+                         if (!plan) why = plan.error().what;
+                         return plan.has_value();
+                       });
+    CHECK(plans == 0);
+    CHECK(why == "cancelled");
+  }
 }
 
 TEST_CASE("careful pastes leave alone what was changed since the plan", "[rollback]") {

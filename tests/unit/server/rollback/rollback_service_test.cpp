@@ -165,6 +165,32 @@ TEST_CASE("a rollback that matches no edit answers so", "[rollback]") {
   CHECK(night.answer().text.find("there is no preview \"p1\"") != std::string::npos);
 }
 
+TEST_CASE("a preview that takes long says how far it is, and can be cancelled", "[rollback]") {
+  Night night;
+  night.service.preview(of_author(night.griefer), night.bench.now(), night.reply());
+  night.tick();
+  CHECK(night.answers.empty());  // most previews are there at once
+  for (int i = 0; i < 40; ++i) night.tick();
+  REQUIRE_FALSE(night.answers.empty());
+  CHECK_FALSE(night.answers.front().is_done);
+  CHECK(night.answers.front().text ==
+        "preview p1 is being computed: looking for the edits; `rollback cancel p1` ends it");
+  SECTION("cancelled") {
+    night.service.cancel("p1", night.reply());
+    CHECK(night.answers.back().text == "preview p1 is forgotten");
+    night.run_all();
+    CHECK_FALSE(night.answer().is_ok);
+    CHECK(night.answer().text.find("rollback preview: cancelled") == 0);
+  }
+  SECTION("done") {
+    night.run_all();
+    CHECK(night.answer().text.find("would take back 1 edit ") != std::string::npos);
+    const std::size_t answers = night.answers.size();
+    for (int i = 0; i < 100; ++i) night.tick();
+    CHECK(night.answers.size() == answers);
+  }
+}
+
 TEST_CASE("edits of other players during a rollback stay", "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
