@@ -22,7 +22,8 @@ namespace runstone::bench {
 namespace {
 
 constexpr TimeUs kMinute = 60'000'000;
-constexpr std::int32_t kViewRadius = 8;  // chunks
+constexpr std::int32_t kViewRadius = 8;    // chunks
+constexpr AuthorId kFirstGriefer = 1'000;  // the builders have smaller numbers
 
 using Clock = std::chrono::steady_clock;
 
@@ -197,7 +198,35 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
   return result;
 }
 
-Result<LogPreview, std::string> preview(Store& store, const Generator& generator, AuthorId author,
+/// Appends single voxels of one author, one each 10 ms, scattered over a square.
+Result<void, std::string> scatter(Store& store, AuthorId author, std::uint64_t count) {
+  constexpr std::int32_t kSide = 1'600, kHeight = 32;
+  const auto range = store.log_range();
+  if (!range) return failure(range.error().message());
+  SplitMix64 rng(author);
+  EditRecord record;
+  record.version = range->last.version;
+  record.time_us = range->last.time_us;
+  record.op = {author, 1, 0};
+  std::vector<EditRecord> batch;
+  for (std::uint64_t i = 1; i <= count; ++i) {
+    ++record.version.seq;
+    ++record.op.seq;
+    record.time_us += 10'000;
+    const VoxelPos at{rng.between(0, kSide - 1), rng.between(0, kHeight - 1),
+                      rng.between(0, kSide - 1)};
+    record.edit = {SetVoxel{at}, {}, Material{1}};
+    batch.push_back(record);
+    if (batch.size() < 64 && i < count) continue;
+    if (auto appended = store.append({}, batch); !appended)
+      return failure(appended.error().message());
+    batch.clear();
+  }
+  return {};
+}
+
+Result<LogPreview, std::string> preview(const std::string& name, Store& store,
+                                        const Generator& generator, AuthorId author,
                                         unsigned repetitions) {
   const auto range = store.log_range();
   if (!range) return failure(range.error().message());
@@ -205,6 +234,7 @@ Result<LogPreview, std::string> preview(Store& store, const Generator& generator
   filter.authors = {author};
   filter.from_us = range->last.time_us - 60 * kMinute;
   LogPreview result;
+  result.name = name;
   std::vector<double> select_ms, plan_ms;
   for (unsigned i = 0; i < repetitions; ++i) {
     const auto selecting = Clock::now();
@@ -215,12 +245,17 @@ Result<LogPreview, std::string> preview(Store& store, const Generator& generator
     result.chunks = selection->chunks.size();
     result.voxels = 0;
     const auto planning = Clock::now();
-    RestorePlanner planner(store, generator);
-    for (const auto& [key, edits] : selection->chunks) {
-      const auto plan = planner.plan(key, edits, std::nullopt, range->last.version.seq);
-      if (!plan) return failure(plan.error().message());
-      result.voxels += plan->voxels;
-    }
+    std::vector<RestorePlanner::Item> items;
+    for (const auto& [key, edits] : selection->chunks) items.push_back({key, edits});
+    std::string error;
+    RestorePlanner(store, generator)
+        .plan_all(items, std::nullopt, range->last.version.seq,
+                  [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+                    if (!plan) error = plan.error().message();
+                    if (plan) result.voxels += plan->voxels;
+                    return plan.has_value();
+                  });
+    if (!error.empty()) return failure(error);
     plan_ms.push_back(ms_since(planning));
   }
   result.select_ms = median(select_ms);
@@ -276,10 +311,24 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
   bench.keyframe_bytes = (bytes_of(folder.path()) - plain) / static_cast<double>(options.edits);
   if (auto visited = visit_moments(); !visited) return failure(visited.error());
   fmt::print(progress, "moments with keyframes are done\n");
-  const auto previewed =
-      preview(*store, **generator, sampled->records.back().op.author, options.repetitions);
-  if (!previewed) return failure(previewed.error());
-  bench.preview = *previewed;
+  const auto add_preview = [&](const std::string& name,
+                               AuthorId author) -> Result<void, std::string> {
+    auto previewed = preview(name, *store, **generator, author, options.repetitions);
+    if (!previewed) return failure(previewed.error());
+    bench.previews.push_back(*std::move(previewed));
+    return {};
+  };
+  if (auto done = add_preview("a builder", sampled->records.back().op.author); !done)
+    return failure(done.error());
+  AuthorId griefer = kFirstGriefer;
+  for (const std::uint64_t most : {12'000u, 60'000u}) {
+    const std::uint64_t voxels = std::min(most, options.edits);
+    if (auto scattered = scatter(*store, ++griefer, voxels); !scattered)
+      return failure(scattered.error());
+    const std::string name = std::to_string(voxels) + " scattered voxels";
+    if (auto done = add_preview(name, griefer); !done) return failure(done.error());
+    fmt::print(progress, "the preview of {} is done\n", name);
+  }
   return bench;
 }
 
@@ -305,12 +354,14 @@ void write_table(const LogBench& bench, std::ostream& out) {
         m.keyframes, m.moments, m.edits_read, m.chunks, m.open_ms, m.open_slowest_ms, m.view_ms,
         m.view_slowest_ms, m.all_ms, m.all_slowest_ms);
   }
-  const LogPreview& p = bench.preview;
-  fmt::print(out,
-             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; "
-             "selected in {:.1f} ms (slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
-             p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms,
-             p.plan_slowest_ms);
+  fmt::print(
+      out,
+      "\n| preview of one author's last hour | edits | chunks | voxels | selected, median ms | "
+      "slowest | planned | slowest |\n|---|---|---|---|---|---|---|---|\n");
+  for (const LogPreview& p : bench.previews) {
+    fmt::print(out, "| {} | {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", p.name, p.edits,
+               p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms, p.plan_slowest_ms);
+  }
 }
 
 void write_json(const LogBench& bench, std::ostream& out) {
@@ -338,14 +389,16 @@ void write_json(const LogBench& bench, std::ostream& out) {
                                {"all_ms", m.all_ms},
                                {"all_slowest_ms", m.all_slowest_ms}});
   }
-  const LogPreview& p = bench.preview;
-  json["preview"] = {{"edits", p.edits},
-                     {"chunks", p.chunks},
-                     {"voxels", p.voxels},
-                     {"select_ms", p.select_ms},
-                     {"select_slowest_ms", p.select_slowest_ms},
-                     {"plan_ms", p.plan_ms},
-                     {"plan_slowest_ms", p.plan_slowest_ms}};
+  for (const LogPreview& p : bench.previews) {
+    json["previews"].push_back({{"name", p.name},
+                                {"edits", p.edits},
+                                {"chunks", p.chunks},
+                                {"voxels", p.voxels},
+                                {"select_ms", p.select_ms},
+                                {"select_slowest_ms", p.select_slowest_ms},
+                                {"plan_ms", p.plan_ms},
+                                {"plan_slowest_ms", p.plan_slowest_ms}});
+  }
   out << json.dump(1) << '\n';
 }
 

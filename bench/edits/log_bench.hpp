@@ -30,9 +30,10 @@ struct LogMoments {
   double all_ms = 0, all_slowest_ms = 0;
 };
 
-/// The times of the preview of a rollback: one author's last hour, planned with the present
-/// keyframes, without a picture.
+/// The times of the preview of a rollback: all edits of one author in the last hour, planned with the
+/// present keyframes, without a picture.
 struct LogPreview {
+  std::string name;
   // Selected edits, touched chunks, voxels that would change.
   std::uint64_t edits = 0, chunks = 0, voxels = 0;
   double select_ms = 0, select_slowest_ms = 0;
@@ -48,7 +49,8 @@ struct LogBench {
   std::uint64_t keyframe_chunks = 0;
   std::vector<LogQuestion> questions;
   std::vector<LogMoments> moments;
-  LogPreview preview;
+  // Of a builder, and of griefers who set single voxels all over a square of 1,600 voxels a side.
+  std::vector<LogPreview> previews;
 };
 
 /// Makes a world of options.edits synthetic edits of eight builders over terrain
