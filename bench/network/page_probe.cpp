@@ -10,7 +10,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint32_t kAddress = 0x7F040402;  // 127.4.4.2, which nobody else uses
+constexpr std::uint32_t kReaderAddress = 0x7F040402;  // 127.4.4.2, which nobody else uses
 constexpr TimeUs kRequestEveryUs = 50'000;
 
 }  // namespace
@@ -35,7 +35,7 @@ void PageProbe::run(std::uint16_t port, const std::string& page, bool is_encrypt
     const TimeUs left_us = std::max<TimeUs>(due_us - steady_now_us(), 0);
     if (!pause_for(static_cast<double>(left_us) / 1e6)) return;
     if (peer == nullptr || !peer->is_open())
-      peer = std::make_unique<test::WebPeer>(port, kAddress, is_encrypted);
+      peer = std::make_unique<test::WebPeer>(port, kReaderAddress, is_encrypted);
     if (peer->get(page).status == 200) {
       answers_.ms.push_back(static_cast<double>(steady_now_us() - due_us) / 1e3);
     } else {

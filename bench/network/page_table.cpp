@@ -9,7 +9,7 @@ namespace {
 
 // The target. The state of the map waits for one short turn of drawing, and a thread that draws has a
 // low priority.
-constexpr double kAddedMsMax = 100;
+constexpr double kAddedPageMsMax = 100;
 
 std::string figure_of(const char* page) {
   return std::string(page) == kProbedPages[0] ? "status" : "map_state";
@@ -41,9 +41,9 @@ void add_page_targets(std::span<const AttackResult> results, std::vector<Target>
     if (!result.has_gateway) continue;
     const double added_ms = result.pages[during].p99_ms() - result.pages[before].p99_ms();
     targets.push_back({fmt::format("{}: added to the p99 of an honest reader's pages", result.name),
-                       fmt::format("at most {} ms", number_text(kAddedMsMax)),
+                       fmt::format("at most {} ms", number_text(kAddedPageMsMax)),
                        number_text(added_ms) + " ms",
-                       added_ms <= kAddedMsMax ? Verdict::met : Verdict::missed});
+                       added_ms <= kAddedPageMsMax ? Verdict::met : Verdict::missed});
   }
 }
 
