@@ -15,7 +15,7 @@ namespace runstone::bench {
 /// The phases in which honest builders edit.
 enum AttackPhase : std::uint8_t { before, during, after };
 inline constexpr std::array<AttackPhase, 3> kAttackPhases = {before, during, after};
-inline constexpr std::array<const char*, 3> kPhaseNames = {"before", "during", "after"};
+inline constexpr std::array<const char*, 3> kAttackPhaseNames = {"before", "during", "after"};
 
 struct AttackResult {
   std::string name;

@@ -40,7 +40,7 @@ void add_figures_of(const AttackResult& result, const AttackResult& quiet,
   };
   for (const AttackPhase phase : kAttackPhases) {
     const FleetReport& seen = result.seen[phase];
-    const std::string when = kPhaseNames[phase];
+    const std::string when = kAttackPhaseNames[phase];
     add(when + "_p50_ms", seen.p50_ms);
     add(when + "_p99_ms", seen.p99_ms);
     add(when + "_max_ms", seen.max_ms);

@@ -25,7 +25,8 @@ void add_page_figures(const AttackResult& result, std::vector<Figure>& figures) 
       const auto add = [&](const char* name, double value) {
         figures.push_back(
             {"attack", "loopback", "loopback", result.name,
-             fmt::format("{}_{}_{}", kPhaseNames[phase], figure_of(kProbedPages[i]), name), value});
+             fmt::format("{}_{}_{}", kAttackPhaseNames[phase], figure_of(kProbedPages[i]), name),
+             value});
       };
       add("answers", static_cast<double>(page.answers));
       add("failed", static_cast<double>(page.failed));

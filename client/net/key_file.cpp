@@ -55,7 +55,7 @@ void save_new_key(const std::string& file, const KeySeed& seed) {
 }
 
 KeySeed load_key_seed(const std::string& file) {
-  struct stat info {};
+  struct stat info{};
   if (::stat(file.c_str(), &info) != 0) throw_error(file, std::strerror(errno));
   if ((info.st_mode & 077) != 0)
     throw_error(file, "other users may read this key: run chmod 600 on it");
@@ -69,7 +69,7 @@ KeySeed load_key_seed(const std::string& file) {
 
 KeyPair load_or_create_key(const std::string& file) {
   need_sodium();
-  struct stat info {};
+  struct stat info{};
   if (::stat(file.c_str(), &info) != 0 && errno == ENOENT) {
     KeySeed seed;
     randombytes_buf(seed.data(), seed.size());

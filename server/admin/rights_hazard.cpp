@@ -10,12 +10,12 @@
 namespace runstone {
 namespace {
 
-constexpr unsigned kIpv4Bits = 32;  // of a block that holds an IPv4 address, before the address
+constexpr unsigned kBitsBeforeIpv4 = 32;  // of an AddressBlock
 constexpr unsigned kIpv4PrefixMin = 16, kIpv6PrefixMin = 32;
 
 bool is_v4(const AddressRange& range) {
-  return range.bits >= kIpv4Bits && static_cast<std::uint64_t>(range.first) >> 32 ==
-                                        static_cast<std::uint64_t>(address_block_v4(0)) >> 32;
+  return range.bits >= kBitsBeforeIpv4 && static_cast<std::uint64_t>(range.first) >> 32 ==
+                                              static_cast<std::uint64_t>(address_block_v4(0)) >> 32;
 }
 
 RightSet built_in_rights(const std::string& name) {
@@ -68,7 +68,7 @@ std::optional<std::string> hazard_of_role(const RightsState& state, const Rights
 
 std::optional<std::string> hazard_of_ban(const RightsState& state, const AddressRange& range) {
   const bool is_v4_range = is_v4(range);
-  if (range.bits >= (is_v4_range ? kIpv4Bits + kIpv4PrefixMin : kIpv6PrefixMin))
+  if (range.bits >= (is_v4_range ? kBitsBeforeIpv4 + kIpv4PrefixMin : kIpv6PrefixMin))
     return std::nullopt;
   std::string text = "nobody but administrators could join from " + text_of(range);
   if (is_v4_range) {

@@ -20,7 +20,7 @@ void RollbackPreview::compute(WorldReader& reader, const Generator& generator,
   const auto should_continue = [this] { return is_wanted->load(); };
   auto selected = select_edits(reader, filter, should_continue);
   if (!selected) {
-    error = selected.error().message();
+    error = should_continue() ? selected.error().message() : "cancelled";
     return;
   }
   selection = std::make_shared<const Selection>(*std::move(selected));

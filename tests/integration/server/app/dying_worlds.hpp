@@ -37,14 +37,19 @@ inline ServerConfig attacked_config(const std::string& world) {
 /// How a compaction ended.
 enum class CompactionEnd { done, cut, failed };
 
-/// Compacts a world that no server runs. Returns true if it succeeded.
-inline bool compact_all(const std::string& folder, bool shrinks) {
+/// Compacts a world that no server runs. The error is one line.
+inline Result<void, std::string> compact_all(const std::string& folder, bool shrinks) {
   constexpr TimeUs kLaterUs = 2'000'000'000'000'000;  // than any edit
   std::ostringstream out;
-  const auto done = compact_world({folder, 0, shrinks}, kLaterUs, out);
-  if (!done) std::fprintf(stderr, "%s\n", done.error().c_str());
-  return done.has_value();
+  return compact_world({folder, 0, shrinks}, kLaterUs, out);
 }
+/// Prints why a compaction failed that nothing cut.
+inline CompactionEnd failed_compaction(const std::string& why) {
+  std::fprintf(stderr, "%s\n", why.c_str());
+  return CompactionEnd::failed;
+}
+/// One compaction of so many is not cut.
+inline constexpr std::uint32_t kCompactionsPerWhole = 3;
 
 /// A world whose servers are killed.
 class KilledWorld {
@@ -61,24 +66,37 @@ class KilledWorld {
     return process_->port();
   }
   void die() { process_->kill(); }
-  /// Compacts the world in another process, which is killed at a random moment if it is not faster.
+  /// Compacts the world in another process, which is killed at a random moment unless it ends before.
   /// Requires that this process has no second thread.
   CompactionEnd compact(SplitMix64& random) const {
-    constexpr std::uint32_t kMsMax = 300;
+    constexpr int kWholeMs = 120'000, kDoublingsMax = 12;
+    const bool is_whole = random.below(kCompactionsPerWhole) == 0;
+    const int ms_max = is_whole ? kWholeMs : 1 << random.below(kDoublingsMax);
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
-    if (child == 0) ::_exit(compact_all(folder(), true) ? 0 : 1);
-    std::this_thread::sleep_for(std::chrono::milliseconds(random.below(kMsMax)));
-    ::kill(child, SIGKILL);
+    if (child == 0) {
+      const auto done = compact_all(folder(), true);
+      if (!done) failed_compaction(done.error());
+      ::_exit(done ? 0 : 1);
+    }
     int status = 0;
+    for (int ms = 0; ms < ms_max; ++ms) {
+      if (::waitpid(child, &status, WNOHANG) == child) return end_of(status);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ::kill(child, SIGKILL);
     ::waitpid(child, &status, 0);
-    if (WIFSIGNALED(status)) return CompactionEnd::cut;
-    return WEXITSTATUS(status) == 0 ? CompactionEnd::done : CompactionEnd::failed;
+    return end_of(status);
   }
   /// Stops the server in order. Returns true if every edit is in the log.
   bool stop() { return process_->stop(); }
 
  private:
+  static CompactionEnd end_of(int status) {
+    if (WIFSIGNALED(status)) return CompactionEnd::cut;
+    return WEXITSTATUS(status) == 0 ? CompactionEnd::done : CompactionEnd::failed;
+  }
+
   TempFolder folder_;
   std::optional<ServerProcess> process_;
 };
@@ -116,14 +134,16 @@ class PowerLossWorld {
     server_.reset();
     vfs_.power_loss(chance_);
   }
-  /// Compacts the world. The power fails at a random operation of the disk if there are so many.
+  /// Compacts the world. The power fails during an operation of the disk, or when it is done.
   CompactionEnd compact(SplitMix64& random) {
-    constexpr std::uint32_t kDoublingsMax = 12;
-    vfs_.cut_after(1 + random.below(1U << random.below(kDoublingsMax)));
-    const bool is_done = compact_all(folder(), false);
+    constexpr std::uint32_t kDoublingsMax = 14;
+    const bool is_whole = random.below(kCompactionsPerWhole) == 0;
+    if (!is_whole) vfs_.cut_after(1 + random.below(1U << random.below(kDoublingsMax)));
+    const auto done = compact_all(folder(), false);
     const bool is_cut = vfs_.is_cut();
     vfs_.power_loss(chance_);
-    return is_cut ? CompactionEnd::cut : is_done ? CompactionEnd::done : CompactionEnd::failed;
+    if (is_cut) return CompactionEnd::cut;
+    return done ? CompactionEnd::done : failed_compaction(done.error());
   }
   bool stop() {
     const bool is_durable = server_->stop().state.is_durable();

@@ -44,7 +44,7 @@ TEST_CASE("a key is shown, exported and imported", "[client][key]") {
   CHECK(shown.find("\nfingerprint ") != std::string::npos);
   SECTION("through a file") {
     CHECK(run({Verb::export_key, key, file, words}) == shown);
-    struct stat info {};
+    struct stat info{};
     REQUIRE(::stat(file.c_str(), &info) == 0);
     CHECK((info.st_mode & 0777) == 0600);
     CHECK(run({Verb::export_key, key, file, words}).starts_with("ERROR: " + file));

@@ -25,7 +25,7 @@ struct Folder : test::TempFolder {
 TEST_CASE_METHOD(Folder, "a missing key is created with mode 0600, and read again it is the same",
                  "[client_net]") {
   const KeyPair made = load_or_create_key(file("k"));
-  struct stat info {};
+  struct stat info{};
   REQUIRE(::stat(file("k").c_str(), &info) == 0);
   CHECK((info.st_mode & 0777) == 0600);
   CHECK(load_or_create_key(file("k")).public_key == made.public_key);
