@@ -55,7 +55,7 @@ void write_ahead(const std::string& world) {
   REQUIRE((*store)->append({}, records).has_value());
 }
 
-Answer must(const std::string& world, const std::vector<std::string>& words) {
+Answer succeeds(const std::string& world, const std::vector<std::string>& words) {
   const Answer answer = control(world, words);
   INFO(words.front() << ": " << answer.text);
   CHECK(answer.is_ok);
@@ -76,12 +76,12 @@ TEST_CASE("a clock that was ahead at one start is corrected by a command", "[int
   write_ahead(world);
   {
     auto server = start_server(config, flat_creation());
-    CHECK(must(world, {"clock"}).text.find("the log is 7") != std::string::npos);
-    const std::string text = must(world, {"clock", "correct"}).text;
+    CHECK(succeeds(world, {"clock"}).text.find("the log is 7") != std::string::npos);
+    const std::string text = succeeds(world, {"clock", "correct"}).text;
     CHECK(text.find("(record 5)") != std::string::npos);
     CHECK_FALSE(control(world, {"clock", "correct"}).is_ok);
     // The ban has nearly an hour left, not two years.
-    const std::string bans = must(world, {"bans"}).text;
+    const std::string bans = succeeds(world, {"bans"}).text;
     const auto end_in = bans.find(" until ");
     REQUIRE(end_in != std::string::npos);
     const auto end = parse_utc(bans.substr(end_in + 7, 20));
@@ -96,13 +96,13 @@ TEST_CASE("a clock that was ahead at one start is corrected by a command", "[int
     REQUIRE(ana.join(1).has_value());
     ana.send(EditRequest{1, 0, {SetVoxel{{3, 70, 1}}, {}, 1}});
     REQUIRE(ana.sees_durable(6));
-    CHECK(lines_of(must(world, {"log", "since", "1h"}).text) == 5);
+    CHECK(lines_of(succeeds(world, {"log", "since", "1h"}).text) == 5);
     CHECK(server->stop().is_clean);
   }
   // The next start goes on from the newest record.
   auto server = start_server(config, flat_creation());
-  CHECK(must(world, {"clock"}).text.find(": they agree") != std::string::npos);
-  CHECK(lines_of(must(world, {"log", "since", "1h"}).text) == 5);
+  CHECK(succeeds(world, {"clock"}).text.find(": they agree") != std::string::npos);
+  CHECK(lines_of(succeeds(world, {"log", "since", "1h"}).text) == 5);
   CHECK(server->stop().is_clean);
 }
 
