@@ -97,8 +97,8 @@ TEST_CASE("a moment is the newest edit that is not later, also where times fall"
           sequences(before + 1, 40));
     CHECK(found_between(*store, std::numeric_limits<TimeUs>::min(), from_us) == sequences(1, at));
   }
-  // `since` ten minutes before the first correction: all that was made since, and by the wrong clock.
-  CHECK(found_between(*store, minute(11), minute(30)).back() == 40);
+  // Five minutes after the second correction the clock is right: `since` is exact.
+  CHECK(found_between(*store, minute(5), std::numeric_limits<TimeUs>::max()) == sequences(35, 40));
   CHECK(store->check().has_value());
 }
 
