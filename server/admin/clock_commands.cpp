@@ -68,6 +68,7 @@ void correct_clock(const CommandCall& call, const bool& is_confirmed) {
   const std::string before = utc_text(clock.time());
   const std::string now = utc_text(clock.wall_us());
   if (apart_us > 0) {
+    if (const auto why = call.world().cluster().correction_refusal()) return call.refuse(*why);
     return call.change_rights(CorrectTime{apart_us},
                               "the time of the log goes back from " + before + " to " + now +
                                   ". Bans, mutes, freezes and invites of the wrong clock keep the "

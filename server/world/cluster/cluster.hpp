@@ -43,6 +43,7 @@ class Cluster {
   std::optional<TimeUs> owner_heard_us() const { return link_.heard_us(); }
   /// Returns the number of servers that follow this one.
   std::size_t follower_count() const { return followers_.count(); }
+  std::optional<std::string> correction_refusal() const { return followers_.correction_refusal(); }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const {

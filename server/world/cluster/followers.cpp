@@ -102,6 +102,15 @@ void Followers::on_follow_request(SessionId link, const FollowRequest& request) 
   feed.send(link, encode_message(receipts_.durable()));
 }
 
+std::optional<std::string> Followers::correction_refusal() const {
+  for (const auto& [link, follower] : all_) {
+    if (!follower.takes_corrections)
+      return "A server that follows is of an older version, which cannot read a correction of the "
+             "time: stop it, or start it with this version (servers lists them).";
+  }
+  return std::nullopt;
+}
+
 void Followers::admit(Session& session, const Clocks& now) {
   const SessionId link = session.id;
   environment_.report(OperatorLogLevel::info,
@@ -116,6 +125,7 @@ void Followers::admit(Session& session, const Clocks& now) {
   follower.last_message_us = now.steady_us;
   follower.instance = session.instance;
   follower.takes_servers = session.has(kFeatureServerList);
+  follower.takes_corrections = session.has(kFeatureTimeCorrections);
   order_.feed().add(link);
   environment_.trust(link);
   environment_.opened(link);

@@ -26,6 +26,7 @@ struct Follower {
   // The list of servers (server_list.hpp).
   std::string player_address, page_address;  // as in FollowRequest
   bool takes_servers = false;                // it knows the message
+  bool takes_corrections = false;            // it knows a CorrectTime
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -58,6 +59,8 @@ class Followers {
   const std::map<SessionId, Follower>& all() const { return all_; }
   std::map<SessionId, Follower>& all() { return all_; }
   std::size_t count() const { return all_.size(); }
+  /// Returns why no CorrectTime may be ordered, as a sentence, or nullopt.
+  std::optional<std::string> correction_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;

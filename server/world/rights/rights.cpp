@@ -4,7 +4,6 @@
 
 #include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "protocol/limits.hpp"
 #include "protocol/rules/refusal_text.hpp"
 
 namespace runstone {
@@ -85,7 +84,6 @@ std::optional<std::string> Rights::change_refusal(const RightsChange& change,
   if (target != nullptr && actor.key && is_operator(*target))
     return "the player is an operator by the server's settings";
   if (auto why = why_refused(state_, actor, change, time())) return why;
-  if (std::holds_alternative<CorrectTime>(change)) return correction_refusal();
   const auto* restricted = std::get_if<Restrict>(&change);
   const auto* range =
       restricted == nullptr ? nullptr : std::get_if<AddressRange>(&restricted->subject);
@@ -97,16 +95,6 @@ std::optional<std::string> Rights::change_refusal(const RightsChange& change,
     const Restrict alone{RestrictionKind::ban, session->key, restricted->until_us, ""};
     if (change_refusal(alone, actor))
       return "A player is here from there to whom you cannot do this: " + session->name + ".";
-  }
-  return std::nullopt;
-}
-
-/// Returns that a server which follows cannot read a correction of the time, or nullopt.
-std::optional<std::string> Rights::correction_refusal() const {
-  for (const Session* session : std::as_const(sessions_).open()) {
-    if (session->has(kFeatureServers) && !session->has(kFeatureTimeCorrections))
-      return "A server that follows is of an older version, which cannot read a correction of the "
-             "time: stop it, or start it with this version (servers lists them).";
   }
   return std::nullopt;
 }

@@ -80,7 +80,6 @@ class Rights {
   std::vector<RefusalRow> refusals() const { return refusals_.rows(); }
 
  private:
-  std::optional<std::string> correction_refusal() const;
   std::string refusal_text(const PublicKey& key, const RightsDecision& no) const;
 
   const WorldConfig& config_;

@@ -11,10 +11,10 @@
 namespace runstone::test {
 namespace {
 
-constexpr TimeUs kSecondUs = 1'000'000;
-constexpr TimeUs kHourUs = 3'600 * kSecondUs;
-constexpr TimeUs kYear = 365 * 24 * kHourUs;
-constexpr SessionId kMole = 1, kAna = 2;
+constexpr TimeUs kOneSecond = 1'000'000;
+constexpr TimeUs kHour = 3'600 * kOneSecond;
+constexpr TimeUs kYear = 365 * 24 * kHour;
+constexpr SessionId kMoleSession = 1, kAnaSession = 2;
 
 /// Returns a start whose log ends so far ahead of the bench's wall clock.
 WorldStart start_ahead(TimeUs ahead_us) {
@@ -29,8 +29,8 @@ struct ClockBench : RollbackBench {
         services{bench.server,  service, *this,
                  folder.path(), {},      [](const PublicKey&) {
                    return false; }} {
-    join(kMole);
-    join(kAna);
+    join(kMoleSession);
+    join(kAnaSession);
     tick();
   }
   CommandAnswer give(const std::string& line) {
@@ -49,7 +49,7 @@ struct ClockBench : RollbackBench {
     return given.text;
   }
   void wait(TimeUs us) {
-    for (const TimeUs end_us = bench.time_us + us; bench.time_us < end_us;) bench.tick(kSecondUs);
+    for (const TimeUs end_us = bench.time_us + us; bench.time_us < end_us;) bench.tick(kOneSecond);
   }
   bool holds(RestrictionKind kind, std::uint8_t who) {
     const Rights& rights = bench.server.rights();
@@ -64,49 +64,49 @@ struct ClockBench : RollbackBench {
   CommandServices services;
 };
 
-bool mentions(const std::string& text, const std::string& part) {
+bool tells(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 }  // namespace
 
 TEST_CASE("a clock that was ahead once does no more harm after `clock correct`", "[admin][clock]") {
-  ClockBench bench(2 * kYear + kHourUs / 2);
-  bench.set(kAna, {1, 1, 1}, 1);
+  ClockBench bench(2 * kYear + kHour / 2);
+  bench.set(kAnaSession, {1, 1, 1}, 1);
   bench.done("mute player2 for 5s");
   bench.done("freeze player2 for 1h");
-  bench.wait(10 * kSecondUs);
+  bench.wait(10 * kOneSecond);
   CHECK_FALSE(bench.holds(RestrictionKind::mute, 2));
   CHECK(bench.holds(RestrictionKind::freeze, 2));
-  CHECK(mentions(bench.done("clock"),
-                 "the log is 730d ahead. If the wall clock is right, `clock correct`"));
+  CHECK(tells(bench.done("clock"),
+              "the log is 730d ahead. If the wall clock is right, `clock correct`"));
   const TimeUs before_us = bench.bench.server.rights().time();
   const std::string text = bench.done("clock correct");
-  CHECK(mentions(text, "the time of the log goes back from "));
-  CHECK(mentions(text, "(record 4)"));
+  CHECK(tells(text, "the time of the log goes back from "));
+  CHECK(tells(text, "(record 4)"));
   CHECK(bench.bench.environment.records.back().time_us < before_us - kYear);
-  CHECK(mentions(bench.done("clock"), ": they agree"));
+  CHECK(tells(bench.done("clock"), ": they agree"));
   CHECK_FALSE(bench.holds(RestrictionKind::mute, 2));
   CHECK(bench.holds(RestrictionKind::freeze, 2));
-  bench.wait(kHourUs - 60 * kSecondUs);
+  bench.wait(kHour - 60 * kOneSecond);
   CHECK(bench.holds(RestrictionKind::freeze, 2));
   // The correction is older than 30 minutes, so `since` means what it says.
   bench.done("mute player1 for 1m");
   CHECK(bench.lines(bench.done("log since 30m")) == 1);
   CHECK(bench.lines(bench.done("log since 2h")) == 5);  // and all that the wrong clock stamped
-  bench.wait(2 * 60 * kSecondUs);
+  bench.wait(2 * 60 * kOneSecond);
   CHECK_FALSE(bench.holds(RestrictionKind::freeze, 2));
   CHECK(bench.store->check().has_value());
 }
 
 TEST_CASE("there is nothing to correct while both clocks agree", "[admin][clock]") {
   ClockBench bench(0);
-  CHECK(mentions(bench.done("clock"), ": they agree"));
+  CHECK(tells(bench.done("clock"), ": they agree"));
   const CommandAnswer refused = bench.give("clock correct");
   CHECK_FALSE(refused.is_ok);
-  CHECK(mentions(refused.text, "clock correct: there is nothing to correct"));
+  CHECK(tells(refused.text, "clock correct: there is nothing to correct"));
   CHECK_FALSE(bench.give("clock correct anyway").is_ok);
-  CHECK(mentions(bench.give("clock correct now").text, "clock correct"));
+  CHECK(tells(bench.give("clock correct now").text, "clock correct"));
   CHECK(bench.bench.server.order().head() == 0);
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("a wall clock that has jumped just now is taken only on confirmation",
     const Clocks right = bench.bench.now();
     return Clocks{right.steady_us, right.utc_us + jump_us};
   };
-  bench.bench.time_us += kSecondUs;
+  bench.bench.time_us += kOneSecond;
   bench.bench.server.tick(wrong());
   const auto give = [&](const std::string& line) {
     bench.answers.clear();
@@ -128,14 +128,14 @@ TEST_CASE("a wall clock that has jumped just now is taken only on confirmation",
     bench.services.tick(wrong());
     return bench.answer();
   };
-  CHECK(mentions(give("clock").text, "The wall clock has jumped"));
+  CHECK(tells(give("clock").text, "The wall clock has jumped"));
   const CommandAnswer refused = give("clock correct");
   CHECK_FALSE(refused.is_ok);
-  CHECK(mentions(refused.text, "give the command as: clock correct anyway"));
+  CHECK(tells(refused.text, "give the command as: clock correct anyway"));
   CHECK(bench.bench.server.order().head() == 0);
   CHECK(give("clock correct anyway").is_ok);
   CHECK(bench.bench.server.order().head() == (is_back ? 1 : 0));
-  CHECK(std::abs(bench.bench.server.rights().time() - wrong().utc_us) <= kSecondUs);
+  CHECK(std::abs(bench.bench.server.rights().time() - wrong().utc_us) <= kOneSecond);
 }
 
 TEST_CASE("a correction cannot be taken back", "[admin][clock]") {
@@ -143,7 +143,7 @@ TEST_CASE("a correction cannot be taken back", "[admin][clock]") {
   bench.done("clock correct");
   const CommandAnswer refused = bench.give("rights undo 1");
   CHECK_FALSE(refused.is_ok);
-  CHECK(mentions(refused.text, "cannot be taken back"));
+  CHECK(tells(refused.text, "cannot be taken back"));
 }
 
 }  // namespace runstone::test

@@ -38,7 +38,7 @@ std::vector<EditRecord> corrected_records() {
 
 TimeUs minute(TimeUs count) { return kStart + count * kMinute; }
 
-void make_world(const std::string& place, const std::vector<EditRecord>& records) {
+void make_corrected_world(const std::string& place, const std::vector<EditRecord>& records) {
   auto store = create_world(place, sample_meta());
   REQUIRE(store.has_value());
   REQUIRE((*store)->raise_epoch().has_value());
@@ -57,7 +57,7 @@ Sequence newest_at(std::span<const EditRecord> records, TimeUs time_us) {
   return 0;
 }
 
-std::vector<Sequence> found(Store& store, TimeUs from_us, TimeUs until_us) {
+std::vector<Sequence> found_between(Store& store, TimeUs from_us, TimeUs until_us) {
   LogQuery query;
   query.from_us = from_us;
   query.until_us = until_us;
@@ -70,7 +70,7 @@ std::vector<Sequence> found(Store& store, TimeUs from_us, TimeUs until_us) {
   return all;
 }
 
-std::vector<Sequence> range(Sequence first, Sequence last) {
+std::vector<Sequence> sequences(Sequence first, Sequence last) {
   std::vector<Sequence> all;
   for (Sequence seq = first; seq <= last; ++seq) all.push_back(seq);
   return all;
@@ -82,7 +82,7 @@ TEST_CASE("a moment is the newest edit that is not later, also where times fall"
           "[store][clock]") {
   TempPlace place;
   const auto records = corrected_records();
-  make_world(place / "w", records);
+  make_corrected_world(place / "w", records);
   auto store = *open_world(place / "w", StoreAccess::read_only);
   std::vector<TimeUs> times{kStart, kStart + kAhead, 0, minute(100)};
   for (const EditRecord& record : records)
@@ -93,18 +93,19 @@ TEST_CASE("a moment is the newest edit that is not later, also where times fall"
     const Sequence at = newest_at(records, from_us);
     CHECK(*store->sequence_at(from_us) == at);
     const Sequence before = newest_at(records, from_us - 1);
-    CHECK(found(*store, from_us, std::numeric_limits<TimeUs>::max()) == range(before + 1, 40));
-    CHECK(found(*store, std::numeric_limits<TimeUs>::min(), from_us) == range(1, at));
+    CHECK(found_between(*store, from_us, std::numeric_limits<TimeUs>::max()) ==
+          sequences(before + 1, 40));
+    CHECK(found_between(*store, std::numeric_limits<TimeUs>::min(), from_us) == sequences(1, at));
   }
-  // `since` ten minutes before the first correction: all that was made since, and by the wrong clock.
-  CHECK(found(*store, minute(11), minute(30)).back() == 40);
+  // Five minutes after the second correction the clock is right: `since` is exact.
+  CHECK(found_between(*store, minute(5), std::numeric_limits<TimeUs>::max()) == sequences(35, 40));
   CHECK(store->check().has_value());
 }
 
 TEST_CASE("a compaction keeps the meaning of times", "[store][clock]") {
   TempPlace place;
   const auto records = corrected_records();
-  make_world(place / "w", records);
+  make_corrected_world(place / "w", records);
   auto store = *open_world(place / "w", StoreAccess::read_write);
   REQUIRE(store->compact(25).has_value());
   CHECK(store->log_range()->first == 26);
@@ -125,7 +126,7 @@ TEST_CASE("a compaction keeps the meaning of times", "[store][clock]") {
 TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]") {
   TempPlace place;
   auto records = corrected_records();
-  make_world(place / "w", records);
+  make_corrected_world(place / "w", records);
   const auto format = [&](const std::string& file) {
     return raw_sql(
         file, place.is_postgres() ? "SELECT format FROM runstone_world" : "PRAGMA user_version");
@@ -161,7 +162,7 @@ TEST_CASE("the check names a fallen time without a correction, and a list of era
     CHECK(check.error().where == "edit_log seq=3");
   }
   SECTION("a lost list") {
-    make_world(place / "w", corrected_records());
+    make_corrected_world(place / "w", corrected_records());
     raw_sql(place / "w/world.sqlite", "DELETE FROM meta WHERE key = 'log_eras'");
     const auto check = (*open_world(place / "w", StoreAccess::read_only))->check();
     REQUIRE_FALSE(check.has_value());

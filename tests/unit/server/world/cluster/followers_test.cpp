@@ -169,9 +169,7 @@ TEST_CASE("a follower gets every record with the rows of players, and the durabl
 TEST_CASE("no correction of the time goes to a follower that cannot read it",
           "[world][servers][clock]") {
   WorldBench bench;
-  const auto refused = [&] {
-    return bench.server.rights().change_refusal(CorrectTime{1}, {}).has_value();
-  };
+  const auto refused = [&] { return bench.server.cluster().correction_refusal().has_value(); };
   CHECK_FALSE(refused());
   handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
   CHECK_FALSE(refused());

@@ -270,10 +270,10 @@ TEST_CASE("times fall at a record that corrects the time, and never elsewhere", 
   constexpr TimeUs kAhead = 1'000'000'000'000;
   Authority authority(limits(), {1, 7, 1, kNow.utc_us + kAhead});
   (void)authority.enqueue(offer(1, box(0, 4), 1));
+  std::vector<EditRecord> records = authority.commit(kNow)->records;
   const EditOffer correction{{0, 9, 1}, Cause::rights, 0, rights_edit(CorrectTime{kAhead}), 0};
   REQUIRE(authority.enqueue(correction).has_value());
   (void)authority.enqueue(offer(2, box(0, 4), 1));
-  std::vector<EditRecord> records;
   while (const auto batch = authority.commit(kNow))
     records.insert(records.end(), batch->records.begin(), batch->records.end());
   REQUIRE(records.size() == 3);
