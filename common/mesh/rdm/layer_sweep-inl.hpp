@@ -19,6 +19,7 @@
 #include "common/mesh/rdm/layer_builder-inl.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/strip_tracer-inl.hpp"
+#include "common/mesh/rdm/sweep_part.hpp"
 #include "common/mesh/rdm/sweep_traits.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,9 +38,11 @@ class Sweep {
   static constexpr bool kManyMaterials = Traits::kManyMaterials;
 
  public:
-  Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
+  Sweep(const SweepInput& input, const Borders<Row>& borders, const SweepPart<Row>& part,
+        SweepState<Row>& state)
       : st_(state),
         e_(input.extent),
+        part_(part),
         wants_chunk_sides_(input.chunk_sides),
         builder_(input, borders, state),
         chunk_sides_(input, state),
@@ -47,7 +50,13 @@ class Sweep {
 
   void run() {
     start();
-    for (std::uint32_t s = 0; s < e_.s; ++s) {
+    if (part_.begin != 0) {
+      builder_.build(part_.begin - 1, layers_);
+      find_faces(part_.begin - 1);
+      std::swap(layers_.current, layers_.previous);
+    }
+    const std::uint32_t read_end = part_.read_end(e_);
+    for (std::uint32_t s = part_.begin; s < read_end; ++s) {
       builder_.advance_to(s);
       if (s != 0 && builder_.repeats(s)) {
         if (wants_chunk_sides_) chunk_sides_.find(s, layers_.previous);
@@ -59,7 +68,7 @@ class Sweep {
       trace(find_faces(s), s);
       std::swap(layers_.current, layers_.previous);
     }
-    trace(end_faces(), e_.s);
+    if (part_.end == e_.s) trace(end_faces(), e_.s);
   }
 
  private:
@@ -108,16 +117,20 @@ class Sweep {
     const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, layers_.current);
     const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, layers_.current);
     const Row last = Row{1} << (e_.f - 1);
+    const V without_neg = Lanes::all(~part_.traced[at(Side::fast_neg)]);
+    const V without_pos = Lanes::all(~part_.traced[at(Side::fast_pos)]);
     SideRows rows{};
     for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) {
       const V voxels = Lanes::load(solid + m);
       const V hide = Lanes::load(hiding + m);
       V f_mid_neg = Lanes::without(voxels, Lanes::load(hiding + m - 1));
       V f_mid_pos = Lanes::without(voxels, Lanes::load(hiding + m + 1));
+      const V hide_first = Lanes::where(low_lanes(hide_neg, m), Row{1});
+      const V hide_last = Lanes::where(low_lanes(hide_pos, m), last);
       V f_fast_neg = Lanes::without(
-          voxels, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
+          voxels, Lanes::either(Lanes::up(hide), Lanes::either(hide_first, without_neg)));
       V f_fast_pos = Lanes::without(
-          voxels, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
+          voxels, Lanes::either(Lanes::down(hide), Lanes::either(hide_last, without_pos)));
       V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_then + m));
       V f_slow_pos = Lanes::without(Lanes::load(solid_then + m), hide);
       // The same faces of the previous row, for the slow sides.
@@ -162,7 +175,11 @@ class Sweep {
     // Rows behind the last row of the layer have no faces. The first of them would close open
     // strips.
     for (RowSet& set : rows) set &= bits_below<Row>(count);
+    keep_traced(rows);
     return rows;
+  }
+  void keep_traced(SideRows& rows) const {
+    for (const Side side : {Side::mid_neg, Side::mid_pos}) rows[at(side)] &= part_.traced[at(side)];
   }
 
   static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
@@ -198,6 +215,7 @@ class Sweep {
         none[m] = 0;
       }
     }
+    keep_traced(rows);
     return rows;
   }
 
@@ -216,6 +234,7 @@ class Sweep {
 
   SweepState<Row>& st_;
   const OrderedExtent e_;
+  const SweepPart<Row> part_;
   const bool wants_chunk_sides_;
   LayerPair layers_;
   LayerBuilder<Traits> builder_;
@@ -226,18 +245,21 @@ class Sweep {
 /// Sweeps the input with these lanes. Its chunk decides the rest of the SweepTraits.
 template <class Lanes, class IndexLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
-           SweepState<typename Lanes::Row>& state) {
+           const SweepPart<typename Lanes::Row>& part, SweepState<typename Lanes::Row>& state) {
   const OrderedExtent& e = input.extent;
   RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<typename Lanes::Row>);
+  RUNSTONE_ASSERT(part.begin < part.end && part.end <= e.s);
   RUNSTONE_ASSERT(input.runs.size() != 0 &&
-                  input.runs.end(input.runs.size() - 1) == e.layer() * e.s);
+                  input.runs.end(input.runs.size() - 1) >= e.layer() * part.read_end(e));
   RUNSTONE_ASSERT(input.palette->solid_count() != 0);
   if (input.palette->solid_count() == 1) {
-    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, part, state)
+        .run();
   } else if (input.palette->fit_bytes()) {
-    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, true>>(input, borders, part, state)
+        .run();
   } else {
-    Sweep<SweepTraits<Lanes, IndexLanes, PaletteIndex, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, PaletteIndex, true>>(input, borders, part, state).run();
   }
 }
 
