@@ -218,7 +218,9 @@ template <std::size_t kPlanes, class Row, std::size_t kRows, class ToIndex>
 void read_layer_rows(const RunChunk& chunk, LayerPlace place, RowRange wanted,
                      std::array<std::array<Row, kRows>, kPlanes>& planes, ToIndex to_index) {
   if (!chunk.is_uniform()) {
-    if (wanted.count() * 2 > side_of(chunk, place.row_axis())) {
+    // A voxel of a row that is looked up costs several times as much as a run that is read.
+    constexpr std::size_t kRunsPerVoxel = 8;
+    if (kRunsPerVoxel * wanted.count() * side_of(chunk, place.bit_axis) > chunk.runs.size()) {
       LayerReader<kPlanes, Row, ToIndex>(chunk, place, planes, to_index);
     } else {
       chunk.runs.visit(

@@ -43,6 +43,7 @@ class Sweep {
       : st_(state),
         e_(input.extent),
         part_(part),
+        is_whole_(part == SweepPart<Row>::whole(input.extent)),
         wants_chunk_sides_(input.chunk_sides),
         builder_(input, borders, state),
         chunk_sides_(input, state),
@@ -117,20 +118,16 @@ class Sweep {
     const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, layers_.current);
     const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, layers_.current);
     const Row last = Row{1} << (e_.f - 1);
-    const V without_neg = Lanes::all(~part_.traced[at(Side::fast_neg)]);
-    const V without_pos = Lanes::all(~part_.traced[at(Side::fast_pos)]);
     SideRows rows{};
     for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) {
       const V voxels = Lanes::load(solid + m);
       const V hide = Lanes::load(hiding + m);
       V f_mid_neg = Lanes::without(voxels, Lanes::load(hiding + m - 1));
       V f_mid_pos = Lanes::without(voxels, Lanes::load(hiding + m + 1));
-      const V hide_first = Lanes::where(low_lanes(hide_neg, m), Row{1});
-      const V hide_last = Lanes::where(low_lanes(hide_pos, m), last);
       V f_fast_neg = Lanes::without(
-          voxels, Lanes::either(Lanes::up(hide), Lanes::either(hide_first, without_neg)));
+          voxels, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
       V f_fast_pos = Lanes::without(
-          voxels, Lanes::either(Lanes::down(hide), Lanes::either(hide_last, without_pos)));
+          voxels, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
       V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_then + m));
       V f_slow_pos = Lanes::without(Lanes::load(solid_then + m), hide);
       // The same faces of the previous row, for the slow sides.
@@ -175,11 +172,25 @@ class Sweep {
     // Rows behind the last row of the layer have no faces. The first of them would close open
     // strips.
     for (RowSet& set : rows) set &= bits_below<Row>(count);
-    keep_traced(rows);
+    if (!is_whole_) keep_traced(rows);
     return rows;
   }
-  void keep_traced(SideRows& rows) const {
+
+  /// Removes the rows and the faces that the part does not trace.
+  void keep_traced(SideRows& rows) {
     for (const Side side : {Side::mid_neg, Side::mid_pos}) rows[at(side)] &= part_.traced[at(side)];
+    for (const Side side : {Side::fast_neg, Side::fast_pos}) {
+      Row* const face = st_.face[at(side)][layers_.current].data();
+      const Row* const face_then = st_.face[at(side)][layers_.previous].data();
+      const V traced = Lanes::all(part_.traced[at(side)]);
+      RowSet with_faces = 0;
+      for_rows<Lanes>(e_.m, [&](std::uint32_t m) {
+        const V kept = Lanes::both(Lanes::load(face + m), traced);
+        Lanes::store(kept, face + m);
+        add(with_faces, Lanes::any(Lanes::either(kept, Lanes::load(face_then + m))), m);
+      });
+      rows[at(side)] &= with_faces;
+    }
   }
 
   static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
@@ -215,7 +226,7 @@ class Sweep {
         none[m] = 0;
       }
     }
-    keep_traced(rows);
+    if (!is_whole_) keep_traced(rows);
     return rows;
   }
 
@@ -235,6 +246,7 @@ class Sweep {
   SweepState<Row>& st_;
   const OrderedExtent e_;
   const SweepPart<Row> part_;
+  const bool is_whole_;
   const bool wants_chunk_sides_;
   LayerPair layers_;
   LayerBuilder<Traits> builder_;

@@ -24,6 +24,7 @@ struct SweepPart {
     const Row middle = bits_below<Row>(e.m), fast = bits_below<Row>(e.f);
     return {0, e.s, {middle, middle, middle, middle, fast, fast}};
   }
+  friend bool operator==(const SweepPart&, const SweepPart&) = default;
   /// Returns the first layer that the sweep reads: the one before `begin`, if there is one.
   std::uint32_t first_read() const { return begin == 0 ? 0 : begin - 1; }
   /// Returns the end of the layers that the sweep reads.
