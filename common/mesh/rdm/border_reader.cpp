@@ -148,11 +148,9 @@ void use_kept_border(const ChunkBorders& kept, Direction touching, const LayerPl
   }
 }
 
-}  // namespace
-
 template <class Row>
-void read_border(const BorderPlace& at_side, RowRange wanted, const VisibilityTable& visibility,
-                 Scratch& scratch, Borders<Row>& borders) {
+void read_side(const BorderPlace& at_side, RowRange wanted, const VisibilityTable& visibility,
+               Scratch& scratch, Borders<Row>& borders) {
   const auto& [chunk, direction, neighbour, kept, axes, side] = at_side;
   const std::size_t at = rdm::at(side);
   const ChunkPalette& palette = scratch.palette;
@@ -193,6 +191,14 @@ void read_border(const BorderPlace& at_side, RowRange wanted, const VisibilityTa
   read_mixed_border(*neighbour, place, wanted, visibility, scratch, at, borders);
 }
 
+}  // namespace
+
+// The code is in a function of this file alone, so that the compiler inlines the readers into it.
+template <class Row>
+void read_border(const BorderPlace& at_side, RowRange wanted, const VisibilityTable& visibility,
+                 Scratch& scratch, Borders<Row>& borders) {
+  read_side(at_side, wanted, visibility, scratch, borders);
+}
 template void read_border(const BorderPlace&, RowRange, const VisibilityTable&, Scratch&,
                           Borders<Row32>&);
 template void read_border(const BorderPlace&, RowRange, const VisibilityTable&, Scratch&,

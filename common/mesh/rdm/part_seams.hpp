@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/rdm/part_seam.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/mesh/rdm/quad_splice.hpp"
@@ -30,15 +31,17 @@ class PartSeams {
   static constexpr std::size_t kBits = kRowBits<Row>;
 
  public:
-  /// `mark` is set in the open quads of this pass: kTransparentQuad or 0.
+  /// `mark` is set in the open quads of this pass: kTransparentQuad or 0. `seams` is scratch.
   PartSeams(const RunChunk& chunk, const SweepPart<Row>& part, const QuadLayers& layers,
-            QuadBuckets& buckets, std::uint64_t mark, SweepState<Row>& state)
+            QuadBuckets& buckets, std::uint64_t mark, SweepState<Row>& state,
+            std::vector<PartSeam>& seams)
       : e_(ordered(chunk.extent, chunk.order)),
         part_(part),
         layers_(layers),
         buckets_(buckets),
         mark_(mark),
-        st_(state) {
+        st_(state),
+        seams_(seams) {
     const auto axes = strip_axes(chunk.order);
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
       const Direction d = direction_of(axes[side / 2].layer, side % 2 != 0);
@@ -47,132 +50,140 @@ class PartSeams {
     }
   }
 
-  /// Opens the strips that reach the part.
+  /// Finds the quads to replace, and opens the strips that reach the part.
   void open() {
-    if (part_.begin == 0) return;
-    for_each_layer([this](Direction d, Side side, std::uint32_t layer) {
-      const QuadShape& shape = shape_[at(side)];
-      for (const Quad quad : replaced(d, side, layer)) {
-        if (is_fast(side)) {
-          open_fast(shape, quad, layer, st_.start_layer[at(side) - at(Side::fast_neg)]);
-        } else if (is_middle(side) && shape.row(quad) < part_.begin) {
-          Quad opened = shape.reopen(quad);
-          opened.bits ^= mark_;
-          st_.open[at(side)][layer * kBits + shape.last(quad)] = opened;
-        }
+    seams_.clear();
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      const Side side = side_[d];
+      const auto direction = static_cast<Direction>(d);
+      if (side == Side::slow_neg) {
+        add_slow(direction, part_.begin, part_.read_end(e_));
+      } else if (side == Side::slow_pos) {
+        add_slow(direction, part_.first_read(), part_.end);
+      } else {
+        for (Row left = part_.traced[at(side)]; left != 0; left &= left - 1)
+          add_crossed(direction, side, lowest_bit(left));
       }
-    });
+    }
   }
 
   /// Closes the strips that reach beyond the part, and lists the quads to replace. The quads of the
   /// sweep, and those behind it, are in the buckets then.
   void close(QuadSplice& splice) {
-    for_each_layer([&](Direction d, Side side, std::uint32_t layer) {
-      const QuadShape& shape = shape_[at(side)];
-      QuadBuckets::Bucket& bucket = buckets_.of(d)[layer];
-      const std::span<const Quad> old = replaced(d, side, layer);
-      const std::span<const Quad> behind = behind_part(shape, side, old);
-      if (is_middle(side)) {
-        const Quad* const open = st_.open[at(side)].data() + layer * kBits;
-        for (const Quad quad : behind) close_middle(shape, quad, open, bucket);
-      } else if (!behind.empty()) {
-        close_fast(shape, behind, layer, st_.start_layer[at(side) - at(Side::fast_neg)], bucket);
+    for (const PartSeam& seam : seams_) {
+      QuadBuckets::Bucket& bucket = buckets_.of(seam.direction)[seam.layer];
+      const std::size_t index = static_cast<std::size_t>(seam.direction) * kSideMax + seam.layer;
+      const std::uint32_t end = layers_.first[index + 1];
+      if (bucket.count == 0 && seam.begin == end) continue;
+      if (seam.behind != end) {
+        const QuadShape& shape = shape_[at(seam.side)];
+        const auto behind = std::span(layers_.quads).subspan(seam.behind, end - seam.behind);
+        if (is_fast(seam.side)) {
+          const auto& start = st_.start_layer[at(seam.side) - at(Side::fast_neg)];
+          close_fast(shape, behind, start.data() + seam.layer, bucket);
+        } else {
+          close_middle(shape, behind, st_.open[at(seam.side)].data() + seam.layer * kBits, bucket);
+        }
       }
-      const std::size_t index = static_cast<std::size_t>(d) * kSideMax + layer;
-      const auto begin = static_cast<std::uint32_t>(old.data() - layers_.quads.data());
-      splice.add({index, begin, layers_.first[index + 1], bucket.quads.get(), bucket.count});
+      splice.add({index, seam.begin, end, bucket.quads.get(), bucket.count});
       bucket.count = 0;
-    });
+    }
   }
 
  private:
-  static bool is_middle(Side side) { return side == Side::mid_neg || side == Side::mid_pos; }
   static bool is_fast(Side side) { return side == Side::fast_neg || side == Side::fast_pos; }
 
-  /// Calls f(direction, side, layer) for all layers with quads to replace, in the order of
-  /// QuadLayers.
-  template <class F>
-  void for_each_layer(F&& f) const {
-    for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      const Side side = side_[d];
-      const auto direction = static_cast<Direction>(d);
-      if (side == Side::slow_neg) {
-        for (std::uint32_t s = part_.begin; s < part_.read_end(e_); ++s) f(direction, side, s);
-      } else if (side == Side::slow_pos) {
-        for (std::uint32_t s = part_.first_read(); s < part_.end; ++s) f(direction, side, s);
-      } else {
-        for (Row left = part_.traced[at(side)]; left != 0; left &= left - 1)
-          f(direction, side, lowest_bit(left));
+  /// Adds layers of a slow side: the sweep makes all of their quads.
+  void add_slow(Direction d, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t layer = first; layer < end; ++layer) {
+      const std::size_t index = static_cast<std::size_t>(d) * kSideMax + layer;
+      seams_.push_back({d, side_[static_cast<std::size_t>(d)], static_cast<std::uint8_t>(layer),
+                        layers_.first[index], layers_.first[index + 1]});
+    }
+  }
+  /// Adds a layer of another side, which the part crosses, and opens its strips.
+  void add_crossed(Direction d, Side side, std::uint32_t layer) {
+    const std::span<const Quad> all = layers_.layer(d, layer);
+    const QuadShape& shape = shape_[at(side)];
+    const auto count_ending = [&](std::span<const Quad> quads, std::uint32_t before) {
+      return is_fast(side) ? lower_count(quads, before, [&](Quad q) { return shape.last(q) + 1; })
+                           : lower_count(quads, before, [&](Quad q) { return shape.row_end(q); });
+    };
+    const std::size_t first = count_ending(all, part_.begin);
+    const std::span<const Quad> replaced = all.subspan(first);
+    const std::size_t behind = first + count_ending(replaced, part_.end + 1);
+    const auto base = static_cast<std::uint32_t>(all.data() - layers_.quads.data());
+    seams_.push_back({d, side, static_cast<std::uint8_t>(layer),
+                      base + static_cast<std::uint32_t>(first),
+                      base + static_cast<std::uint32_t>(behind)});
+    if (is_fast(side)) {
+      auto& start = st_.start_layer[at(side) - at(Side::fast_neg)];
+      for (const Quad quad : replaced) open_fast(shape, quad, start.data() + layer);
+    } else {
+      Quad* const open = st_.open[at(side)].data() + layer * kBits;
+      for (const Quad quad : replaced) {
+        if (shape.row(quad) >= part_.begin) continue;
+        open[shape.last(quad)] = {shape.reopen(quad).bits ^ mark_};
       }
     }
   }
 
-  /// Returns the layer behind the last one that a quad reaches along the slowest axis.
-  static std::uint32_t end_of(const QuadShape& shape, Side side, Quad quad) {
-    return is_fast(side) ? shape.last(quad) + 1 : shape.row_end(quad);
-  }
-  /// Returns the quads of a layer that the sweep replaces.
-  std::span<const Quad> replaced(Direction d, Side side, std::uint32_t layer) const {
-    const std::span<const Quad> all = layers_.layer(d, layer);
-    if (!is_middle(side) && !is_fast(side)) return all;
-    const QuadShape& shape = shape_[at(side)];
-    const auto first = std::partition_point(
-        all.begin(), all.end(), [&](Quad quad) { return end_of(shape, side, quad) < part_.begin; });
-    return all.subspan(static_cast<std::size_t>(first - all.begin()));
-  }
-  /// Returns those quads that end behind the part. They keep their ends.
-  std::span<const Quad> behind_part(const QuadShape& shape, Side side,
-                                    std::span<const Quad> replaced) const {
-    if (!is_middle(side) && !is_fast(side)) return {};
-    const auto first = std::partition_point(replaced.begin(), replaced.end(), [&](Quad quad) {
-      return end_of(shape, side, quad) <= part_.end;
-    });
-    return replaced.subspan(static_cast<std::size_t>(first - replaced.begin()));
+  /// Returns the number of quads with end_of(quad) < `before`. They come first. Most layers have a
+  /// few quads, which are counted without an unpredictable branch.
+  template <class EndOf>
+  static std::size_t lower_count(std::span<const Quad> quads, std::uint32_t before,
+                                 EndOf&& end_of) {
+    constexpr std::size_t kFew = 16;
+    std::size_t low = 0, count = quads.size();
+    for (; count > kFew; count -= count / 2)
+      low += count / 2 * static_cast<std::size_t>(end_of(quads[low + count / 2 - 1]) < before);
+    std::size_t less = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      less += static_cast<std::size_t>(end_of(quads[low + i]) < before);
+    return low + less;
   }
 
-  template <class Places>
-  void open_fast(const QuadShape& shape, Quad quad, std::uint32_t layer, Places& start) const {
+  /// `start`: the layers in which the strips of this layer begin; the one of row r is at r * kBits.
+  void open_fast(const QuadShape& shape, Quad quad, std::uint8_t* start) const {
     const std::uint32_t first = shape.first(quad);
     if (first >= part_.begin) return;
     for (std::uint32_t row = shape.row(quad), end = shape.row_end(quad); row < end; ++row)
-      start[row * kBits + layer] = static_cast<std::uint8_t>(first);
+      start[row * kBits] = static_cast<std::uint8_t>(first);
   }
 
-  void close_middle(const QuadShape& shape, Quad quad, const Quad* open,
+  /// `open`: the open quads of this layer, by end.
+  void close_middle(const QuadShape& shape, std::span<const Quad> quads, const Quad* open,
                     QuadBuckets::Bucket& bucket) const {
-    if (shape.row(quad) <= part_.end) {
-      quad = shape.close(open[shape.last(quad)], shape.row_end(quad));
-      quad.bits ^= mark_;
+    Quad* to = QuadBuckets::reserve(bucket, static_cast<std::uint32_t>(quads.size()));
+    for (const Quad quad : quads) {
+      const Quad closed = shape.close(open[shape.last(quad)], shape.row_end(quad));
+      *to++ = shape.row(quad) <= part_.end ? Quad{closed.bits ^ mark_} : quad;
     }
-    QuadBuckets::put(bucket, quad);
+    bucket.count += static_cast<std::uint32_t>(quads.size());
   }
 
   /// The strips of a quad may begin in different layers now, and those of two quads in the same
   /// one. So the quads are cut into rows, which join again as a sweep joins them.
-  template <class Places>
-  void close_fast(const QuadShape& shape, std::span<const Quad> quads, std::uint32_t layer,
-                  const Places& start, QuadBuckets::Bucket& bucket) const {
-    Quad joined{};  // has no strip in common with a quad of the layer until it is set
-    bool is_set = false;
+  void close_fast(const QuadShape& shape, std::span<const Quad> quads, const std::uint8_t* start,
+                  QuadBuckets::Bucket& bucket) const {
+    bool joinable = false;  // the last quad of the bucket is one of these, and reaches the part
     for (const Quad quad : quads) {
       if (shape.first(quad) > part_.end) {
-        if (is_set) QuadBuckets::put(bucket, joined);
-        is_set = false;
         QuadBuckets::put(bucket, quad);
+        joinable = false;
         continue;
       }
       for (std::uint32_t row = shape.row(quad), end = shape.row_end(quad); row < end; ++row) {
-        const Quad piece = shape.piece(quad, start[row * kBits + layer], row);
-        if (is_set && shape.joins(joined, piece)) {
-          joined = shape.with_row_more(joined);
-          continue;
+        const Quad piece = shape.piece(quad, start[row * kBits], row);
+        if (joinable && shape.joins(bucket.quads[bucket.count - 1], piece)) {
+          Quad& last = bucket.quads[bucket.count - 1];
+          last = shape.with_row_more(last);
+        } else {
+          QuadBuckets::put(bucket, piece);
         }
-        if (is_set) QuadBuckets::put(bucket, joined);
-        joined = piece;
-        is_set = true;
+        joinable = true;
       }
     }
-    if (is_set) QuadBuckets::put(bucket, joined);
   }
 
   const OrderedExtent e_;
@@ -183,6 +194,7 @@ class PartSeams {
   SweepState<Row>& st_;
   std::array<Side, kDirectionCount> side_{};        // by Direction
   std::array<QuadShape, kDirectionCount> shape_{};  // by Side
+  std::vector<PartSeam>& seams_;
 };
 
 }  // namespace runstone::rdm

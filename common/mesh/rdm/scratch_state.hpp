@@ -1,11 +1,13 @@
 // The state that RdmScratch keeps between calls. Internal to rdm.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/layer_sweep.hpp"
+#include "common/mesh/rdm/part_seam.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_splice.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -30,6 +32,7 @@ struct RdmScratch::State {
   std::vector<rdm::PaletteIndex> full_indices;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
+  std::array<std::vector<rdm::PartSeam>, 2> seams;  // opaque and transparent
   rdm::QuadSplice splice;
   // Each is made for the first chunk whose longest side needs it.
   std::unique_ptr<rdm::RowScratch<Row32>> rows_32;
