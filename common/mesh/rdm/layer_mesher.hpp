@@ -72,8 +72,8 @@ class LayerMesher {
   /// costs are estimated from counts, in units of a run or a quad of a whole mesh, about 6 ns where
   /// they were fitted. A machine that is slower by a factor is slower in all of the terms.
   bool pays(const TouchedLayers& touched) const {
-    constexpr std::uint64_t kOfPart = 200;  // to begin a sweep
-    constexpr std::uint64_t kOfLayer = 5;   // the seams of a layer
+    constexpr std::uint64_t kOfPart = 150;  // to begin a sweep
+    constexpr std::uint64_t kOfLayer = 3;   // the seams of a layer
     constexpr std::uint64_t kBorderRuns =
         8;  // runs of a neighbour that are read at the cost of one
     if (chunk_.is_uniform() && visibility_[chunk_.runs.material(0)] == Visibility::empty)
