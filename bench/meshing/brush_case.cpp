@@ -1,5 +1,6 @@
 #include "bench/meshing/brush_case.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -127,18 +128,20 @@ BrushTiming measure_brush(const Volume& volume, const VisibilityTable& visibilit
                           const Brush& brush, bool alone, unsigned edits) {
   SplitMix64 rng(brush.size + 1);
   BrushedChunk chunk(volume, visibility, alone);
+  if (chunk.mesh_before().empty()) return {};
   std::vector<double> apply, layers, whole, sweep, emit;
   unsigned by_layers = 0;
   // A block of each sort in turn: layers, the whole mesh, and the steps of layers. The bound ends
   // the loop where most edits change nothing.
   enum Sort { by_layer, by_chunk, by_step };
-  for (unsigned i = 0; i < 20 * edits && layers.size() < edits; ++i) {
+  const unsigned block = std::min(kBlock, edits);
+  for (unsigned i = 0; i < 20 * edits && emit.size() < edits; ++i) {
     const VoxelPos at = visible_voxel(chunk.mesh_before(), rng);
     const Material material = i % 2 == 0 ? kEmpty : chunk.material(at, volume.edge);
     const double apply_ns = chunk.apply(brush_edit(brush, at, material));
     if (apply_ns == 0) continue;
     apply.push_back(apply_ns);
-    switch (static_cast<Sort>(i / kBlock % 3)) {
+    switch (static_cast<Sort>(i / block % 3)) {
       case by_layer: {
         bool is_by_layers = false;
         layers.push_back(chunk.mesh_layers(is_by_layers));

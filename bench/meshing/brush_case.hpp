@@ -24,7 +24,7 @@ struct BrushTiming {
 };
 
 /// Measures `edits` edits of each sort. `alone`: without the neighbours of the volume. The places
-/// are drawn from a fixed seed. Requires a volume whose mesh is not empty.
+/// are drawn from a fixed seed. Returns a timing of no edits if the mesh of the volume is empty.
 BrushTiming measure_brush(const Volume& volume, const VisibilityTable& visibility,
                           const Brush& brush, bool alone, unsigned edits);
 
