@@ -15,6 +15,7 @@
 #include "bench/harness/machine_json.hpp"
 #include "bench/map/map_bench.hpp"
 #include "bench/meshing/chunk_edge.hpp"
+#include "bench/meshing/edit_to_mesh.hpp"
 #include "bench/meshing/mesh_bench.hpp"
 #include "bench/meshing/mesh_once.hpp"
 #include "bench/network/net_bench.hpp"
@@ -79,6 +80,13 @@ int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err
   return finish(run_chunk_edge(options, err), options, err, [&](const auto& rows) {
     write_machine(this_machine(), out);
     write_table(rows, out);
+  });
+}
+
+int edit_to_mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_edit_to_mesh(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
   });
 }
 
@@ -210,6 +218,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return mesh(options.bench, out, err);
     case Command::mesh_once:
       return mesh_once(options.bench, out, err);
+    case Command::edit_to_mesh:
+      return edit_to_mesh(options.bench, out, err);
     case Command::storage:
       return storage(options.bench, out, err);
     case Command::chunk_edge:

@@ -32,7 +32,7 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 15> kSubcommands = {
+constexpr std::array<Subcommand, 16> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
@@ -45,6 +45,7 @@ constexpr std::array<Subcommand, 15> kSubcommands = {
      {Command::tiles, add_tiles_command},
      {Command::map, add_map_command},
      {Command::mesh_once, add_mesh_once_command},
+     {Command::edit_to_mesh, add_edit_to_mesh_command},
      {Command::scenario_facts, add_scenario_facts_command},
      {Command::scenario_times, add_scenario_times_command},
      {Command::machine, add_machine_command}}};

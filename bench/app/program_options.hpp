@@ -15,6 +15,7 @@ enum class Command {
   mesh,
   chunk_edge,
   mesh_once,
+  edit_to_mesh,
   edits,
   log,
   stores,

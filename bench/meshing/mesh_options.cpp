@@ -72,4 +72,17 @@ CLI::App* add_mesh_once_command(CLI::App& app, BenchOptions& options) {
   return mesh_once;
 }
 
+CLI::App* add_edit_to_mesh_command(CLI::App& app, BenchOptions& options) {
+  options.edges = {32, 64};
+  options.worlds = {"hills", "caves", "town", "luanti"};
+  options.repetitions = 60;
+  CLI::App* edit_to_mesh =
+      app.add_subcommand("edit-to-mesh", "edits by brush: layers meshed again, or the whole chunk");
+  add_world_options(*edit_to_mesh, options, landscape_names());
+  add_edge_option(*edit_to_mesh, options);
+  add_file_options(*edit_to_mesh, options);
+  add_repetitions_option(*edit_to_mesh, options, "--min-runs", "edits of each brush in a volume");
+  return edit_to_mesh;
+}
+
 }  // namespace runstone::bench

@@ -1,4 +1,4 @@
-// The command lines of `runstone-bench mesh`, `chunk-edge` and `mesh-once`.
+// The command lines of `runstone-bench mesh`, `chunk-edge`, `mesh-once` and `edit-to-mesh`.
 #pragma once
 #include "bench/harness/bench_options.hpp"
 
@@ -12,5 +12,6 @@ namespace runstone::bench {
 CLI::App* add_mesh_command(CLI::App& app, BenchOptions& options);
 CLI::App* add_chunk_edge_command(CLI::App& app, BenchOptions& options);
 CLI::App* add_mesh_once_command(CLI::App& app, BenchOptions& options);
+CLI::App* add_edit_to_mesh_command(CLI::App& app, BenchOptions& options);
 
 }  // namespace runstone::bench

@@ -42,6 +42,10 @@ class NarrowRuns {
   std::uint32_t end(std::size_t i) const { return runs_[i].end; }
   Material material(std::size_t i) const { return runs_[i].material; }
   std::span<const PackedRun> packed() const { return runs_; }
+  /// Returns a view of `count` runs from run `first` on. Their ends stay as they are.
+  NarrowRuns part(std::size_t first, std::size_t count) const {
+    return NarrowRuns(runs_.subspan(first, count));
+  }
 
  private:
   std::span<const PackedRun> runs_;
@@ -56,6 +60,10 @@ class WideRuns {
   Material material(std::size_t i) const { return materials_[i]; }
   std::span<const std::uint32_t> ends() const { return ends_; }
   std::span<const Material> materials() const { return materials_; }
+  /// Returns a view of `count` runs from run `first` on. Their ends stay as they are.
+  WideRuns part(std::size_t first, std::size_t count) const {
+    return {ends_.subspan(first, count), materials_.subspan(first, count)};
+  }
 
  private:
   std::span<const std::uint32_t> ends_;

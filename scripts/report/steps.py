@@ -158,6 +158,20 @@ def _edit_steps(quick):
         "",
     )
     yield Step(
+        "edit-to-mesh",
+        (
+            "edit-to-mesh",
+            "--worlds",
+            "hills" if quick else "hills,caves,town,luanti",
+            "--edges",
+            "32" if quick else "32,64",
+            "--min-runs",
+            "10" if quick else "60",
+        ),
+        10 if quick else 120,
+        ("world", "edge", "neighbours", "brush", "apply_ns", "layers_ns", "whole_ns", "sweep_ns", "emit_ns", "by_layers"),
+    )
+    yield Step(
         "bytes",
         ("bytes", "--worlds", "luanti,terrain", "--min-runs", "3" if quick else "5"),
         5 if quick else 20,

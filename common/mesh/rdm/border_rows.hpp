@@ -7,6 +7,7 @@
 
 #include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/divider.hpp"
+#include "common/mesh/rdm/row_range.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
 #include "common/runs/bit_row.hpp"
 #include "common/runs/layer_walk.hpp"
@@ -168,13 +169,63 @@ class LayerReader {
   ToIndex to_index_;
 };
 
-/// Reads a layer with LayerReader. For a chunk of one material it writes the same rows without
-/// reading.
+/// Reads the rows `wanted` of a layer into the planes of LayerReader, and clears the others. Suits a
+/// few rows. Cost: O(rows * (length + log runs)), and less where lines of the chunk lie along them.
+template <std::size_t kPlanes, class Runs, class Row, std::size_t kRows, class ToIndex>
+void read_few_rows(const Runs& runs, const RunChunk& chunk, const LayerPlace& place,
+                   RowRange wanted, std::array<std::array<Row, kRows>, kPlanes>& planes,
+                   ToIndex to_index) {
+  for (auto& plane : planes) plane.fill(0);
+  const OrderedExtent e = ordered(chunk.extent, chunk.order);
+  const int bit_rank = rank_of(place.bit_axis, chunk.order);
+  const int row_rank = rank_of(place.row_axis(), chunk.order);
+  std::array<RowRange, 3> box;  // by rank
+  box[static_cast<std::size_t>(rank_of(place.axis, chunk.order))] = {place.at, place.at + 1};
+  box[static_cast<std::size_t>(bit_rank)] = {0, side_of(chunk, place.bit_axis)};
+  box[static_cast<std::size_t>(row_rank)] = wanted;
+  RunCursor cursor(runs);
+  cursor.jump(box[2].first * e.layer() + box[1].first * e.f + box[0].first);
+  std::array<std::uint32_t, 3> at{};  // by rank
+  for (at[2] = box[2].first; at[2] < box[2].end; ++at[2]) {
+    for (at[1] = box[1].first; at[1] < box[1].end; ++at[1]) {
+      const std::uint32_t line = at[2] * e.layer() + at[1] * e.f;
+      for (at[0] = box[0].first; at[0] < box[0].end;) {
+        if (cursor.end() <= line + at[0]) cursor.seek(line + at[0]);
+        const std::uint32_t stop = std::min(cursor.end() - line, box[0].end);
+        const PaletteIndex index = to_index(cursor.material());
+        for (unsigned k = 0; k < kPlanes; ++k) {
+          const Row bit{index >> k & 1};
+          if (bit_rank == 0) {
+            planes[k][at[static_cast<std::size_t>(row_rank)]] |=
+                (bits_below<Row>(stop) & ~bits_below<Row>(at[0])) * bit;
+            continue;
+          }
+          for (std::uint32_t i = at[0]; i < stop; ++i) {
+            planes[k][row_rank == 0 ? i : at[static_cast<std::size_t>(row_rank)]] |=
+                bit << at[static_cast<std::size_t>(bit_rank)];
+          }
+        }
+        at[0] = stop;
+      }
+    }
+  }
+}
+
+/// Reads the rows `wanted` of a layer: few rows with read_few_rows(), many with LayerReader. For a
+/// chunk of one material it writes the same rows without reading. The other rows are not valid
+/// afterwards.
 template <std::size_t kPlanes, class Row, std::size_t kRows, class ToIndex>
-void read_layer_rows(const RunChunk& chunk, LayerPlace place,
+void read_layer_rows(const RunChunk& chunk, LayerPlace place, RowRange wanted,
                      std::array<std::array<Row, kRows>, kPlanes>& planes, ToIndex to_index) {
   if (!chunk.is_uniform()) {
-    LayerReader<kPlanes, Row, ToIndex>(chunk, place, planes, to_index);
+    // A voxel of a row that is looked up costs several times as much as a run that is read.
+    constexpr std::size_t kRunsPerVoxel = 8;
+    if (kRunsPerVoxel * wanted.count() * side_of(chunk, place.bit_axis) > chunk.runs.size()) {
+      LayerReader<kPlanes, Row, ToIndex>(chunk, place, planes, to_index);
+    } else {
+      chunk.runs.visit(
+          [&](const auto& runs) { read_few_rows(runs, chunk, place, wanted, planes, to_index); });
+    }
     return;
   }
   const PaletteIndex index = to_index(chunk.runs.material(0));
@@ -184,6 +235,13 @@ void read_layer_rows(const RunChunk& chunk, LayerPlace place,
     std::fill_n(planes[k].begin(), side_of(chunk, place.row_axis()),
                 (index >> k & 1) != 0 ? row : Row{0});
   }
+}
+
+/// Reads all rows of a layer.
+template <std::size_t kPlanes, class Row, std::size_t kRows, class ToIndex>
+void read_layer_rows(const RunChunk& chunk, LayerPlace place,
+                     std::array<std::array<Row, kRows>, kPlanes>& planes, ToIndex to_index) {
+  read_layer_rows(chunk, place, {0, side_of(chunk, place.row_axis())}, planes, to_index);
 }
 
 }  // namespace runstone::rdm

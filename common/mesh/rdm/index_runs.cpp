@@ -100,9 +100,13 @@ void list(const Runs& runs, const VisibilityTable& visibility, ChunkPalette& pal
 }
 #endif
 
-void index_run_list(const RunList& runs, const VisibilityTable& visibility, ChunkPalette& palette,
-                    BytePaletteIndex* out) {
-  runs.visit([&](const auto& view) { list(view, visibility, palette, out); });
+void index_narrow(const NarrowRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+                  BytePaletteIndex* out) {
+  list(runs, visibility, palette, out);
+}
+void index_wide(const WideRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+                BytePaletteIndex* out) {
+  list(runs, visibility, palette, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -112,11 +116,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace runstone::rdm {
 
-HWY_EXPORT(index_run_list);
+HWY_EXPORT(index_narrow);
+HWY_EXPORT(index_wide);
 
-void index_runs(const RunList& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+void index_runs(const NarrowRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
                 BytePaletteIndex* out) {
-  HWY_DYNAMIC_DISPATCH(index_run_list)(runs, visibility, palette, out);
+  HWY_DYNAMIC_DISPATCH(index_narrow)(runs, visibility, palette, out);
+}
+void index_runs(const WideRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+                BytePaletteIndex* out) {
+  HWY_DYNAMIC_DISPATCH(index_wide)(runs, visibility, palette, out);
 }
 
 }  // namespace runstone::rdm

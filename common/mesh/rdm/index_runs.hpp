@@ -1,4 +1,4 @@
-// Palette indices of the runs of a whole chunk, as bytes. Internal to rdm.
+// Palette indices of the runs of a chunk, or of some of them, as bytes. Internal to rdm.
 #pragma once
 #include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/visibility.hpp"
@@ -10,7 +10,9 @@ namespace runstone::rdm {
 /// chunk has few materials, a vector of runs is compared with each of them, which is several times
 /// as fast as looking each run up. The bytes are valid only if palette.fit_bytes() is true
 /// afterwards. Requires room for an index a run at `out`. Cost: O(runs).
-void index_runs(const RunList& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+void index_runs(const NarrowRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
+                BytePaletteIndex* out);
+void index_runs(const WideRuns& runs, const VisibilityTable& visibility, ChunkPalette& palette,
                 BytePaletteIndex* out);
 
 }  // namespace runstone::rdm

@@ -19,6 +19,7 @@
 #include "common/mesh/rdm/layer_builder-inl.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/strip_tracer-inl.hpp"
+#include "common/mesh/rdm/sweep_part.hpp"
 #include "common/mesh/rdm/sweep_traits.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,9 +38,12 @@ class Sweep {
   static constexpr bool kManyMaterials = Traits::kManyMaterials;
 
  public:
-  Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
+  Sweep(const SweepInput& input, const Borders<Row>& borders, const SweepPart<Row>& part,
+        SweepState<Row>& state)
       : st_(state),
         e_(input.extent),
+        part_(part),
+        is_whole_(part == SweepPart<Row>::whole(input.extent)),
         wants_chunk_sides_(input.chunk_sides),
         builder_(input, borders, state),
         chunk_sides_(input, state),
@@ -47,7 +51,13 @@ class Sweep {
 
   void run() {
     start();
-    for (std::uint32_t s = 0; s < e_.s; ++s) {
+    if (part_.begin != 0) {
+      builder_.build(part_.begin - 1, layers_);
+      find_faces(part_.begin - 1);
+      std::swap(layers_.current, layers_.previous);
+    }
+    const std::uint32_t read_end = part_.read_end(e_);
+    for (std::uint32_t s = part_.begin; s < read_end; ++s) {
       builder_.advance_to(s);
       if (s != 0 && builder_.repeats(s)) {
         if (wants_chunk_sides_) chunk_sides_.find(s, layers_.previous);
@@ -59,7 +69,7 @@ class Sweep {
       trace(find_faces(s), s);
       std::swap(layers_.current, layers_.previous);
     }
-    trace(end_faces(), e_.s);
+    if (part_.end == e_.s) trace(end_faces(), e_.s);
   }
 
  private:
@@ -162,7 +172,25 @@ class Sweep {
     // Rows behind the last row of the layer have no faces. The first of them would close open
     // strips.
     for (RowSet& set : rows) set &= bits_below<Row>(count);
+    if (!is_whole_) keep_traced(rows);
     return rows;
+  }
+
+  /// Removes the rows and the faces that the part does not trace.
+  void keep_traced(SideRows& rows) {
+    for (const Side side : {Side::mid_neg, Side::mid_pos}) rows[at(side)] &= part_.traced[at(side)];
+    for (const Side side : {Side::fast_neg, Side::fast_pos}) {
+      Row* const face = st_.face[at(side)][layers_.current].data();
+      const Row* const face_then = st_.face[at(side)][layers_.previous].data();
+      const V traced = Lanes::all(part_.traced[at(side)]);
+      RowSet with_faces = 0;
+      for_rows<Lanes>(e_.m, [&](std::uint32_t m) {
+        const V kept = Lanes::both(Lanes::load(face + m), traced);
+        Lanes::store(kept, face + m);
+        add(with_faces, Lanes::any(Lanes::either(kept, Lanes::load(face_then + m))), m);
+      });
+      rows[at(side)] &= with_faces;
+    }
   }
 
   static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
@@ -198,6 +226,7 @@ class Sweep {
         none[m] = 0;
       }
     }
+    if (!is_whole_) keep_traced(rows);
     return rows;
   }
 
@@ -216,6 +245,8 @@ class Sweep {
 
   SweepState<Row>& st_;
   const OrderedExtent e_;
+  const SweepPart<Row> part_;
+  const bool is_whole_;
   const bool wants_chunk_sides_;
   LayerPair layers_;
   LayerBuilder<Traits> builder_;
@@ -226,18 +257,21 @@ class Sweep {
 /// Sweeps the input with these lanes. Its chunk decides the rest of the SweepTraits.
 template <class Lanes, class IndexLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
-           SweepState<typename Lanes::Row>& state) {
+           const SweepPart<typename Lanes::Row>& part, SweepState<typename Lanes::Row>& state) {
   const OrderedExtent& e = input.extent;
   RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<typename Lanes::Row>);
+  RUNSTONE_ASSERT(part.begin < part.end && part.end <= e.s);
   RUNSTONE_ASSERT(input.runs.size() != 0 &&
-                  input.runs.end(input.runs.size() - 1) == e.layer() * e.s);
+                  input.runs.end(input.runs.size() - 1) >= e.layer() * part.read_end(e));
   RUNSTONE_ASSERT(input.palette->solid_count() != 0);
   if (input.palette->solid_count() == 1) {
-    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, part, state)
+        .run();
   } else if (input.palette->fit_bytes()) {
-    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, true>>(input, borders, part, state)
+        .run();
   } else {
-    Sweep<SweepTraits<Lanes, IndexLanes, PaletteIndex, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, PaletteIndex, true>>(input, borders, part, state).run();
   }
 }
 

@@ -9,23 +9,28 @@
 //   quad_emitter-inl.hpp    strips as quads, in the bucket of their layer
 #pragma once
 #include "common/mesh/rdm/sweep_input.hpp"
+#include "common/mesh/rdm/sweep_part.hpp"
 #include "common/mesh/rdm/sweep_state.hpp"
 
 namespace runstone::rdm {
 
-/// Puts the quads of the chunk into the buckets, with the best instruction set of the machine.
-/// Requires sides up to kRowBits<Row>, runs that tile the extent and at least one material that is
-/// not empty.
-void sweep_layers(const SweepInput& input, const Borders<Row32>& borders, SweepState<Row32>& state);
-void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
+/// Puts the quads of a part of the chunk into the buckets, with the best instruction set of the
+/// machine. Requires sides up to kRowBits<Row>, runs that cover the layers which the sweep reads,
+/// and at least one material that is not empty.
+/// If the part does not begin with the first layer, the strips that reach its first layer are in
+/// `state.open` and `state.start_layer`. Those that reach beyond the part are there afterwards.
+void sweep_layers(const SweepInput& input, const Borders<Row32>& borders,
+                  const SweepPart<Row32>& part, SweepState<Row32>& state);
+void sweep_layers(const SweepInput& input, const Borders<Row64>& borders,
+                  const SweepPart<Row64>& part, SweepState<Row64>& state);
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
-                  SweepState<Row128>& state);
+                  const SweepPart<Row128>& part, SweepState<Row128>& state);
 
-/// Puts the quads of the chunk into the buckets, one row and one index at a time. This is the plain
+/// Does the same, one row and one index at a time. This is the plain
 /// path, whose results the others must equal.
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
-                        SweepState<Row64>& state);
+                        const SweepPart<Row64>& part, SweepState<Row64>& state);
 void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,
-                        SweepState<Row128>& state);
+                        const SweepPart<Row128>& part, SweepState<Row128>& state);
 
 }  // namespace runstone::rdm

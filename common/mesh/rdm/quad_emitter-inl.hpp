@@ -105,11 +105,6 @@ class QuadEmitter {
   }
 
  private:
-  /// Marks a quad of the transparent pass while it is open. The bit is zero in a closed quad.
-  /// Flipping the highest bit is an addition of 2^63 modulo 2^64, so it commutes with the addition
-  /// in QuadShape::close(), whatever the open quad has borrowed: a marked quad that is closed is
-  /// the closed quad with this bit set.
-  static constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;
   /// Returns the buckets of the quad's pass, and clears the mark of the quad.
   HWY_INLINE QuadBuckets::Bucket* pass_of(Quad& quad) const {
     if (!kManyMaterials || (quad.bits & kTransparentQuad) == 0) return opaque_;

@@ -18,24 +18,24 @@
 
 namespace runstone::rdm {
 
-/// Gives the end and the palette index of each run of a chunk. The ends are read from the chunk's
-/// list of runs.
+/// Gives the end and the palette index of each run of a chunk, or of some of its runs. The ends are
+/// read from the chunk's list of runs.
 class IndexedRuns {
  public:
   IndexedRuns() = default;
-  /// The chunk's runs and the indices must stay in place. `full` is null if the indices are bytes.
-  IndexedRuns(const RunList& runs, const BytePaletteIndex* bytes, const PaletteIndex* full)
+  /// Runs is NarrowRuns or WideRuns. The runs and the indices must stay in place. `full` is null if
+  /// the indices are bytes.
+  template <class Runs>
+  IndexedRuns(const Runs& runs, const BytePaletteIndex* bytes, const PaletteIndex* full)
       : size_(runs.size()), bytes_(bytes), full_(full) {
     static_assert(std::endian::native == std::endian::little);
-    runs.visit([this](const auto& view) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(view)>, NarrowRuns>) {
-        words_ = reinterpret_cast<const std::byte*>(view.packed().data());
-        mask_ = 0xffff;
-      } else {
-        words_ = reinterpret_cast<const std::byte*>(view.ends().data());
-        mask_ = 0xffffffff;
-      }
-    });
+    if constexpr (std::is_same_v<Runs, NarrowRuns>) {
+      words_ = reinterpret_cast<const std::byte*>(runs.packed().data());
+      mask_ = 0xffff;
+    } else {
+      words_ = reinterpret_cast<const std::byte*>(runs.ends().data());
+      mask_ = 0xffffffff;
+    }
   }
   std::size_t size() const { return size_; }
   /// Both forms of a list have a word of 32 bits a run, whose lowest bits are the end.

@@ -16,12 +16,12 @@ namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
 void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders,
-                    SweepState<Row64>& state) {
-  sweep<OneRow<Row64>, PlainIndices>(input, borders, state);
+                    const SweepPart<Row64>& part, SweepState<Row64>& state) {
+  sweep<OneRow<Row64>, PlainIndices>(input, borders, part, state);
 }
 void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders,
-                     SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, PlainIndices>(input, borders, state);
+                     const SweepPart<Row128>& part, SweepState<Row128>& state) {
+  sweep<OneRow<Row128>, PlainIndices>(input, borders, part, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -35,12 +35,12 @@ HWY_EXPORT(sweep_plain_64);
 HWY_EXPORT(sweep_plain_128);
 
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
-                        SweepState<Row64>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_plain_64)(input, borders, state);
+                        const SweepPart<Row64>& part, SweepState<Row64>& state) {
+  HWY_DYNAMIC_DISPATCH(sweep_plain_64)(input, borders, part, state);
 }
 void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,
-                        SweepState<Row128>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_plain_128)(input, borders, state);
+                        const SweepPart<Row128>& part, SweepState<Row128>& state) {
+  HWY_DYNAMIC_DISPATCH(sweep_plain_128)(input, borders, part, state);
 }
 
 }  // namespace runstone::rdm

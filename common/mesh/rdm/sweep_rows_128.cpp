@@ -13,8 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, VectorIndices>(input, borders, state);
+void sweep_128(const SweepInput& input, const Borders<Row128>& borders,
+               const SweepPart<Row128>& part, SweepState<Row128>& state) {
+  sweep<OneRow<Row128>, VectorIndices>(input, borders, part, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -27,8 +28,8 @@ namespace runstone::rdm {
 HWY_EXPORT(sweep_128);
 
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
-                  SweepState<Row128>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_128)(input, borders, state);
+                  const SweepPart<Row128>& part, SweepState<Row128>& state) {
+  HWY_DYNAMIC_DISPATCH(sweep_128)(input, borders, part, state);
 }
 
 }  // namespace runstone::rdm

@@ -13,8 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-void sweep_32(const SweepInput& input, const Borders<Row32>& borders, SweepState<Row32>& state) {
-  sweep<VectorRows<Row32>, VectorIndices>(input, borders, state);
+void sweep_32(const SweepInput& input, const Borders<Row32>& borders, const SweepPart<Row32>& part,
+              SweepState<Row32>& state) {
+  sweep<VectorRows<Row32>, VectorIndices>(input, borders, part, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -27,8 +28,8 @@ namespace runstone::rdm {
 HWY_EXPORT(sweep_32);
 
 void sweep_layers(const SweepInput& input, const Borders<Row32>& borders,
-                  SweepState<Row32>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_32)(input, borders, state);
+                  const SweepPart<Row32>& part, SweepState<Row32>& state) {
+  HWY_DYNAMIC_DISPATCH(sweep_32)(input, borders, part, state);
 }
 
 }  // namespace runstone::rdm

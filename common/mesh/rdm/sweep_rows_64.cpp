@@ -13,8 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<VectorRows<Row64>, VectorIndices>(input, borders, state);
+void sweep_64(const SweepInput& input, const Borders<Row64>& borders, const SweepPart<Row64>& part,
+              SweepState<Row64>& state) {
+  sweep<VectorRows<Row64>, VectorIndices>(input, borders, part, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -27,8 +28,8 @@ namespace runstone::rdm {
 HWY_EXPORT(sweep_64);
 
 void sweep_layers(const SweepInput& input, const Borders<Row64>& borders,
-                  SweepState<Row64>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_64)(input, borders, state);
+                  const SweepPart<Row64>& part, SweepState<Row64>& state) {
+  HWY_DYNAMIC_DISPATCH(sweep_64)(input, borders, part, state);
 }
 
 }  // namespace runstone::rdm

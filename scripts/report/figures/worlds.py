@@ -182,6 +182,43 @@ def _dirty_layers(evidence):
     )
 
 
+def _edit_to_mesh(evidence):
+    rows = [r for r in evidence.here.rows("edit-to-mesh") if r["neighbours"]]
+    ratios = [r["layers_ns"] / r["whole_ns"] for r in rows]
+    places = [f"{r['world']} {r['edge']}³, {r['brush']}" for r in rows]
+    worst, where = max(zip(ratios, places), default=(math.nan, "not measured"))
+    blue = mesher(OURS).light
+    spheres = [r for r in rows if r["brush"] == "voxel" or r["brush"].startswith("sphere")]
+    timed = ("apply_ns", "layers_ns", "whole_ns", "sweep_ns", "emit_ns")
+    return Figure(
+        "edit-to-mesh",
+        "Edit to mesh: edits by brush",
+        (
+            "The layers that a brush touched are meshed again, or the whole chunk where that costs less:"
+            f" at worst {number_text(worst)} times the whole mesh ({where})."
+        ),
+        ("edit-to-mesh",),
+        ["world", "edge", "brush", "runs us", "layers us", "whole us", "sweep us", "emit us", "layers / whole", "by layers"],
+        [
+            [r["world"], r["edge"], r["brush"], *(r[t] / 1000 for t in timed), ratio, r["by_layers"]]
+            for r, ratio in zip(rows, ratios)
+        ],
+        [
+            dots(
+                "edit-to-mesh",
+                "voxels and spheres",
+                [f"{r['world']} {r['edge']}³, {r['brush']}" for r in spheres],
+                [
+                    Series("touched layers", blue, [exactly(r["layers_ns"] / 1000) for r in spheres]),
+                    Series("the whole chunk again", blue, [exactly(r["whole_ns"] / 1000) for r in spheres], True),
+                ],
+                Axis("µs", True),
+            )
+        ],
+        notes=["Each value is a median over edits; the benchmark writes no range."],
+    )
+
+
 def _stacks(evidence):
     rows = evidence.here.rows("edits")
 
@@ -236,6 +273,7 @@ def worlds_section(evidence):
             _worlds(evidence, "adversaries", "Worlds that are hard to mesh"),
             _orders(evidence),
             _dirty_layers(evidence),
+            _edit_to_mesh(evidence),
             _stacks(evidence),
         ],
     )

@@ -157,6 +157,15 @@ def _results():
                 "voxels": 32768,
             }
         ],
+        "edit-to-mesh": {
+            "rows": [
+                {"world": "hills", "edge": 32, "neighbours": neighbours, "brush": brush, "by_layers": 1}
+                | dict.fromkeys(("apply_ns", "layers_ns", "sweep_ns", "emit_ns"), 3000)
+                | {"whole_ns": 9000}
+                for neighbours in (True, False)
+                for brush in ("voxel", "sphere r 3", "box 6")
+            ]
+        },
         "bytes": {
             "rows": [
                 {"world": "luanti", "set": "all", "form": form, "bytes": n, "encode_us": 1, "decode_us": 1}

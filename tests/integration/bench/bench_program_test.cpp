@@ -187,6 +187,23 @@ TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
   CHECK(runs.at("between") <= runs.at("worst"));
 }
 
+TEST_CASE("runstone-bench edit-to-mesh meshes layers after each brush", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "brushes.csv";
+  const BenchOutput output = run_bench(
+      {"edit-to-mesh", "--worlds", "hills", "--edges", "32", "--min-runs", "2", "--csv", csv});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  CHECK(output.out.find("worst median") != std::string::npos);
+  std::set<std::string> brushes;
+  for (const CsvRow& row : read_csv(csv)) {
+    CHECK(brushes.insert(row.at("brush") + row.at("neighbours")).second);
+    CHECK(std::stoul(row.at("edits")) > 0);
+    if (row.at("brush") == "voxel") CHECK(row.at("by_layers") == "1.000");
+  }
+  CHECK(brushes.size() == 2 * 13);
+}
+
 TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edges.csv";

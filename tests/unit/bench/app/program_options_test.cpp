@@ -34,6 +34,11 @@ TEST_CASE("each subcommand of runstone-bench has defaults of its own", "[options
   CHECK(chunk_edge.command == Command::chunk_edge);
   CHECK(chunk_edge.bench.edges == Edges{16, 32, 64});
 
+  const ProgramOptions edit_to_mesh = options_of({"edit-to-mesh"});
+  CHECK(edit_to_mesh.command == Command::edit_to_mesh);
+  CHECK(edit_to_mesh.bench.edges == Edges{32, 64});
+  CHECK(edit_to_mesh.bench.repetitions == 60);
+
   const ProgramOptions mesh_once = options_of({"mesh-once"});
   CHECK(mesh_once.command == Command::mesh_once);
   CHECK(mesh_once.bench.meshers == Names{"rdm"});

@@ -41,9 +41,10 @@ TEST_CASE("runs get the same indices a vector at a time as one by one", "[mesh]"
         std::vector<rdm::BytePaletteIndex> expected(count), indices(count);
         plain.clear();
         palette.clear();
-        runs.visit(
-            [&](const auto& view) { plain.list(view, 0, count, visibility, expected.data()); });
-        rdm::index_runs(runs, visibility, palette, indices.data());
+        runs.visit([&](const auto& view) {
+          plain.list(view, 0, count, visibility, expected.data());
+          rdm::index_runs(view, visibility, palette, indices.data());
+        });
         CHECK(indices == expected);
         CHECK(palette.solid_count() == plain.solid_count());
         CHECK(palette.transparent_count() == plain.transparent_count());
