@@ -96,7 +96,7 @@ Result<std::string> run(PGconn* handle, const std::string& name, const char* sql
   const PostgresResult result(PQexec(handle, sql));
   const ExecStatusType status = PQresultStatus(result.get());
   if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK)
-    return failure(Error{Error::Kind::io, name, connection_message(handle)});
+    return failure(result_error(handle, name, result.get()));
   return std::string(PQntuples(result.get()) > 0 ? PQgetvalue(result.get(), 0, 0) : "");
 }
 
