@@ -23,9 +23,12 @@ struct OwnerBehindProxy {
   explicit OwnerBehindProxy(milliseconds length) {
     store = *create_world(proxy.through(place.path()), sample_meta(), "", {"first", length});
     REQUIRE(*store->raise_epoch() == 1);
-    const std::string begin = raw_sql(place.path(), "SELECT expires_us FROM lease");
-    REQUIRE(
-        comes_true([&] { return raw_sql(place.path(), "SELECT expires_us FROM lease") != begin; }));
+    REQUIRE(renews());
+  }
+  bool renews() const {
+    const auto end = [&] { return raw_sql(place.path(), "SELECT expires_us FROM lease"); };
+    const std::string before = end();
+    return comes_true([&] { return end() != before; });
   }
   StoreResult<std::unique_ptr<Store>> open_as_second(bool waits) const {
     LeaseTerms terms{"second", std::chrono::minutes(10)};
@@ -46,13 +49,13 @@ TEST_CASE("an owner whose renewal was cut off once renews again, and nobody else
   for (const ProxyFault& fault : cut_connections()) {
     for (std::uint64_t statement = 1; statement <= kRenewalStatements; ++statement) {
       CAPTURE(statement, text_of(fault));
-      OwnerBehindProxy bench(milliseconds(900));
+      OwnerBehindProxy bench(milliseconds(3'000));
       bench.proxy.fail(statement, fault);
       REQUIRE(comes_true([&] { return bench.proxy.has_failed(); }));
       const auto second = bench.open_as_second(false);
       REQUIRE_FALSE(second.has_value());
       CHECK(second.error().kind == StoreError::Kind::locked);
-      std::this_thread::sleep_for(milliseconds(900));  // beyond the lease that was not renewed
+      CHECK(bench.renews());
       CHECK(comes_true([&] { return bench.store->is_owned(); }));
       CHECK(bench.store->append({}, sample_records(bench.rng, 1, 1, 2)).has_value());
       CHECK(*bench.store->last_sequence() == 2);
@@ -71,7 +74,9 @@ TEST_CASE("an owner that is cut off while it renews stops before another one beg
       bench.store->watch_ownership([&](const StoreError&) { is_lost = true; });
       bench.proxy.fail(statement, fault);
       REQUIRE(comes_true([&] { return bench.proxy.has_failed(); }));
-      const auto second = bench.open_as_second(true);
+      // The first try fails if it begins before the last renewal has reached the server.
+      auto second = bench.open_as_second(true);
+      if (!second) second = bench.open_as_second(true);
       CHECK_FALSE(bench.store->is_owned());
       INFO((second ? "" : second.error().message()));
       REQUIRE(second.has_value());
