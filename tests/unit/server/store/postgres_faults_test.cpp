@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <functional>
-#include <set>
 
 #include "common/core/digest.hpp"
 #include "server/store/store.hpp"
@@ -26,7 +25,7 @@ LeaseTerms long_lease() {
   return terms;
 }
 
-/// A world that must be sound, and the operator's own connection to it.
+/// A world in the database, and the operator's own connection to it.
 class WatchedWorld {
  public:
   const std::string& place() const { return place_; }
@@ -34,16 +33,12 @@ class WatchedWorld {
   void end_lease() {
     static_cast<void>(operator_.run("UPDATE lease SET expires_us = 0").has_value());
   }
-  /// Opens the world for reading, without a fault. Returns null if there is none.
-  std::unique_ptr<Store> sound_world() const {
-    auto store = open_world(place_, StoreAccess::read_only);
-    if (!store && store.error().kind == StoreError::Kind::not_a_world) return nullptr;
-    INFO((store ? "" : store.error().message()));
-    REQUIRE(store.has_value());
-    const auto sound = (*store)->check();
-    INFO((sound ? "" : sound.error().message()));
-    REQUIRE(sound.has_value());
-    return *std::move(store);
+  void remove() {
+    REQUIRE(operator_
+                .run("DO $$ DECLARE name text := current_schema(); BEGIN "
+                     "EXECUTE format('DROP SCHEMA %I CASCADE', name); "
+                     "EXECUTE format('CREATE SCHEMA %I', name); END $$")
+                .has_value());
   }
 
  private:
@@ -58,86 +53,169 @@ struct Written {
   std::vector<EditRecord> next;       // of the append whose answer did not arrive
   Sequence head = 0, checkpoint = 0;  // at least
   Epoch epoch = 0;                    // at least
-  std::set<AuthorId> players;
-  bool has_claim = false;
+  bool has_players = false, has_claim = false;
+
+  LogEnd end() const { return {log.back().version, log.back().time_us}; }
 };
 
-/// The same world through many lives, each of which meets one fault.
-class FaultyLives {
+void require_sound(Store& store) {
+  const auto sound = store.check();
+  INFO((sound ? "" : sound.error().message()));
+  REQUIRE(sound.has_value());
+}
+
+/// Verifies a world that was opened after a fault. What the log has of `written.next` counts as
+/// written from then on.
+void verify(Store& store, Written& written) {
+  require_sound(store);
+  const auto range = *store.log_range();
+  const Sequence last = range.last.version.seq;
+  if (last == written.log.size() + written.next.size())
+    written.log.insert(written.log.end(), written.next.begin(), written.next.end());
+  written.next.clear();
+  REQUIRE(last == written.log.size());
+  REQUIRE(range.first > written.head);
+  written.head = range.first - 1;
+  std::vector<EditRecord> read;
+  REQUIRE(store.read_log(range.first, last, [&](const EditRecord& record) {
+    read.push_back(record);
+    return true;
+  }));
+  const auto kept = written.log.begin() + static_cast<std::ptrdiff_t>(written.head);
+  CHECK(read == std::vector(kept, written.log.end()));
+  CHECK(store.epoch() >= written.epoch);
+  CHECK(*store.checkpoint() >= written.checkpoint);
+  const auto players = *store.players();
+  CHECK(players.size() <= 2);
+  if (written.has_players) CHECK(players.size() == 2);
+  const auto claims = *store.name_claims();
+  CHECK(claims.size() <= 1);
+  if (written.has_claim) CHECK(claims == std::vector{kClaim});
+}
+
+/// A server's life with one world, in which each kind of call meets a fault at each of its statements.
+class FaultyLife {
  public:
-  explicit FaultyLives(const ProxyFault& fault) : proxy_(world_.place()), fault_(fault) {
+  explicit FaultyLife(const ProxyFault& fault)
+      : proxy_(world_.place()), name_(place_name(proxy_.through(world_.place()))), fault_(fault) {
     REQUIRE(create_world(world_.place(), sample_meta()).has_value());
   }
 
-  /// Runs a life with the fault at this statement. Returns false if the life has not so many.
-  bool live(std::uint64_t statement) {
-    CAPTURE(statement, text_of(fault_));
-    world_.end_lease();
-    proxy_.fail(statement, fault_);
-    serve();
-    const bool has_failed = proxy_.has_failed();
-    proxy_.heal();
-    proxy_.wait_for_ends();
-    verify();
-    return has_failed;
+  /// Returns the number of faults.
+  std::uint64_t run() {
+    const auto nothing = [] {};
+    const auto edit = [&] { require(append(true)); };
+    const auto edit_and_keyframe = [&] {
+      edit();
+      require(save_keyframe());
+    };
+    std::uint64_t faults = meet_faults("open", [&] { close(); }, [&] { return open(); });
+    faults += meet_faults("epoch", nothing, [&] { return raise_epoch(); });
+    faults += meet_faults("append", nothing, [&] { return append(false); });
+    faults += meet_faults("names", nothing, [&] { return change_names(); });
+    faults += meet_faults("snapshots", nothing, [&] { return save_snapshots(); });
+    faults += meet_faults("keyframe", edit, [&] { return save_keyframe(); });
+    faults += meet_faults("compaction", edit_and_keyframe, [&] { return compact(); });
+    faults += meet_faults("append", nothing, [&] { return append(false); });
+    faults += meet_faults("close", nothing, [&]() -> StoreResult<void> {
+      store_.reset();
+      return {};
+    });
+    return faults;
   }
 
  private:
-  void serve() {
-    const auto store = open();
-    if (!store) return;
-    Epoch epoch = 0;
-    const auto raise = [&]() -> StoreResult<void> {
-      const auto raised = store->raise_epoch();
-      if (!raised) return failure(raised.error());
-      epoch = *raised;
-      return {};
-    };
-    if (!write(*store, raise)) return;
-    written_.epoch = epoch;
-    if (!append(*store, epoch, true)) return;
-    // The claim is in the world at the end of the transaction, whether it was there before or not.
-    const std::vector<NameChange> names = {{kClaim, true}, {kClaim, false}};
-    if (!write(*store, [&] { return store->change_names(names); })) return;
-    written_.has_claim = true;
-    if (!append(*store, epoch, false)) return;
+  using Call = std::function<StoreResult<void>()>;
 
-    const EditRecord& last = written_.log.back();
-    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
-        {kChunk, sample_chunk(rng_, last.version)}};
-    const Sequence seq = last.version.seq;
-    if (!write(*store, [&] { return store->save_snapshots(chunks, seq); })) return;
-    written_.checkpoint = seq;
-    if (!write(*store, [&] { return store->save_tiles({}); })) return;
-    const Keyframe keyframe{
-        {last.version, last.time_us},
-        1,
-        world_digest_term(kChunk, chunks[0].second->digest) - world_digest_term(kChunk, {})};
-    if (!write(*store, [&] { return store->save_keyframe(chunks, keyframe); })) return;
-    if (!write(*store, [&] { return store->compact(seq); })) return;
-    written_.head = seq;
-    append(*store, epoch, false);
-  }
-
-  std::unique_ptr<Store> open() {
-    const std::string place = proxy_.through(world_.place());
-    name_ = place_name(place);
-    const auto tried = [&] { return open_world(place, StoreAccess::read_write, "", long_lease()); };
-    auto store = tried();
-    if (!store) check_error(store.error(), fault_, name_);
-    if (!store && can_be_repeated(store.error())) {
+  /// Makes a fault strike each statement of a call in turn. `prepare` comes before each call and meets no
+  /// fault. Returns the number of faults.
+  std::uint64_t meet_faults(const std::string& name, const std::function<void()>& prepare,
+                            const Call& call) {
+    for (std::uint64_t statement = 1; statement < kStatementsMax; ++statement) {
+      CAPTURE(name, statement, text_of(fault_));
+      prepare();
+      proxy_.fail(statement, fault_);
+      meet_fault(call);
+      const bool has_failed = proxy_.has_failed();
+      if (has_failed && fault_.kind != ProxyFault::Kind::error && store_) {
+        check_refuses();
+        store_.reset();
+      }
       proxy_.heal();
-      proxy_.wait_for_ends();
-      world_.end_lease();
-      store = tried();
-      INFO((store ? "" : store.error().message()));
-      REQUIRE(store.has_value());
+      verify_anew();
+      if (!has_failed) return statement - 1;
     }
-    return store ? *std::move(store) : nullptr;
+    FAIL("the statements never end");
+    return 0;
   }
 
-  bool append(Store& store, Epoch epoch, bool with_rights) {
-    auto records = sample_records(rng_, epoch, written_.log.size() + 1, 2);
+  /// Calls `call`, and once more if nothing was written. Ends the store if the server would end although
+  /// its connection is alive.
+  void meet_fault(const Call& call) {
+    const auto done = call();
+    if (done) return;
+    check_error(done.error(), fault_, name_);
+    if (can_be_repeated(done.error())) {
+      proxy_.heal();
+      if (!store_) close();
+      return require(call());
+    }
+    // Only a request whose answer was lost can have been carried out.
+    if (!fault_.is_in_answer()) written_.next.clear();
+    if (fault_.kind == ProxyFault::Kind::error) store_.reset();
+  }
+
+  /// Checks that a store without a connection writes nothing more, and says why.
+  void check_refuses() {
+    const auto refused = store_->append({}, {});
+    REQUIRE_FALSE(refused.has_value());
+    INFO(refused.error().message());
+    CHECK(refused.error().kind == StoreError::Kind::io);
+    CHECK(has_any(refused.error().what,
+                  {"no connection to the server", "an earlier commit failed",
+                   "server closed the connection unexpectedly",
+                   "could not receive data from server", "could not send data to server"}));
+  }
+
+  /// Opens the world without a fault and verifies it.
+  void verify_anew() {
+    if (store_) {
+      auto reader = open_world(world_.place(), StoreAccess::read_only);
+      INFO((reader ? "" : reader.error().message()));
+      REQUIRE(reader.has_value());
+      return verify(**reader, written_);
+    }
+    close();
+    require(open());
+    verify(*store_, written_);
+    require(raise_epoch());
+  }
+
+  static void require(const StoreResult<void>& done) {
+    INFO((done ? "" : done.error().message()));
+    REQUIRE(done.has_value());
+  }
+
+  void close() {
+    store_.reset();
+    proxy_.wait_for_ends();
+    world_.end_lease();
+  }
+  StoreResult<void> open() {
+    auto store =
+        open_world(proxy_.through(world_.place()), StoreAccess::read_write, "", long_lease());
+    if (!store) return failure(store.error());
+    store_ = *std::move(store);
+    return {};
+  }
+  StoreResult<void> raise_epoch() {
+    const auto raised = store_->raise_epoch();
+    if (!raised) return failure(raised.error());
+    written_.epoch = *raised;
+    return {};
+  }
+  StoreResult<void> append(bool with_rights) {
+    auto records = sample_records(rng_, written_.epoch, written_.log.size() + 1, 2);
     if (with_rights) {
       records[0].cause = Cause::rights;
       records[0].subject = 0;
@@ -145,90 +223,57 @@ class FaultyLives {
     }
     const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
     written_.next = records;
-    const bool done = write(store, [&] { return store.append(players, records); });
-    if (!done) return false;
+    auto done = store_->append(players, records);
+    if (!done) return done;
     written_.log.insert(written_.log.end(), records.begin(), records.end());
     written_.next.clear();
-    for (const PlayerRow& player : players) written_.players.insert(player.author);
-    return true;
+    written_.has_players = true;
+    return {};
   }
-
-  /// Calls `call`, and once more if nothing was written. Returns false if the server would end.
-  template <class Call>
-  bool write(Store& store, const Call& call) {
-    const StoreResult<void> done = call();
-    if (done) return true;
-    check_error(done.error(), fault_, name_);
-    if (!can_be_repeated(done.error())) {
-      // Only a request whose answer was lost can have been carried out.
-      if (!fault_.is_in_answer()) written_.next.clear();
-      if (!store.is_usable()) check_refuses(store);
-      return false;
-    }
-    proxy_.heal();
-    const StoreResult<void> again = call();
-    INFO((again ? "" : again.error().message()));
-    REQUIRE(again.has_value());
-    return true;
+  /// The claim is there at the end, whether it was there before or not.
+  StoreResult<void> change_names() {
+    const std::vector<NameChange> names = {{kClaim, true}, {kClaim, false}};
+    auto done = store_->change_names(names);
+    if (done) written_.has_claim = true;
+    return done;
   }
-
-  void check_refuses(Store& store) const {
-    const auto refused = store.append({}, {});
-    REQUIRE_FALSE(refused.has_value());
-    INFO(refused.error().message());
-    CHECK(refused.error().kind == StoreError::Kind::io);
-    CHECK(
-        has_any(refused.error().what, {"no connection to the server", "an earlier commit failed"}));
+  StoreResult<void> save_snapshots() {
+    const Sequence seq = written_.end().version.seq;
+    auto done = store_->save_snapshots(chunks(), seq);
+    if (done) written_.checkpoint = seq;
+    return done;
   }
-
-  void verify() {
-    const auto store = world_.sound_world();
-    REQUIRE(store != nullptr);
-    const auto range = *store->log_range();
-    const Sequence last = range.last.version.seq;
-    if (last == written_.log.size() + written_.next.size())
-      written_.log.insert(written_.log.end(), written_.next.begin(), written_.next.end());
-    written_.next.clear();
-    REQUIRE(last == written_.log.size());
-    REQUIRE(range.first > written_.head);
-    written_.head = range.first - 1;
-    std::vector<EditRecord> read;
-    REQUIRE(store->read_log(range.first, last, [&](const EditRecord& record) {
-      read.push_back(record);
-      return true;
-    }));
-    const auto kept = written_.log.begin() + static_cast<std::ptrdiff_t>(written_.head);
-    CHECK(read == std::vector(kept, written_.log.end()));
-    CHECK(store->epoch() >= written_.epoch);
-    CHECK(*store->checkpoint() >= written_.checkpoint);
-    std::set<AuthorId> players;
-    for (const PlayerRow& player : *store->players()) CHECK(players.insert(player.author).second);
-    CHECK(std::includes(players.begin(), players.end(), written_.players.begin(),
-                        written_.players.end()));
-    const auto claims = *store->name_claims();
-    CHECK(claims.size() <= 1);
-    if (written_.has_claim) CHECK(claims == std::vector{kClaim});
+  StoreResult<void> save_keyframe() {
+    const auto saved = chunks();
+    const Digest digest =
+        world_digest_term(kChunk, saved[0].second->digest) - world_digest_term(kChunk, {});
+    return store_->save_keyframe(saved, Keyframe{written_.end(), 1, digest});
+  }
+  StoreResult<void> compact() {
+    const Sequence seq = written_.end().version.seq;
+    auto done = store_->compact(seq);
+    if (done) written_.head = seq;
+    return done;
+  }
+  /// Returns a chunk as the last edit left it.
+  std::vector<std::pair<ChunkKey, ChunkPtr>> chunks() {
+    return {{kChunk, sample_chunk(rng_, written_.end().version)}};
   }
 
   WatchedWorld world_;
   FaultProxy proxy_;
+  const std::string name_;  // of the database, through the proxy
   const ProxyFault fault_;
-  std::string name_;  // of the database, through the proxy
   SplitMix64 rng_{17};
   Written written_;
+  std::unique_ptr<Store> store_;
 };
 
 }  // namespace
 
 TEST_CASE("no fault at any statement loses a durable edit, writes one twice or has wrong words",
           "[.postgres-server]") {
-  for (const ProxyFault& fault : all_faults()) {
-    FaultyLives lives(fault);
-    std::uint64_t statement = 1;
-    while (statement < kStatementsMax && lives.live(statement)) ++statement;
-    CHECK(statement > 100);
-    CHECK(statement < kStatementsMax);
-  }
+  for (const ProxyFault& fault : all_faults()) CHECK(FaultyLife(fault).run() > 100);
 }
 
 TEST_CASE("no fault at any statement leaves a part of a new world or has wrong words",
@@ -237,26 +282,30 @@ TEST_CASE("no fault at any statement leaves a part of a new world or has wrong w
     WatchedWorld world;
     FaultProxy proxy(world.place());
     const std::string place = proxy.through(world.place());
-    // When the world is there, creating opens it; the other case has the statements of that.
-    bool is_there = false;
-    std::uint64_t statement = 0;
-    while (!is_there && ++statement < kStatementsMax) {
+    // When the world is there, creating opens it, and the other case has the statements of that.
+    for (std::uint64_t statement = 1;; ++statement) {
+      REQUIRE(statement < kStatementsMax);
       CAPTURE(statement, text_of(fault));
       world.end_lease();
       proxy.fail(statement, fault);
+      bool is_made = false;
       {
         const auto made = create_world(place, sample_meta(), "", long_lease());
+        is_made = made.has_value();
         if (!made) check_error(made.error(), fault, place_name(place));
-        is_there = made.has_value();
       }
       proxy.heal();
       proxy.wait_for_ends();
-      const auto store = world.sound_world();
-      if (is_there) REQUIRE(store != nullptr);
-      is_there = store != nullptr;
+      const auto store = open_world(world.place(), StoreAccess::read_only);
+      if (store) require_sound(**store);
+      CHECK((store.has_value() || store.error().kind == StoreError::Kind::not_a_world));
+      CHECK((store.has_value() || !is_made));
+      if (store && !is_made) {
+        CHECK(statement > 20);
+        break;
+      }
+      if (is_made) world.remove();
     }
-    CHECK(statement > 30);
-    CHECK(is_there);
   }
 }
 
