@@ -49,7 +49,7 @@ TEST_CASE("an owner whose renewal was cut off once renews again, and nobody else
   for (const ProxyFault& fault : cut_connections()) {
     for (std::uint64_t statement = 1; statement <= kRenewalStatements; ++statement) {
       CAPTURE(statement, text_of(fault));
-      OwnerBehindProxy bench(milliseconds(3'000));
+      OwnerBehindProxy bench(milliseconds(1'500));
       bench.proxy.fail(statement, fault);
       REQUIRE(comes_true([&] { return bench.proxy.has_failed(); }));
       const auto second = bench.open_as_second(false);
