@@ -27,18 +27,22 @@ std::string connection_message(PGconn* handle) {
   return text.substr(0, text.find('\n'));
 }
 
-void ClearResult::operator()(PGresult* result) const { PQclear(result); }
-void FinishConnection::operator()(PGconn* handle) const { PQfinish(handle); }
-
-Unexpected<Error> PostgresConnection::result_failure(const PGresult* result) const {
+Error result_error(PGconn* handle, const std::string& name, const PGresult* result) {
   const char* message =
       result == nullptr ? nullptr : PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-  if (message == nullptr) return {Error{Error::Kind::io, name_, connection_message(handle_.get())}};
+  if (message == nullptr) return {Error::Kind::io, name, connection_message(handle)};
   std::string what = message;
   if (const char* detail = PQresultErrorField(result, PG_DIAG_MESSAGE_DETAIL))
     what += std::string(": ") + detail;
   const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
-  return {Error{kind_of_state(state == nullptr ? "" : state), name_, std::move(what)}};
+  return {kind_of_state(state == nullptr ? "" : state), name, std::move(what)};
+}
+
+void ClearResult::operator()(PGresult* result) const { PQclear(result); }
+void FinishConnection::operator()(PGconn* handle) const { PQfinish(handle); }
+
+Unexpected<Error> PostgresConnection::result_failure(const PGresult* result) const {
+  return failure(result_error(handle_.get(), name_, result));
 }
 
 bool PostgresConnection::is_connected() const { return PQstatus(handle_.get()) == CONNECTION_OK; }
@@ -102,6 +106,7 @@ Result<void> PostgresConnection::begin_write() {
   // PostgreSQL would only warn, and the end of the inner transaction would commit the outer one.
   if (is_writing_ || reads_ > 0)
     return failure(Error{Error::Kind::bad_statement, name_, "a transaction is open already"});
+  if (auto ended = end_left_transaction(); !ended) return ended;
   // At other levels, PostgreSQL refuses to read a row that was changed after the begin, such as a lease
   // that was renewed. The database may have another level as its default.
   auto begun = run("BEGIN ISOLATION LEVEL READ COMMITTED");
@@ -121,14 +126,20 @@ Result<void> PostgresConnection::commit() {
 }
 
 Result<void> PostgresConnection::roll_back() {
-  static_cast<void>(drain().has_value());
   unreported_.reset();
+  static_cast<void>(drain().has_value());
   is_writing_ = false;
+  return run("ROLLBACK");
+}
+
+Result<void> PostgresConnection::end_left_transaction() {
+  if (PQtransactionStatus(handle_.get()) == PQTRANS_IDLE) return {};
   return run("ROLLBACK");
 }
 
 Result<void> PostgresConnection::begin_reads() {
   if (!is_writing_ && reads_ == 0) {
+    if (auto ended = end_left_transaction(); !ended) return ended;
     if (auto begun = run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"); !begun) return begun;
   }
   ++reads_;
@@ -149,6 +160,7 @@ Result<PostgresResult> PostgresConnection::execute(const PreparedText& statement
     if (auto drained = drain(&result); !drained) return failure(drained.error());
     return result;
   }
+  if (auto drained = drain(); !drained) return failure(drained.error());  // an unreported error
   const std::vector<int> formats(values.data.size(), 1);
   result.reset(PQexecPrepared(handle_.get(), statement.name.c_str(),
                               static_cast<int>(values.data.size()), values.data.data(),

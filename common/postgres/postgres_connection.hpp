@@ -30,6 +30,9 @@ using ConnectionHandle = std::unique_ptr<pg_conn, FinishConnection>;
 
 /// Returns the first line of the last error of a connection. The others are advice.
 std::string connection_message(pg_conn* handle);
+/// Returns the error of a result, or of the connection if the result is null. `name` is that of the
+/// database in messages.
+Error result_error(pg_conn* handle, const std::string& name, const pg_result* result);
 
 /// A statement that the server has prepared.
 struct PreparedText {
@@ -69,6 +72,8 @@ class PostgresConnection final : public Connection {
   Result<void> send(const PreparedText& statement, const PostgresValues& values);
 
  private:
+  /// Ends a transaction whose end has failed. Otherwise the next one would become a part of it.
+  Result<void> end_left_transaction();
   /// Sends a statement in pipeline mode.
   Result<void> enqueue(const PreparedText& statement, const PostgresValues& values);
   /// Waits for the answers of all statements that were sent. Returns the first error. Sets `last`

@@ -96,7 +96,7 @@ Result<std::string> run(PGconn* handle, const std::string& name, const char* sql
   const PostgresResult result(PQexec(handle, sql));
   const ExecStatusType status = PQresultStatus(result.get());
   if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK)
-    return failure(Error{Error::Kind::io, name, connection_message(handle)});
+    return failure(result_error(handle, name, result.get()));
   return std::string(PQntuples(result.get()) > 0 ? PQgetvalue(result.get(), 0, 0) : "");
 }
 
@@ -121,6 +121,7 @@ Result<void> refuse_shared_session(pg_conn* handle, const std::string& name,
                                    const std::function<ConnectionHandle()>& connect) {
   // A pooler has given the connection a key of its own to cancel statements.
   const Answer first = ask(handle, kProcess);
+  if (PQstatus(handle) != CONNECTION_OK) return failure(Error{Error::Kind::io, name, first.error});
   if (!first.value || *first.value == std::to_string(PQbackendPID(handle))) return {};
   const ConnectionHandle other = connect();
   if (PQstatus(other.get()) != CONNECTION_OK) return {};

@@ -138,9 +138,9 @@ StoreResult<void> make_table(sql::Database& writer) {
   }
   // PostgreSQL can refuse this if another program makes the table at the same moment. The table is there
   // at the second try.
-  if (!writer.run(kMakeTable)) {
-    if (auto made = writer.run(kMakeTable); !made) return failed(made.error());
-  }
+  auto made = writer.run(kMakeTable);
+  if (!made && writer.is_connected()) made = writer.run(kMakeTable);
+  if (!made) return failed(made.error());
   return store_result(writer.run(kMakeRow));
 }
 

@@ -101,6 +101,7 @@ StoreResult<void> SqlStore::save_keyframe(ChunkSpan chunks,
     }
     if (!keyframe) return {};
     if (auto fits = check_keyframe(*keyframe, *range); !fits) {
+      if (fits.error().may_pass()) return fits;
       return refuse(fits.error().where, fits.error().what);
     }
     const auto start = completed(*head);

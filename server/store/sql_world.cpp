@@ -177,7 +177,12 @@ StoreResult<void> SqlStore::read_state() {
     const auto open = meta_table_.open_epoch();
     if (!open) return failed(open.error());
     is_open_ = open->has_value();
-    if (const auto range = log_range()) end = range->last.version.seq;
+    const auto range = log_range();
+    if (range) {
+      end = range->last.version.seq;
+    } else if (range.error().may_pass()) {
+      return failed(range.error());
+    }
     return {};
   });
   if (!read) return read;
