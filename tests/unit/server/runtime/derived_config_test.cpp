@@ -46,7 +46,7 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
   CHECK(world.sessions_per_key == 6);
   CHECK(world.sessions_per_address == 7);
   CHECK(world.range_seats_percent == 40);
-  CHECK(world.stop_us_max == 4'000'000);
+  CHECK(world.stop_us_max == 3'000'000);
   CHECK(world.speed_max == 70);
 }
 
