@@ -117,8 +117,10 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     handle_input(now_us);
     step_menu(now_us);
     pipeline_.take_drawn();
-    for (const std::string& file : pipeline_.take_unwritten())
-      spdlog::warn("screenshot={} cannot be written", file);
+    for (const std::string& failed : pipeline_.take_unwritten()) {
+      spdlog::warn("no screenshot: {}", failed);
+      hud_.notify("no picture: " + failed);
+    }
     log_.log_players(session_.others(), now_us);
     show_news();
     if (runner_) runner_->step(now_us);

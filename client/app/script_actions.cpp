@@ -175,7 +175,7 @@ std::string ScriptActions::screenshot_path(const std::string& file) const {
   return (std::filesystem::path(screenshot_folder_) / file).string();
 }
 
-std::optional<bool> ScriptActions::screenshot_written() const {
+std::optional<Result<void, std::string>> ScriptActions::screenshot_written() const {
   if (!play_.pipeline().screenshots_done()) return std::nullopt;
   return play_.pipeline().screenshots_written();
 }

@@ -84,9 +84,9 @@ class ScriptActions final : public ScriptHost {
   bool screenshot(const std::string& file) override;
   /// Returns where the screenshot of this name goes.
   std::string screenshot_path(const std::string& file) const;
-  std::optional<bool> screenshot_written() const override;
-  bool digests(const std::string& file) override {
-    return write_digests(file, session_).has_value();
+  std::optional<Result<void, std::string>> screenshot_written() const override;
+  Result<void, std::string> digests(const std::string& file) override {
+    return write_digests(file, session_);
   }
 
   /// The longest time for which loaded() waits for a moment without unfinished meshes after all

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "client/display/drawn_world.hpp"
-#include "client/render/image.hpp"
+#include "client/render/png_file.hpp"
 #include "client/report/exit_code.hpp"
 #include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
@@ -81,9 +81,9 @@ class DrawService {
     const TimeUs start = steady_now_us();
     const RenderStats stats =
         world_->draw(camera_of(picture.camera), picture.size.width, picture.size.height);
-    if (!write_png(picture.file, screen_.read_image())) {
+    if (const auto written = write_png(picture.file, screen_.read_image()); !written) {
       code_ = kExitFailed;
-      return answer(PictureUnwritten{picture.file});
+      return answer(PictureUnwritten{written.error()});
     }
     const auto took = static_cast<std::uint64_t>(steady_now_us() - start);
     return answer(PictureDrawn{stats.quads_drawn, stats.chunks_drawn, took, picture.file});

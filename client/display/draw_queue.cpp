@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/display/eye_chunk.hpp"
+#include "client/render/png_file.hpp"
 #include "common/core/assert.hpp"
 #include "common/os/steady_clock.hpp"
 
@@ -20,7 +21,8 @@ FrameDone draw_frame(Screen& screen, const FrameOrder& order) {
   if (order.screenshots.empty()) return done;
   const Image image = screen.read_image();
   for (const std::string& file : order.screenshots) {
-    if (!write_png(file, image)) done.unwritten.push_back(file);
+    if (const auto written = write_png(file, image); !written)
+      done.unwritten.push_back(written.error());
   }
   return done;
 }

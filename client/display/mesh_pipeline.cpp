@@ -88,7 +88,10 @@ void MeshPipeline::take_frame(const FrameDone& frame) {
   if (measures_frames_) look_.frame_took(last_frame_us_);
   recent_frames_.push_back(frame);
   if (recent_frames_.size() > kRecentFramesMax) recent_frames_.pop_front();
-  if (frame_.screenshots) screenshots_written_ = frame.unwritten.empty();
+  if (frame_.screenshots) {
+    screenshots_written_ = {};
+    if (!frame.unwritten.empty()) screenshots_written_ = failure(frame.unwritten.front());
+  }
   frame_ = {};
   if (!watched_ && !is_unpaced_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
   unwritten_.insert(unwritten_.end(), frame.unwritten.begin(), frame.unwritten.end());

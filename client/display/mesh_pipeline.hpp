@@ -105,9 +105,11 @@ class MeshPipeline {
   /// frame after kScreenshotWaitUs. Requires draws().
   void request_screenshot(std::string path, TimeUs now_us);
   bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
-  /// Returns true if the newest completed screenshots could be written.
-  bool screenshots_written() const { return screenshots_written_; }
-  /// Returns the screenshots since the last call that could not be written.
+  /// Fails if one of the newest completed screenshots could not be written. The error begins with
+  /// the name of the file.
+  const Result<void, std::string>& screenshots_written() const { return screenshots_written_; }
+  /// Returns why screenshots since the last call could not be written. Each text begins with the name
+  /// of the file.
   std::vector<std::string> take_unwritten() { return std::exchange(unwritten_, {}); }
 
   /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.
@@ -192,9 +194,9 @@ class MeshPipeline {
   TimeUs next_frame_us_ = 0;              // the earliest time of a frame without new edits
   std::vector<std::string> screenshots_;  // files requested
   TimeUs screenshot_since_us_ = 0;
-  bool screenshots_written_ = true;
-  std::vector<std::string> unwritten_;  // screenshots that could not be written
-  DrawQueue* const draw_queue_;         // may be null
+  Result<void, std::string> screenshots_written_;  // of the newest completed ones
+  std::vector<std::string> unwritten_;             // of take_unwritten()
+  DrawQueue* const draw_queue_;                    // may be null
   // Null until the materials are set. It is the last member, because its threads use the others.
   std::unique_ptr<MeshPool> pool_;
 };

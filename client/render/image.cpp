@@ -7,6 +7,7 @@
 #endif
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -35,12 +36,19 @@ Image halved(const Image& image) {
   return out;
 }
 
-bool write_png(const std::string& file, const Image& image) {
+Bytes encode_png(const Image& image) {
   // The pixels of flat faces repeat. Without a PNG filter the file is smaller and takes half the
   // time.
   stbi_write_force_png_filter = 0;
-  return stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(),
-                        image.width * 3) != 0;
+  Bytes out;
+  const auto append = [](void* to, void* data, int size) {
+    const auto* const bytes = static_cast<const std::uint8_t*>(data);
+    auto& all = *static_cast<Bytes*>(to);
+    all.insert(all.end(), bytes, bytes + size);
+  };
+  stbi_write_png_to_func(append, &out, image.width, image.height, 3, image.rgb.data(),
+                         image.width * 3);
+  return out;
 }
 
 }  // namespace runstone

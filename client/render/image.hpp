@@ -1,8 +1,9 @@
-// Image: the pixels of a frame in memory, which can be written to a PNG file.
+// Image: the pixels of a frame in memory.
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
+
+#include "common/core/bytes.hpp"
 
 namespace runstone {
 
@@ -15,7 +16,7 @@ struct Image {
 /// smooth picture of a frame that was drawn twice as large. An odd last row or column is dropped.
 Image halved(const Image& image);
 
-/// Writes a PNG file. Returns false if it cannot be written.
-bool write_png(const std::string& file, const Image& image);
+/// Returns the bytes of a PNG file, or none if there is no memory for them.
+Bytes encode_png(const Image& image);
 
 }  // namespace runstone

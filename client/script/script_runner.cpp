@@ -361,7 +361,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Screenshot& c) {
   }
   const auto written = host_.screenshot_written();
   if (!written) return Progress::waits;
-  if (!*written) fail(c.file + " cannot be written");
+  if (!*written) fail(written->error());
   return Progress::done;
 }
 
@@ -380,7 +380,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Expect& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
-  if (!host_.digests(c.file)) fail(c.file + " cannot be written");
+  if (const auto written = host_.digests(c.file); !written) fail(written.error());
   return Progress::done;
 }
 

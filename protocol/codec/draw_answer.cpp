@@ -46,7 +46,7 @@ std::string to_line(const DrawAnswer& answer) {
                    " " + done->file);
   }
   if (const auto* unwritten = std::get_if<PictureUnwritten>(&answer)) {
-    return as_line("unwritten " + unwritten->file);
+    return as_line("unwritten " + unwritten->text);
   }
   return as_line("error " + std::get<DrawFailed>(answer).text);
 }

@@ -2,7 +2,8 @@
 // sender of draw orders (draw_order.hpp) can wait for its pictures:
 //   ready VERSION RENDERER                     once, when there is OpenGL
 //   drawn quads=N chunks=N us=N FILE           a picture is on disk
-//   unwritten FILE the picture could not be written; the next one may succeed
+//   unwritten TEXT                             the picture could not be written: its file and why;
+//                                              the next one may succeed
 //   error TEXT                                 no OpenGL, or an invalid order: the program ends
 // Any other line is no answer.
 #pragma once
@@ -30,7 +31,7 @@ struct PictureDrawn {
   friend bool operator==(const PictureDrawn&, const PictureDrawn&) = default;
 };
 struct PictureUnwritten {
-  std::string file;
+  std::string text;  // begins with the name of the file, such as "a.png: cannot be written: ..."
   friend bool operator==(const PictureUnwritten&, const PictureUnwritten&) = default;
 };
 struct DrawFailed {

@@ -1,18 +1,15 @@
 #include "server/backup/world_backup.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "common/os/private_file.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -27,27 +24,18 @@ constexpr std::string_view kDatabase = "world.sqlite", kMark = "world.durable";
 constexpr std::array<std::string_view, 6> kMadeAnew = {"world.sqlite-wal", "world.sqlite-shm",
                                                        "chat.sqlite-wal",  "chat.sqlite-shm",
                                                        "world.lock",       "control.sock"};
-constexpr std::uintmax_t kConfigurationBytesMax = 1 << 20;
+constexpr std::uintmax_t kConfigurationBytesMax = kSmallFileBytesMax;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Copies a small file and makes the copy readable for its owner only.
+/// Copies a small file and makes the copy readable for its owner only. It is on disk on return. Fails
+/// with the reason and leaves no part of it.
 Result<void, std::string> copy_small(const fs::path& from, const fs::path& to) {
-  std::ifstream in(from, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in) return failure(from.string() + ": cannot be read");
-  const int made = ::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (made < 0) {
-    return failure(to.string() + ": cannot be made: " + std::generic_category().message(errno));
-  }
-  ::close(made);
-  std::ofstream out(to, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) return failure(to.string() + ": cannot be written: the disk may be full");
-  return {};
+  const auto bytes = read_file(from.string(), kSmallFileBytesMax);
+  if (!bytes) return failure(bytes.error());
+  return write_private_file(to.string(), *bytes);
 }
 
 bool is_configuration(const fs::directory_entry& entry) {

@@ -123,8 +123,8 @@ DrawChild::Outcome<PictureDrawn> DrawChild::draw(const DrawCamera& camera, Pictu
   auto answer = await_answer();
   if (!answer) return failure(answer.error());
   if (const auto* failed = std::get_if<DrawFailed>(&*answer)) return lost(failed->text);
-  if (std::holds_alternative<PictureUnwritten>(*answer))
-    return failure(file + ": cannot be written");
+  if (auto* unwritten = std::get_if<PictureUnwritten>(&*answer))
+    return failure(std::move(unwritten->text));
   auto* drawn = std::get_if<PictureDrawn>(&*answer);
   if (drawn == nullptr || drawn->file != file) return lost("sent an answer to another order");
   return std::move(*drawn);

@@ -44,6 +44,7 @@ std::string map_state_json(MapWorld& world, const LogRange& range, const LogEnd&
   Json out{{"seq", present.at()},     {"edge", meta.chunk_edge},
            {"tile", kMapTileSide},    {"zoom_max", kMapZoomMax},
            {"look_back", looks_back}, {"spawn", {meta.spawn.x, meta.spawn.z}}};
+  out["lacks_edits"] = world.loss().has_value();
   if (const auto bounds = present.ground().bounds()) {
     const std::int32_t edge = meta.chunk_edge;
     out["bounds"] = {bounds->min.x * edge, bounds->min.z * edge, bounds->max.x * edge,

@@ -129,6 +129,7 @@ std::optional<MapAnswer> MapService::serve(const Job& job) {
   const auto refreshed = world_.refresh(
       steady_now_us(), utc_now_us(), [this](Sequence, Sequence) { return !is_stopping_.load(); });
   if (!refreshed) return answer_to(refreshed.error());
+  report_loss();
   if (!world_.rights().may_see) return map_words(403, world_.rights().why);
   if (const auto* tile = std::get_if<TilePictureRequest>(&job.request))
     return serve(*tile, job.if_none_match);
@@ -221,6 +222,13 @@ std::optional<MapAnswer> MapService::serve_recent_edits() {
   const auto edits = newest_edits_of_world(world_.present().reader());
   if (!edits) return answer_to(edits.error());
   return json_answer(map_edits_json(world_, *edits));
+}
+
+void MapService::report_loss() {
+  const std::string loss = world_.loss() ? world_.loss()->message() : "";
+  if (loss == reported_loss_) return;
+  reported_loss_ = loss;
+  if (!loss.empty()) warn_("LOST: " + loss + ". The map shows what is left");
 }
 
 std::optional<MapAnswer> MapService::answer_to(const StoreError& error) {

@@ -48,7 +48,8 @@ class MapService final : MapThreads::Map {
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
   using Reply = std::function<void(MapAnswer)>;
-  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds.
+  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds. That the
+  /// world lacks edits is reported once, until it lacks others.
   using Warn = std::function<void(const std::string&)>;
 
   /// `threads` must outlive the service. `place`: of the world, which need not exist yet.
@@ -90,6 +91,8 @@ class MapService final : MapThreads::Map {
   /// another turn.
   Result<MapMoment*, std::optional<MapAnswer>> moment_of(const std::optional<Sequence>& at);
   std::optional<MapAnswer> answer_to(const StoreError& error);
+  /// Reports a loss of the world that was not reported yet.
+  void report_loss();
   bool should_continue() const;
 
   MapThreads& threads_;
@@ -97,7 +100,8 @@ class MapService final : MapThreads::Map {
   MapCaches caches_;
   // These belong to the turns.
   MapWorld world_;
-  TimeUs warned_us_ = 0;  // the time of the last warning; 0: none
+  TimeUs warned_us_ = 0;       // the time of the last warning; 0: none
+  std::string reported_loss_;  // empty: the world lacked no edits
   TimeUs turn_ends_us_ = 0;
   TimeUs short_turn_ends_us_ = 0;  // if quick requests wait
   int quick_in_row_ = 0;

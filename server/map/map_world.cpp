@@ -42,7 +42,7 @@ StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us,
   StoreResult<void> done;
   if (!file) {
     done = failure(file.error());
-  } else if (world_ != nullptr && world_->file == *file) {
+  } else if (world_ != nullptr && world_->file == *file && !has_old_loss(steady_us)) {
     done = follow(utc_us, progress);
     // The log may have been compacted or replaced. Then the world is opened anew.
     if (!done) done = open(*file, utc_us, progress);
@@ -55,8 +55,13 @@ StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us,
     past_.clear();  // the moments refer to the world's generator
     world_.reset();
   }
+  if (world_ != nullptr && world_->opened_us == 0) world_->opened_us = steady_us;
   refreshed_us_ = steady_us;
   return done;
+}
+
+bool MapWorld::has_old_loss(TimeUs steady_us) const {
+  return loss().has_value() && steady_us - world_->opened_us >= kLossAgeUsMax;
 }
 
 StoreResult<void> MapWorld::open(const FileId& file, TimeUs utc_us,

@@ -7,6 +7,7 @@
 
 #include "common/core/hex.hpp"
 #include "common/os/output_file.hpp"
+#include "server/replay/subcommand.hpp"
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
@@ -42,6 +43,8 @@ void print_world(std::ostream& out, const Store& store) {
   row(out, "world") << to_hex(store.meta().world_id) << "  " << store.file() << '\n';
   print_loss(out, store);
 }
+
+int code_of_output(const Store& store) { return store.loss() ? kReplayDifferent : kReplayEqual; }
 
 Result<void, std::string> write_report(const std::string& file, const std::string& json) {
   if (file.empty()) return {};

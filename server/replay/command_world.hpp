@@ -37,6 +37,10 @@ void print_loss(std::ostream& out, const Store& store);
 /// Writes the row "world": id and file. Then print_loss().
 void print_world(std::ostream& out, const Store& store);
 
+/// Returns the exit code of a subcommand that has written what a world holds: kReplayDifferent if the
+/// world lacks edits that were durable, so that they are missing in the output too, or kReplayEqual.
+int code_of_output(const Store& store);
+
 /// Writes a report, given as JSON text, to `file`, or does nothing if `file` is empty. The error is
 /// one line.
 Result<void, std::string> write_report(const std::string& file, const std::string& json);

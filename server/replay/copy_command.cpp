@@ -44,10 +44,11 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
                                        {"seq", at},
                                        {"written", options.folder},
                                        {"chunks", copy->chunks},
+                                       {"lost", store.loss() ? store.loss()->message() : ""},
                                        {"world_digest", to_hex(copy->world_digest)}};
   const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return failure(written.error());
-  return kReplayEqual;
+  return code_of_output(store);
 }
 
 }  // namespace runstone

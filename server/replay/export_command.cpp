@@ -5,7 +5,6 @@
 
 #include "server/replay/command_world.hpp"
 #include "server/replay/rlog_file.hpp"
-#include "server/replay/subcommand.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -30,7 +29,7 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
       {"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}};
   const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return failure(written.error());
-  return kReplayEqual;
+  return code_of_output(**store);
 }
 
 }  // namespace runstone

@@ -45,7 +45,7 @@ struct CopyOptions {
 };
 
 void declare_copy(SubcommandOptions& command_line, CopyOptions& options);
-/// Makes the new world and prints a table.
+/// Makes the new world and prints a table. Returns the code of code_of_output() (command_world.hpp).
 Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out);
 
 /// export: writes a world's log to an .rlog file (docs/edit-log.md).
@@ -56,7 +56,7 @@ struct ExportOptions {
 };
 
 void declare_export(SubcommandOptions& command_line, ExportOptions& options);
-/// Writes the file and prints a table.
+/// Writes the file and prints a table. Returns the code of code_of_output() (command_world.hpp).
 Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out);
 
 /// import: appends an .rlog file to a world's log, or makes the world (docs/replay.md).

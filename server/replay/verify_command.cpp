@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <string>
 
 #include "common/core/hex.hpp"
 #include "common/os/progress_line.hpp"
@@ -35,6 +36,15 @@ struct VerifyReport {
   }
 };
 
+/// Returns the text of the row "result". It is "equal" only if everything agrees and no edit is
+/// lost, so that a script may look for this word.
+std::string result_text(std::uint64_t differences, bool has_loss) {
+  const std::string count = std::to_string(differences) + " differences";
+  if (has_loss)
+    return "incomplete: " + count + " in what is left; the row LOST says what is missing";
+  return differences == 0 ? "equal" : count;
+}
+
 void print_table(std::ostream& out, const Store& store, const VerifyReport& whole, double seconds) {
   const ReplayReport& report = whole.replay;
   const WorldMeta& meta = store.meta();
@@ -63,11 +73,7 @@ void print_table(std::ostream& out, const Store& store, const VerifyReport& whol
   row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
                    << rate_of(report, seconds) << " edits/s\n";
   row(out, "digest") << to_hex(report.world_digest) << '\n';
-  row(out, "result") << (whole.differences() == 0
-                             ? "equal"
-                             : std::to_string(whole.differences()) + " differences")
-                     << (store.loss() ? " in what is left; the row LOST says what is missing" : "")
-                     << '\n';
+  row(out, "result") << result_text(whole.differences(), store.loss().has_value()) << '\n';
   if (whole.differences() != 0) row(out, "first") << whole.first_difference() << '\n';
 }
 

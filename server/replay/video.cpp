@@ -1,48 +1,105 @@
 #include "server/replay/video.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 #include "common/os/child_program.hpp"
+#include "common/os/file_writer.hpp"
+#include "common/os/output_file.hpp"
 
 namespace runstone {
 namespace {
 
-std::vector<std::string> words_of_command(std::uint32_t fps) {
-  // Video players expect yuv420p, which has half the resolution for colours and needs even sides.
-  return {"ffmpeg",       "-y",
-          "-loglevel",    "error",
-          "-framerate",   std::to_string(fps),
-          "-i",           "frame-%06d.png",
-          "-vf",          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-          "-pix_fmt",     "yuv420p",
-          "timelapse.mp4"};
+constexpr const char* kVideo = "timelapse.mp4";
+/// ffmpeg writes this file, which becomes the video when it is complete.
+constexpr const char* kPartialVideo = "timelapse.partial.mp4";
+
+/// Removes a file at the end of its scope, if it is still there.
+class RemovedAtEnd {
+ public:
+  explicit RemovedAtEnd(std::string file) : file_(std::move(file)) {}
+  ~RemovedAtEnd() { ::unlink(file_.c_str()); }
+  RemovedAtEnd(const RemovedAtEnd&) = delete;
+  RemovedAtEnd& operator=(const RemovedAtEnd&) = delete;
+
+ private:
+  const std::string file_;
+};
+
+std::vector<std::string> words_of_command(std::uint32_t fps, const char* video) {
+  // Without -xerror some versions of ffmpeg succeed although the end of the video finds no room. Video
+  // players expect yuv420p, which has half the resolution for colours and needs even sides.
+  return {"ffmpeg",     "-y",
+          "-loglevel",  "error",
+          "-framerate", std::to_string(fps),
+          "-i",         "frame-%06d.png",
+          "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "-pix_fmt",   "yuv420p",
+          "-xerror",    video};
+}
+
+/// Runs ffmpeg in the folder. Fails with the reason.
+Result<void, std::string> run_ffmpeg(const std::string& folder, std::uint32_t fps) {
+  const auto ffmpeg_failure = [](std::string why) { return failure("ffmpeg " + std::move(why)); };
+  const auto pid = start_program({words_of_command(fps, kPartialVideo), -1, -1, folder});
+  if (!pid) {
+    return ffmpeg_failure(pid.error() == ENOENT
+                              ? "is not installed"
+                              : std::string("cannot be started: ") + std::strerror(pid.error()));
+  }
+  int status = 0;
+  while (::waitpid(*pid, &status, 0) < 0) {
+    if (errno != EINTR) return ffmpeg_failure("is no longer a child process");
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return ffmpeg_failure(how_it_ended(status));
+  return {};
+}
+
+/// Puts a file on disk. Fails with the reason, also if it is empty.
+Result<void, std::string> sync_video(const std::string& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return failure(std::string(std::strerror(errno)));
+  struct stat about{};
+  int error = ::fstat(descriptor, &about) == 0 ? 0 : errno;
+  if (error == 0 && ::fsync(descriptor) != 0) error = errno;
+  ::close(descriptor);
+  if (error != 0) return failure(std::string(std::strerror(error)));
+  if (about.st_size == 0) return failure(std::string("ffmpeg has written nothing"));
+  return {};
 }
 
 }  // namespace
 
 Result<void, std::string> make_video(const std::string& folder, std::uint32_t fps) {
-  const auto video_failure = [](std::string why) { return failure("ffmpeg " + std::move(why)); };
-  const auto pid = start_program({words_of_command(fps), -1, -1, folder});
-  if (!pid) {
-    return video_failure(pid.error() == ENOENT
-                             ? "is not installed"
-                             : std::string("cannot be started: ") + std::strerror(pid.error()));
-  }
-  int status = 0;
-  while (::waitpid(*pid, &status, 0) < 0) {
-    if (errno != EINTR) return video_failure("is no longer a child process");
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return video_failure(how_it_ended(status));
+  const auto cannot = [](const std::string& why) {
+    return failure(std::string(kVideo) + ": cannot be written: " + why);
+  };
+  const std::string video = without_links(folder + "/" + kVideo);
+  if (const std::string refusal = output_refusal(video); !refusal.empty())
+    return failure(std::string(kVideo) + ": " + refusal);
+  std::error_code ignored;
+  const auto old = std::filesystem::status(video, ignored);
+  if (std::filesystem::exists(old) && !std::filesystem::is_regular_file(old))
+    return cannot("it is a device or a pipe");
+  const std::string partial = folder + "/" + kPartialVideo;
+  const RemovedAtEnd removed(partial);
+  if (const auto ran = run_ffmpeg(folder, fps); !ran) return ran;
+  if (const auto synced = sync_video(partial); !synced) return cannot(synced.error());
+  if (std::rename(partial.c_str(), video.c_str()) != 0) return cannot(std::strerror(errno));
   return {};
 }
 
 std::string video_command(std::uint32_t fps) {
   std::string command;
-  for (const std::string& word : words_of_command(fps)) {
+  for (const std::string& word : words_of_command(fps, kVideo)) {
     const bool is_plain = word.find_first_of("()*%") == std::string::npos;
     command += (command.empty() ? "" : " ") + (is_plain ? word : "'" + word + "'");
   }

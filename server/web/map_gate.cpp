@@ -5,11 +5,11 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <iostream>
 #include <optional>
 
 #include "common/os/steady_clock.hpp"
 #include "server/web/http_answer.hpp"
+#include "server/web/web_log.hpp"
 
 namespace runstone {
 namespace {
@@ -34,7 +34,7 @@ std::unique_ptr<MapService> make_service(const WebConfig& config, const MapShare
   return std::make_unique<MapService>(
       *share.threads, config.world, static_cast<std::size_t>(config.map_memory_mib) * kMib,
       // For the host alone: the pages do not name paths and errors of this machine.
-      [](const std::string& fault) { std::cerr << "runstone-web: map: " << fault << std::endl; });
+      [](const std::string& fault) { log_web_line("map: " + fault); });
 }
 
 Budget budget_of(std::uint64_t per_second, std::uint64_t times_at_once) {

@@ -87,6 +87,7 @@ std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters&
   add("map_work_us", "microseconds of drawing", web.map_work_us);
   add("memory_bytes", "memory of the gateway in RAM", web.memory_bytes);
   add("map_cache_bytes", "memory of what the map has drawn", web.map_cache_bytes);
+  add("log_lines_dropped", "lines of the log that could not be written", web.log_lines_dropped);
   std::vector<prometheus::MetricFamily> all;
   for (auto& [name, family] : families) all.push_back(std::move(family));
   return prometheus::TextSerializer().Serialize(all);

@@ -2,10 +2,10 @@
 // a minute at most, and says how often it was left out. Thread: one.
 #pragma once
 #include <cstdint>
-#include <iostream>
 #include <string>
 
 #include "common/core/ids.hpp"
+#include "server/web/web_log.hpp"
 
 namespace runstone {
 
@@ -18,9 +18,9 @@ class RareLine {
       ++left_out_;
       return;
     }
-    std::cerr << "runstone-web: " << line;
-    if (left_out_ > 0) std::cerr << " (" << left_out_ << " more since the last such line)";
-    std::cerr << std::endl;
+    log_web_line(left_out_ == 0
+                     ? line
+                     : line + " (" + std::to_string(left_out_) + " more since the last such line)");
     is_printed_ = true;
     printed_us_ = now_us;
     left_out_ = 0;

@@ -7,10 +7,10 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
-#include <iostream>
 #include <memory>
 
 #include "common/os/steady_clock.hpp"
+#include "server/web/web_log.hpp"
 
 namespace runstone {
 namespace {
@@ -40,7 +40,7 @@ net::awaitable<std::shared_ptr<const ServerStatus>> StatusSource::newest(TimeUs 
     ServerStatus status = co_await ask();
     // For the host alone: the pages do not name paths and errors of this machine.
     if (!status.why.empty() && (newest_ == nullptr || newest_->why != status.why))
-      std::cerr << "runstone-web: cannot ask " << path_ << ": " << status.why << std::endl;
+      log_web_line("cannot ask " + path_ + ": " + status.why);
     newest_ = std::make_shared<const ServerStatus>(std::move(status));
     asked_us_ = asked_us;
     is_asking_ = false;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "common/os/process_memory.hpp"
+#include "server/web/web_log.hpp"
 
 namespace runstone {
 namespace {
@@ -55,6 +56,7 @@ HttpRequest asked_by(const WebSocketSession::Request& request, std::string_view 
 /// Brings the counters up to date that are measured for a page.
 void measure(WebState& state) {
   state.counters.memory_bytes = process_memory_bytes();
+  state.counters.log_lines_dropped = dropped_web_lines();
   state.counters.map_cache_bytes = 0;
   for (const auto& world : state.worlds) state.counters.map_cache_bytes += world->map.cache_bytes();
 }

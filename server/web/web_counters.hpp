@@ -26,9 +26,10 @@ struct WebCounters {
   std::uint64_t certificate_ends_s = 0;    // UTC since 1970; 0: there is none
   std::uint64_t certificates_read = 0;     // that replaced the first one
   std::uint64_t certificates_refused = 0;  // new ones that could not be used
-  // These two are measured when a page shows them.
-  std::uint64_t memory_bytes = 0;     // of the process, in RAM
-  std::uint64_t map_cache_bytes = 0;  // of what the map has drawn
+  // These are measured when a page shows them.
+  std::uint64_t memory_bytes = 0;       // of the process, in RAM
+  std::uint64_t map_cache_bytes = 0;    // of what the map has drawn
+  std::uint64_t log_lines_dropped = 0;  // lines of the log that could not be written
 };
 
 }  // namespace runstone

@@ -14,7 +14,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
-#include <iostream>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -22,6 +21,7 @@
 #include "common/os/host_port.hpp"
 #include "server/web/rare_line.hpp"
 #include "server/web/web_connection.hpp"
+#include "server/web/web_log.hpp"
 
 namespace runstone {
 namespace {
@@ -222,19 +222,18 @@ bool WebGateway::Parts::evict_oldest(const char* limit) {
 
 void WebGateway::Parts::reload_certificate() {
   if (!state.certificate.is_there()) {
-    std::cerr << "runstone-web: there is no certificate to read again" << std::endl;
+    log_web_line("there is no certificate to read again");
     return;
   }
   const auto done = state.certificate.reload();
   if (!done) {
     ++state.counters.certificates_refused;
-    std::cerr << "runstone-web: the new certificate is refused, and the old one stays: "
-              << done.error() << std::endl;
+    log_web_line("the new certificate is refused, and the old one stays: " + done.error());
     return;
   }
   ++state.counters.certificates_read;
   state.counters.certificate_ends_s = static_cast<std::uint64_t>(state.certificate.ends_s());
-  std::cerr << "runstone-web: new connections get the new certificate" << std::endl;
+  log_web_line("new connections get the new certificate");
 }
 
 void WebGateway::Parts::stop() {
@@ -257,7 +256,7 @@ Result<std::unique_ptr<WebGateway>, std::string> WebGateway::start(const WebConf
   if (!certificate) return failure(certificate.error());
   // The gateway starts nevertheless: it takes the next certificate as soon as the files have it.
   if (const auto invalid = certificate->fault())
-    std::cerr << "runstone-web: browsers will refuse to connect: " << *invalid << std::endl;
+    log_web_line("browsers will refuse to connect: " + *invalid);
   Result<ClientFiles, std::string> client = ClientFiles();
   if (!config.client_files.empty()) client = ClientFiles::load(config.client_files);
   if (!client) return failure("client_files: " + client.error());

@@ -13,6 +13,7 @@
 #include "common/os/text_file.hpp"
 #include "server/web/web_config.hpp"
 #include "server/web/web_gateway.hpp"
+#include "server/web/web_log.hpp"
 #include "server/web/web_options.hpp"
 
 namespace runstone {
@@ -21,7 +22,7 @@ namespace {
 enum ExitCode { kStopped = 0, kCannotStart = 2 };
 
 int cannot_start(const std::string& line) {
-  std::cerr << "runstone-web: " << line << "\n";
+  log_web_line(line);
   return kCannotStart;
 }
 
@@ -55,8 +56,8 @@ Result<void, std::string> allow_files_for(WebConfig& config) {
                           std::to_string(allowed);
   if (allowed < reserve + 2) return failure(why + ": see ulimit -Hn");
   config.sockets_max = (allowed - reserve) / 2;
-  std::cerr << "runstone-web: " << why << ": sockets_max is " << config.sockets_max
-            << " instead, see ulimit -Hn\n";
+  log_web_line(why + ": sockets_max is " + std::to_string(config.sockets_max) +
+               " instead, see ulimit -Hn");
   return {};
 }
 
@@ -91,9 +92,8 @@ int web_program(int argc, char** argv) {
     const auto written = write_output_file(options->port_file, std::to_string(port) + "\n");
     if (!written) return cannot_start(written.error());
   }
-  std::cerr << "runstone-web: listening port=" << port
-            << " encryption=" << ((*gateway)->is_encrypted() ? "tls" : "none")
-            << " server=" << socket_names(*config) << std::endl;
+  log_web_line("listening port=" + std::to_string(port) + " encryption=" +
+               ((*gateway)->is_encrypted() ? "tls" : "none") + " server=" + socket_names(*config));
   int signal = SIGHUP;
   for (;;) {
     ::sigwait(&stops, &signal);
@@ -101,7 +101,7 @@ int web_program(int argc, char** argv) {
     (*gateway)->reload_certificate();
   }
   ::pthread_sigmask(SIG_UNBLOCK, &stops, nullptr);  // a second signal ends the process at once
-  std::cerr << "runstone-web: stopping" << std::endl;
+  log_web_line("stopping");
   return kStopped;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/worlds/seeded_worlds.hpp"
+#include "client/render/png_file.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/reference/culled_mesher.hpp"
@@ -61,7 +62,8 @@ int main(int argc, char** argv) {
     std::printf("%s: %zu quads\n", mesh.name, mesh.quads.size());
   }
   for (int finer = kFiner; finer > 1; finer /= 2) image = halved(image);
-  if (write_png(argv[1], image)) return 0;
-  std::fprintf(stderr, "runstone-wireframe: cannot write %s\n", argv[1]);
+  const auto written = write_png(argv[1], image);
+  if (written) return 0;
+  std::fprintf(stderr, "runstone-wireframe: %s\n", written.error().c_str());
   return 1;
 }

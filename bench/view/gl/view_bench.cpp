@@ -15,6 +15,7 @@
 #include "client/platform/gl_context.hpp"
 #include "client/platform/window.hpp"
 #include "client/render/gl_handle.hpp"
+#include "client/render/png_file.hpp"
 #include "common/mesh/quad_corners.hpp"
 
 namespace runstone::bench {
@@ -80,8 +81,8 @@ class ViewProgram {
       view_.set_caption(i, caption_of(result_.rows[i]));
   }
 
-  /// Returns false if the file cannot be written.
-  bool write(const std::string& file) {
+  /// Fails as write_png().
+  Result<void, std::string> write(const std::string& file) {
     return write_png(file, view_.picture(camera_.camera(), options_.width, options_.height,
                                          options_.time_of_day));
   }
@@ -134,7 +135,8 @@ Result<ViewResult, std::string> run_view(const ViewOptions& options) {
     if (!options.out.empty()) {
       const auto context = make_headless_context();
       ViewProgram program(options, *world, context->loader());
-      if (!program.write(options.out)) return failure("cannot write " + options.out);
+      if (const auto written = program.write(options.out); !written)
+        return failure(written.error());
       return program.take_result();
     }
     Window window(options.width, options.height, "Runstone  " + options.world);

@@ -220,7 +220,7 @@ async function poll() {
       const news = await answer.json(), isFirst = !state;
       const isOther = state && news.seq < state.seq;
       state = news;
-      say('');
+      say(news.lacks_edits ? 'Edits of this world are missing. The map shows what is left.' : '');
       if (isFirst) begin();
       if (isOther || !news.is_complete) {
         for (const tile of tiles.values()) {

@@ -139,7 +139,7 @@ TEST_CASE("a picture that cannot be written is an error with its name, and the c
   const TempFolder folder;
   REQUIRE(child->world(kEdge, red_and_green()));
   CHECK(contains(child->draw(above(), kSize, folder / "no/such/a.png").error(),
-                 "no/such/a.png: cannot be written"));
+                 "no/such/a.png: cannot be written: No such file or directory"));
   CHECK(contains(child->draw(above(), {8, 8}, folder / "a.png").error(), "pixels"));
   CHECK(contains(child->draw(above(), kSize, "a\nb.png").error(), "file name"));
   CHECK(child->draw(above(), kSize, folder / "a.png").has_value());

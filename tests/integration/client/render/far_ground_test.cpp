@@ -17,6 +17,7 @@
 #include "client/platform/egl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
 #include "client/render/image.hpp"
+#include "client/render/png_file.hpp"
 #include "common/core/hash.hpp"
 #include "tests/integration/client/render/far_world.hpp"
 
@@ -142,9 +143,10 @@ TEST_CASE("no pixel shows the sky through the ground, at the borders of levels a
     CAPTURE(Catch::rngSeed(), place, camera.x, camera.y, camera.z, camera.yaw, camera.pitch);
     CHECK(here.sky == 0);
     if (here.sky != 0 && std::getenv("RUNSTONE_PICTURES") != nullptr)
-      write_png(
-          std::string(std::getenv("RUNSTONE_PICTURES")) + "/hole" + std::to_string(place) + ".png",
-          renderer.read_image());
+      CHECK(write_png(std::string(std::getenv("RUNSTONE_PICTURES")) + "/hole" +
+                          std::to_string(place) + ".png",
+                      renderer.read_image())
+                .has_value());
     total.ground += here.ground;
     total.sky += here.sky;
   }
@@ -412,7 +414,8 @@ TEST_CASE("pictures of distant ground", "[.pictures]") {
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     WARN(name << ": " << took.count() << " ms, " << stats.chunks_drawn << " chunks, "
               << stats.tile_parts_drawn << " parts, " << stats.quads_drawn << " quads");
-    REQUIRE(write_png(std::string(folder) + "/" + name + ".png", renderer.read_image()));
+    REQUIRE(
+        write_png(std::string(folder) + "/" + name + ".png", renderer.read_image()).has_value());
   };
   picture("ground", 5, 3, 5, 0.6, 0.0, 0.4);
   picture("hill", 5, 40, 5, 2.2, -0.1, 0.4);

@@ -1,7 +1,19 @@
 // A whole server whose disk has no space: it is read-only until there is space again.
-#include <catch2/catch.hpp>
-#include <sstream>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "common/os/child_program.hpp"
 #include "server/admin/control_program.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
@@ -51,6 +63,81 @@ ClientSequence edit_until_accepted(RawClient& client, ClientSequence seq) {
 Sequence log_end(const std::string& folder) {
   return *(*open_world(folder, StoreAccess::read_only))->last_sequence();
 }
+
+/// The server program, the size of whose files can be limited.
+class LimitedServer {
+ public:
+  explicit LimitedServer(const TempFolder& folder) : world_(folder / "world") {
+    ChildProgram program;
+    program.words = {RUNSTONE_SERVER_PROGRAM,
+                     "--world",
+                     world_,
+                     "--create",
+                     "--generator",
+                     "flat",
+                     "--edge",
+                     "16",
+                     "--listen",
+                     "127.0.0.1:0",
+                     "--port-file",
+                     folder / "port",
+                     "--messages-per-second",
+                     "0",
+                     "--builder-budget",
+                     "unlimited",
+                     "--disk-reserve-mib",
+                     "0"};
+    program.errors = ::open((folder / "log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    const int errors = program.errors;
+    const auto started = start_program(std::move(program));
+    ::close(errors);
+    REQUIRE(started.has_value());
+    child_ = *started;
+    for (int i = 0; i < 6'000 && port_ == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      int port = 0;
+      if (std::ifstream(folder / "port") >> port) port_ = static_cast<std::uint16_t>(port);
+    }
+    REQUIRE(port_ != 0);
+  }
+  ~LimitedServer() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+  }
+  LimitedServer(const LimitedServer&) = delete;
+  LimitedServer& operator=(const LimitedServer&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  /// From now on no file may become much larger than the largest file of the world is now, as with
+  /// `ulimit -f`.
+  void limit_files() {
+    constexpr std::uintmax_t kRoomBytes = 64 * 1024;  // for some commits in the WAL
+    std::uintmax_t largest = 0;
+    for (const auto& file : std::filesystem::directory_iterator(world_)) {
+      if (file.is_regular_file()) largest = std::max(largest, file.file_size());
+    }
+    REQUIRE(::prlimit(child_, RLIMIT_FSIZE, nullptr, &before_) == 0);
+    const rlimit limit{largest + kRoomBytes, before_.rlim_max};
+    REQUIRE(::prlimit(child_, RLIMIT_FSIZE, &limit, nullptr) == 0);
+  }
+  /// Takes limit_files() back.
+  void allow_large_files() { REQUIRE(::prlimit(child_, RLIMIT_FSIZE, &before_, nullptr) == 0); }
+  /// Stops the server, and returns how it ended.
+  std::string stop() {
+    ::kill(child_, SIGTERM);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    child_ = -1;
+    return how_it_ended(status);
+  }
+
+ private:
+  const std::string world_;
+  pid_t child_ = -1;
+  std::uint16_t port_ = 0;
+  rlimit before_{};
+};
 
 ServerConfig edits_config(const std::string& world) {
   ServerConfig config = quiet_config(world);
@@ -125,6 +212,42 @@ TEST_CASE("a stop on a full disk says how many accepted edits are lost, and the 
   CHECK(accepted->resolved == 1);  // the client offers the others again
   client.send(voxel(2));
   CHECK(client.sees_durable(2));
+}
+
+TEST_CASE("for the server program a limit of the size of files is a full disk, and no edit is lost",
+          "[integration]") {
+  const TempFolder folder;
+  LimitedServer server(folder);
+  RawClient client(server.port());
+  REQUIRE(client.join(1).has_value());
+  client.send(voxel(1));
+  REQUIRE(client.sees_durable(1));
+  Sequence accepted_last = 0;
+  client.on_body = [&](MessageKind kind, ByteView body) {
+    const auto message = decode_message(Sender::server, kind, body, 16);
+    REQUIRE(message.has_value());
+    if (const auto* commit = std::get_if<Commit>(&*message))
+      accepted_last = commit->edits.back().seq;
+  };
+  server.limit_files();
+  const ClientSequence rejected = edit_until_rejected(client, 2);
+  // It goes on without edits.
+  client.send(View{1, {0, 0, 0}, 0, 0});
+  CHECK(client.next_of<ChunkSnapshot>().has_value());
+  server.allow_large_files();
+  edit_until_accepted(client, rejected + 1);
+  const Sequence accepted = accepted_last;
+  CHECK(accepted > 1);
+  CHECK(server.stop() == "ended with exit code 0");
+  std::ifstream in(folder / "log");
+  const std::string log{std::istreambuf_iterator<char>(in), {}};
+  CAPTURE(log);
+  CHECK(contains(log, "READ-ONLY: "));
+  CHECK(contains(log, "File too large"));
+  CHECK(log_end(folder / "world") >= accepted);
+  const auto store = open_world(folder / "world", StoreAccess::read_write);
+  REQUIRE(store.has_value());
+  CHECK((*store)->check().has_value());
 }
 
 TEST_CASE("a server that starts below its disk reserve is read-only from the first edit on",

@@ -299,13 +299,22 @@ TEST_CASE("a world that lacks durable edits exits with 1 and says which", "[stor
   CHECK(outcome.out.find("LOST        " + world +
                          "/world.sqlite: edit_log: ends at seq=2, but seq=6 was durable: the edits "
                          "seq=3 to seq=6 are lost") != std::string::npos);
-  CHECK(
-      outcome.out.find("result      equal in what is left; the row LOST says what is missing\n") !=
-      std::string::npos);
+  CHECK(outcome.out.find("result      incomplete: 0 differences in what is left; the row LOST says "
+                         "what is missing\n") != std::string::npos);
+  // "equal" means that everything agrees.
+  CHECK(outcome.out.find("result      equal") == std::string::npos);
   CHECK(file_text(json).find("\"lost\":\"" + world) != std::string::npos);
   const ReplayOutcome exported = run_replay({"export", "--world", world, folder / "rest.rlog"});
-  CHECK(exported.code == 0);
+  CHECK(exported.code == 1);
   CHECK(exported.out.find("LOST        ") != std::string::npos);
+  CHECK(std::filesystem::exists(folder / "rest.rlog"));
+  const ReplayOutcome copied =
+      run_replay({"copy", folder / "copy", "--world", world, "--json", folder / "copy.json"});
+  INFO(copied.out << copied.err);
+  CHECK(copied.code == 1);
+  CHECK(copied.out.find("LOST        ") != std::string::npos);
+  CHECK(file_text(folder / "copy.json").find("\"lost\": \"" + world) != std::string::npos);
+  CHECK(open_world(folder / "copy", StoreAccess::read_only).has_value());
 }
 
 TEST_CASE("verify cannot read a world whose generator this program lacks", "[store][replay]") {

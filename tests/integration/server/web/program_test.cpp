@@ -103,6 +103,35 @@ TEST_CASE("a gateway that may open few files admits fewer connections and says s
   CHECK(text.find("there is no certificate to read again") != std::string::npos);
 }
 
+TEST_CASE("a line of the gateway's log that cannot be written is counted, and later lines appear",
+          "[integration]") {
+  const TempFolder folder;
+  WebProgram program(folder);
+  const std::string metric = "\nrunstone_web_log_lines_dropped ";
+  const auto counts = [&](const std::string& lines) {
+    WebPeer peer(program.port());
+    for (int i = 0; i < 200; ++i) {
+      if (peer.get("/metrics").body.find(metric + lines + "\n") != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  };
+  // No server answers. The first page that asks for its counters logs this once, before the log is
+  // full.
+  CHECK(counts("0"));
+  const std::string line = "there is no certificate to read again\n";
+  program.fill_log();
+  program.hang_up();
+  CHECK(counts("1"));
+  CHECK(program.log().find(line) == std::string::npos);
+  program.make_room_in_log();
+  program.hang_up();
+  for (int i = 0; i < 1'000 && program.log().find(line) == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  CHECK(program.log().find("runstone-web: " + line) != std::string::npos);
+  CHECK(counts("1"));
+}
+
 TEST_CASE("the command line of the gateway names what is wrong with it", "[integration]") {
   const auto run = [](const std::string& flags) { return run_shell(kWeb + " " + flags + " 2>&1"); };
   const ShellRun wrong = run("--sockets-max many");

@@ -90,6 +90,16 @@ class WebProgram {
   }
   /// Takes forbid_more_files() back.
   void allow_files() { REQUIRE(::prlimit(child_, RLIMIT_NOFILE, &before_, nullptr) == 0); }
+  /// From now on no file of the program may become larger than its log is now.
+  void fill_log() {
+    REQUIRE(::prlimit(child_, RLIMIT_FSIZE, nullptr, &before_) == 0);
+    const rlimit limit{std::filesystem::file_size(log_file_), before_.rlim_max};
+    REQUIRE(::prlimit(child_, RLIMIT_FSIZE, &limit, nullptr) == 0);
+  }
+  /// Takes fill_log() back.
+  void make_room_in_log() { REQUIRE(::prlimit(child_, RLIMIT_FSIZE, &before_, nullptr) == 0); }
+  /// Makes the program read its certificate again. Without one it logs that there is none.
+  void hang_up() { REQUIRE(::kill(child_, SIGHUP) == 0); }
 
  private:
   const std::string log_file_;

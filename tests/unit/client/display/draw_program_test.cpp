@@ -95,16 +95,25 @@ TEST_CASE("the draw program answers for each picture once its file is on disk", 
 }
 
 TEST_CASE(
-    "for a picture that cannot be written the answer names the file, and the next one is drawn",
+    "for a picture that cannot be written the answer names file and reason, and the next one is "
+    "drawn",
     "[client_app]") {
   Bench bench;
   bench.order_picture("no/such/folder/a.png");
+  bench.order_picture("world.key");
   bench.order_picture("b.png");
   append_draw_end(bench.orders);
   const Outcome outcome = bench.run();
   CHECK(outcome.code == kExitFailed);
-  REQUIRE(outcome.answers.size() == 3);
-  CHECK(outcome.answers[1] == DrawAnswer{PictureUnwritten{bench.folder / "no/such/folder/a.png"}});
+  REQUIRE(outcome.answers.size() == 4);
+  CHECK(outcome.answers[1] ==
+        DrawAnswer{PictureUnwritten{bench.folder / "no/such/folder/a.png" +
+                                    ": cannot be written: No such file or directory"}});
+  CHECK(outcome.answers[2] ==
+        DrawAnswer{
+            PictureUnwritten{bench.folder / "world.key" +
+                             ": is not overwritten: files called *.key hold a world or a key"}});
+  CHECK_FALSE(std::filesystem::exists(bench.folder / "world.key"));
   CHECK(std::filesystem::exists(bench.folder / "b.png"));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "client/net/wake_up.hpp"
@@ -181,17 +182,26 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
         Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
 }
 
-TEST_CASE("a screenshot shows its frame, and a file that cannot be written is named",
-          "[client_app]") {
+TEST_CASE(
+    "a screenshot shows its frame, and a file that cannot be written is named with the reason",
+    "[client_app]") {
   const test::TempFolder folder;
+  std::ofstream(folder / "world.sqlite") << "a world";
   ThreadBench bench;
   FrameOrder order = small_frame();
-  order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png"};
+  order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png",
+                       folder / "world.sqlite", "/dev/full"};
   bench.thread.draw(order);
   bench.take_frames(1);
   CHECK(std::get<FrameDone>(bench.done.back()).unwritten ==
-        Lines{folder / "no-such-folder/picture.png"});
+        Lines{folder / "no-such-folder/picture.png" +
+                  ": cannot be written: No such file or directory",
+              folder / "world.sqlite" +
+                  ": is not overwritten: files called *.sqlite hold a world or a key",
+              "/dev/full: cannot be written: No space left on device"});
   CHECK(std::filesystem::file_size(folder / "picture.png") > 0);
+  CHECK(std::filesystem::file_size(folder / "world.sqlite") == 7);
+  CHECK(std::filesystem::is_character_file("/dev/full"));
 }
 
 TEST_CASE("a screen that cannot be made fails the start with the same text", "[client_app]") {

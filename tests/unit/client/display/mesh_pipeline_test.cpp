@@ -158,18 +158,22 @@ TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is written", "[cli
   screen_log.release();
   take_frames(2);
   CHECK(pipeline.screenshots_done());
-  CHECK(pipeline.screenshots_written());
+  CHECK(pipeline.screenshots_written().has_value());
   CHECK(std::filesystem::file_size(folder / "a.png") > 0);
   pipeline.request_screenshot(folder / "nosuch/b.png", steady_now_us());
   order();
   take_frames(3);
   CHECK(pipeline.screenshots_done());
-  CHECK_FALSE(pipeline.screenshots_written());
+  const std::string why =
+      folder / "nosuch/b.png" + ": cannot be written: No such file or directory";
+  REQUIRE_FALSE(pipeline.screenshots_written().has_value());
+  CHECK(pipeline.screenshots_written().error() == why);
+  CHECK(pipeline.take_unwritten() == std::vector<std::string>{why});
   pipeline.moved();
   order_at(steady_now_us() + MeshPipeline::kFrameOffScreenUs);
   take_frames(4);
-  CHECK_FALSE(
-      pipeline.screenshots_written());  // a frame without screenshots does not change the result
+  // A frame without screenshots does not change the result.
+  CHECK_FALSE(pipeline.screenshots_written().has_value());
 }
 
 TEST_CASE_METHOD(

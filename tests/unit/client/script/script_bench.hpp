@@ -24,7 +24,7 @@ struct FakeScriptHost final : ScriptHost {
   };
   bool open = true, is_loaded = true, is_horizon_seen = true, is_durable = true, draws = true,
        takes = true;
-  std::optional<bool> picture = true;
+  std::optional<Result<void, std::string>> picture{std::in_place};
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};
   double yaw = 0, pitch = 0, time_of_day = 0;
@@ -173,10 +173,11 @@ struct FakeScriptHost final : ScriptHost {
     files.push_back(file);
     return draws;
   }
-  std::optional<bool> screenshot_written() const override { return picture; }
-  bool digests(const std::string& file) override {
+  std::optional<Result<void, std::string>> screenshot_written() const override { return picture; }
+  Result<void, std::string> digests(const std::string& file) override {
     files.push_back(file);
-    return file != "bad";
+    if (file == "bad") return failure(file + ": cannot be written: No space left on device");
+    return {};
   }
 };
 

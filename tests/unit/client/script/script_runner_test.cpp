@@ -289,7 +289,7 @@ TEST_CASE_METHOD(ScriptBench,
   host.picture.reset();
   runner->step(0);
   CHECK_FALSE(runner->finished());
-  host.picture = true;
+  host.picture.emplace();
   runner->step(1);
   CHECK(runner->finished());
   CHECK(host.files == std::vector<std::string>{"a.png"});
@@ -297,20 +297,22 @@ TEST_CASE_METHOD(ScriptBench,
   run("screenshot b.png\ndigests good\ndigests bad");
   CHECK(runner->failures() ==
         std::vector<std::string>{"s.txt:1: no screenshot: this client draws nothing",
-                                 "s.txt:3: bad cannot be written"});
+                                 "s.txt:3: bad: cannot be written: No space left on device"});
 }
 
 TEST_CASE_METHOD(ScriptBench,
-                 "a screenshot that cannot be written is a failure, and the script goes on",
+                 "a screenshot that cannot be written is a failure with its reason, and the script "
+                 "goes on",
                  "[bots]") {
   load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
   host.picture.reset();
   runner->step(0);
   CHECK(runner->failures().empty());
-  host.picture = false;
+  host.picture = failure(std::string("nosuch/a.png: cannot be written: Permission denied"));
   runner->step(1);
   CHECK(runner->finished());
-  CHECK(runner->failures() == std::vector<std::string>{"s.txt:2: nosuch/a.png cannot be written"});
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:2: nosuch/a.png: cannot be written: Permission denied"});
   CHECK(host.edits.size() == 1);
 }
 

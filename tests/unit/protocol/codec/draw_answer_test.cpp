@@ -18,7 +18,8 @@ TEST_CASE("draw answers have pinned lines, and come back from them", "[protocol]
   CHECK(to_line(DrawReady{1, "EGL surfaceless"}) == "ready 1 EGL surfaceless\n");
   CHECK(to_line(PictureDrawn{12, 3, 4567, "a b.png"}) ==
         "drawn quads=12 chunks=3 us=4567 a b.png\n");
-  CHECK(to_line(PictureUnwritten{"a b.png"}) == "unwritten a b.png\n");
+  CHECK(to_line(PictureUnwritten{"a b.png: cannot be written: Permission denied"}) ==
+        "unwritten a b.png: cannot be written: Permission denied\n");
   CHECK(to_line(DrawFailed{"no memory"}) == "error no memory\n");
   for (const DrawAnswer& answer :
        {DrawAnswer{DrawReady{7, "x"}}, DrawAnswer{PictureDrawn{0, 1, 2, "f \xc3\xbc"}},

@@ -1,5 +1,6 @@
 // A backup: what it holds, and what it leaves behind when it fails.
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -191,6 +192,27 @@ TEST_CASE_METHOD(BackupBench, "a copy that is not sound is removed", "[backup]")
     fs::rename(folder / "old.sqlite", world + "/world.sqlite");
     CHECK_THAT(back_up_to(copy), Contains("seq=401 to seq=410 are lost"));
   }
+  CHECK_FALSE(fs::exists(copy));
+  CHECK_FALSE(fs::exists(copy + ".partial"));
+}
+
+TEST_CASE_METHOD(BackupBench, "a setting file that finds no room ends a backup with the reason",
+                 "[backup]") {
+  // The database of a world without edits is smaller than this file.
+  const std::string small = folder / "small";
+  REQUIRE((*create_world(small, sample_meta()))->raise_epoch().has_value());
+  write_file(small + "/server.toml", std::string(1'000'000, '#'));
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit limit{900'000, before.rlim_max};
+  const auto signalled = ::signal(SIGXFSZ, SIG_IGN);
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  std::ostringstream out;
+  const auto done = back_up({small, copy, false}, kBackupTimeUs, out, {});
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+  ::signal(SIGXFSZ, signalled);
+  REQUIRE_FALSE(done.has_value());
+  CHECK_THAT(done.error(), Contains("server.toml: cannot be written: File too large"));
   CHECK_FALSE(fs::exists(copy));
   CHECK_FALSE(fs::exists(copy + ".partial"));
 }

@@ -1,13 +1,97 @@
 #include "server/map/map_service.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <latch>
 #include <string>
+#include <vector>
 
+#include "server/map/map_world.hpp"
+#include "server/store/store.hpp"
 #include "tests/support/core/temp_folder.hpp"
+#include "tests/support/core/text_contains.hpp"
+#include "tests/support/sql/crash_image.hpp"
+#include "tests/support/store/sample_world.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
+
+namespace {
+
+/// Makes a world that was killed, and the same world without its newest edits.
+void make_partial_world(const std::string& whole, const std::string& part) {
+  const std::string live = whole + "-live";
+  const auto store = *create_world(live, sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  SplitMix64 rng(1);
+  const PlayerRow player = sample_player(1);
+  REQUIRE(store->append({&player, 1}, sample_records(rng, store->epoch(), 1, 4)).has_value());
+  copy_crash_image(live, whole);
+  copy_crash_image(live, part);
+  std::filesystem::remove(part + "/world.sqlite-wal");
+}
+
+/// Asks for the state of a map and returns the answer.
+MapAnswer state_of(MapService& service) {
+  std::latch is_done(1);
+  MapAnswer answer;
+  service.ask(MapStateRequest{}, "", [&](MapAnswer reply) {
+    answer = std::move(reply);
+    is_done.count_down();
+  });
+  is_done.wait();
+  return answer;
+}
+
+}  // namespace
+
+TEST_CASE("the map of a world that lacks edits says so to its host, once, and to those who look",
+          "[map]") {
+  const TempFolder folder;
+  make_partial_world(folder / "whole", folder / "part");
+  for (const char* name : {"whole", "part"}) {
+    CAPTURE(name);
+    const bool is_part = name == std::string("part");
+    std::vector<std::string> warnings;  // the one thread of the maps writes them
+    {
+      MapThreads threads(1);
+      MapService service(threads, folder / name, 1 << 20,
+                         [&](const std::string& warning) { warnings.push_back(warning); });
+      for (int i = 0; i < 2; ++i) {
+        const MapAnswer answer = state_of(service);
+        INFO(*answer.body);
+        REQUIRE(answer.status == 200);
+        CHECK(contains(*answer.body, is_part ? "\"lacks_edits\":true" : "\"lacks_edits\":false"));
+        CHECK_FALSE(contains(*answer.body, folder.path()));
+      }
+    }
+    REQUIRE(warnings.size() == (is_part ? 1 : 0));
+    if (is_part) {
+      CHECK(contains(warnings[0], "LOST: " + folder / "part/world.sqlite"));
+      CHECK(contains(warnings[0], "The map shows what is left"));
+    }
+  }
+}
+
+TEST_CASE("a map that lacks edits looks again whether its host has put the world right", "[map]") {
+  const TempFolder folder;
+  make_partial_world(folder / "whole", folder / "part");
+  MapCaches caches(1 << 20);
+  MapWorld world(folder / "part", caches);
+  REQUIRE(world.refresh(1, 0).has_value());
+  REQUIRE(world.loss().has_value());
+  {
+    auto store = *open_world(folder / "part", StoreAccess::repair);
+    REQUIRE(store->accept_losses().has_value());
+    const auto epoch = store->raise_epoch();
+    REQUIRE(epoch.has_value());
+    SplitMix64 rng(2);
+    const PlayerRow player = sample_player(1);
+    REQUIRE(store->append({&player, 1}, sample_records(rng, *epoch, 1, 1)).has_value());
+  }
+  REQUIRE(world.refresh(MapWorld::kLossAgeUsMax + 1, 0).has_value());
+  CHECK_FALSE(world.loss().has_value());
+}
 
 TEST_CASE("a full queue refuses at once, and a stop answers each request that waits", "[map]") {
   const TempFolder empty;

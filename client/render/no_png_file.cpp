@@ -1,0 +1,10 @@
+// The browser's half of png_file.hpp.
+#include "client/render/png_file.hpp"
+
+namespace runstone {
+
+Result<void, std::string> write_png(const std::string& file, const Image&) {
+  return failure(file + ": cannot be written: a page has no files");
+}
+
+}  // namespace runstone
