@@ -108,7 +108,7 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
   CHECK(table_of(older) == table_of(world));
 
   std::ostringstream out;
-  succeed(compact_world({world, 0, false}, kCompactedUs, out));
+  succeed(compact_world({world, 0, false, false, true}, kCompactedUs, out));
   {
     auto store = *open_world(world, StoreAccess::read_only);
     CHECK(store->log_range()->first > 1);
@@ -140,7 +140,8 @@ TEST_CASE("materials of a later record follow those that a compaction kept",
       CHECK(server->stop().is_clean);
     }
     std::ostringstream out;
-    if (std::string(name) != "plum") succeed(compact_world({world, 0, false}, kCompactedUs, out));
+    if (std::string(name) != "plum")
+      succeed(compact_world({world, 0, false, false, true}, kCompactedUs, out));
   }
   const MaterialTable table = table_of(world);
   CHECK(table.find("lime") == kLime);
