@@ -33,6 +33,14 @@ constexpr AddressBlock address_range_of(AddressBlock block) {
   return AddressBlock{is_v4 ? bits & ~std::uint64_t{0xff} : bits & ~std::uint64_t{0xffff}};
 }
 
+/// Returns the first block of the wide network of an address: the /16 of an IPv4 address, the /32 of
+/// an IPv6 address. A provider has so much at least, and hands ranges of it to its customers.
+constexpr AddressBlock wide_network_of(AddressBlock block) {
+  const auto bits = static_cast<std::uint64_t>(block);
+  const bool is_v4 = bits >> 32 == 0xffff;
+  return AddressBlock{is_v4 ? bits & ~std::uint64_t{0xffff} : bits & ~std::uint64_t{0xffff'ffff}};
+}
+
 /// Returns true for the addresses of networks that nobody reaches from outside: 10.0.0.0/8,
 /// 172.16.0.0/12, 192.168.0.0/16, fc00::/7 and fe80::/10.
 constexpr bool is_of_local_network(AddressBlock block) {

@@ -84,10 +84,10 @@ Result<Command, std::string> parse_words(const CommandRow& row, WordReader reade
 }
 
 /// Returns true if the last word of the line confirms the command. It does not where it is the first
-/// word behind those that name the command, or the text of a reason.
+/// word behind those that name the command, the text of a reason, or the name of an owner.
 bool ends_with_anyway(const CommandRow& row, const std::vector<std::string>& words) {
   return row.may_be_confirmed && words.size() > naming_words(row) + 1 && words.back() == kAnyway &&
-         words[words.size() - 2] != "reason";
+         words[words.size() - 2] != "reason" && words[words.size() - 2] != "owner";
 }
 
 /// Returns the row of a line that is a word and a text, or null. `text` becomes the text.

@@ -51,6 +51,14 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
         << " days\n";
     return {};
   }
+  if (request.keep_days == 0 && !request.is_confirmed) {
+    return failure(
+        store.file() + ": nothing has changed: --keep 0 would move " +
+        std::to_string(at + 1 - range->first) + " of " +
+        std::to_string(range->last.version.seq + 1 - range->first) +
+        " edits of the log into the base, and they could not be seen in the past, rolled "
+        "back or undone any more. To do it all the same, add --anyway");
+  }
   const auto keyframes = store.keyframes();
   if (!keyframes) return compaction_failure(keyframes.error());
   const bool is_there =

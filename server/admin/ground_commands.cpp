@@ -5,6 +5,7 @@
 
 #include "server/admin/command_call.hpp"
 #include "server/admin/rights_change_text.hpp"
+#include "server/names/name_reference.hpp"
 
 namespace runstone {
 namespace {
@@ -85,19 +86,18 @@ void protect(const CommandCall& call, const ProtectCommand& command) {
 }
 
 Result<BoxMembersCommand, std::string> parse_members(WordReader& reader) {
-  constexpr std::string_view kRole = "role:";
   BoxMembersCommand command;
   command.name = reader.rights_name("protect");
   command.is_removal = !reader.take_word("add") && reader.take_word("remove");
   const std::string word = "protect " + command.name + (command.is_removal ? " remove" : " add");
   if (reader.at_end()) reader.wrong(word + ": a player or role:ROLE is missing");
   while (!reader.at_end()) {
-    if (!reader.peek().starts_with(kRole)) {
+    if (!reader.peek().starts_with(kRolePrefix)) {
       command.players.push_back(reader.player(word));
       continue;
     }
     const std::string text = reader.take("", "");
-    command.roles.push_back(text.substr(kRole.size()));
+    command.roles.push_back(text.substr(kRolePrefix.size()));
     if (!is_rights_name(command.roles.back()))
       reader.wrong(word + " \"" + text + "\": the name of a role comes after role:");
   }
@@ -136,6 +136,10 @@ void change_members(const CommandCall& call, const BoxMembersCommand& command) {
       if (!change_entry(box.roles, role, command.is_removal))
         return call.refuse("the role " + role + unchanged + command.name);
       changed += (changed.empty() ? "" : ", ") + ("the role " + role);
+      // An owner from before may have a name that reads as a role (name_reference.hpp).
+      const std::string word = std::string(kRolePrefix) + role;
+      const std::string called = players.list_of_named(word);
+      if (!called.empty()) changed += " [\"" + word + "\" is also the name of " + called + "]";
     }
     call.change_rights(
         Protect{box},
@@ -157,12 +161,17 @@ void unprotect(const CommandCall& call, const std::string& name) {
 constexpr CommandRule kGround = needs(Right::claim, Right::protect);
 
 constexpr std::array<CommandRow, 5> kGroundRows = {{
-    {"claim", kGround, "claim NAME BOX            protect ground of your own",
-     parsed_by<parse_claim, claim>()},
-    {"protect", kGround,
-     "protect NAME [BOX] [owner PLAYER] [priority N]\n"
-     "                          protect ground, or change the box of this name",
-     parsed_by<parse_protect, protect>()},
+    {.words = "claim",
+     .rule = kGround,
+     .help = "claim NAME BOX            protect ground of your own",
+     .functions = parsed_by<parse_claim, claim>(),
+     .may_be_confirmed = true},
+    {.words = "protect",
+     .rule = kGround,
+     .help = "protect NAME [BOX] [owner PLAYER] [priority N]\n"
+             "                          protect ground, or change the box of this name",
+     .functions = parsed_by<parse_protect, protect>(),
+     .may_be_confirmed = true},
     {"protect NAME add", kGround,
      "protect NAME add|remove PLAYER|role:ROLE\n"
      "                          say who else may change the ground of a box",

@@ -44,6 +44,9 @@ class KnownPlayers {
   /// Returns why "#N" does not mean the author with this number alone: it is the name of somebody
   /// else, too. Otherwise returns nullopt, also if nobody is known to have the number.
   std::optional<std::string> doubt_of(AuthorId author) const;
+  /// Returns the players who have, own or had this name, with a word for each, or an empty text if
+  /// there is none. Cost: O(log n).
+  std::string list_of_named(const std::string& name) const { return list_of(named(name)); }
   /// Returns the author number of a key, or nullopt.
   std::optional<AuthorId> author_of(const PublicKey& key) const;
   /// Returns true if the player has this name now. Case and the like do not count.

@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kBitsBeforeIpv4 = 32;  // of an AddressBlock
 constexpr unsigned kIpv4PrefixMin = 16, kIpv6PrefixMin = 32;
+constexpr std::uint64_t kProtectedColumnsMax = 16'384 * 16'384;
 
 bool is_v4(const AddressRange& range) {
   return range.bits >= kBitsBeforeIpv4 && static_cast<std::uint64_t>(range.first) >> 32 ==
@@ -82,6 +83,25 @@ std::optional<std::string> hazard_of_ban(const RightsState& state, const Address
   return text;
 }
 
+std::uint64_t columns_of(const VoxelBox& box) {
+  if (box.empty()) return 0;
+  return static_cast<std::uint64_t>(box.max.x - box.min.x) *
+         static_cast<std::uint64_t>(box.max.z - box.min.z);
+}
+
+/// A wide box that keeps its ground and rises to no higher priority needs no further warning.
+std::optional<std::string> hazard_of_box(const RightsState& state, const ProtectedBox& box) {
+  const std::uint64_t count = columns_of(box.box);
+  if (count <= kProtectedColumnsMax) return std::nullopt;
+  const Decided<ProtectedBox>* old = state.find_box(box.name);
+  if (old != nullptr && old->value.box == box.box && box.priority <= old->value.priority)
+    return std::nullopt;
+  return box.name + " would protect " + ground_text(box.box) + ", " + std::to_string(count) +
+         " columns of ground: nobody could build there but its owner, its members, its roles and "
+         "whoever has the right " +
+         std::string(name_of(Right::build_protected)) + ", apart from boxes of a higher priority";
+}
+
 }  // namespace
 
 std::optional<std::string> hazard_of_lost_rights(const RightsState& state, const Role& role) {
@@ -112,6 +132,8 @@ std::optional<std::string> hazard_of(const RightsState& state, const RightsChang
     return "the first " + std::to_string(create->invite.uses) +
            " players with the link would have the rights " + rights_text(powers);
   }
+  if (const auto* protect = std::get_if<Protect>(&change))
+    return hazard_of_box(state, protect->box);
   const auto* restricted = std::get_if<Restrict>(&change);
   const auto* range =
       restricted == nullptr ? nullptr : std::get_if<AddressRange>(&restricted->subject);

@@ -12,7 +12,9 @@ namespace runstone {
 /// warned. Warned of are
 ///   - rights over others (kRightsOverOthers) for players whom nobody has chosen: of the default
 ///     role, of the role of the password, and of an invite for several players;
-///   - a ban of more addresses than an IPv4 /16 or an IPv6 /32.
+///   - a ban of more addresses than an IPv4 /16 or an IPv6 /32;
+///   - a protected box over more columns of ground than 16,384 x 16,384, if it is new, gets other
+///     ground or a higher priority.
 /// Requires a valid change. Cost: O(log n).
 std::optional<std::string> hazard_of(const RightsState& state, const RightsChange& change);
 

@@ -246,7 +246,8 @@ const SettingsTable<ServerConfig>& settings() {
                  "sessions from one address, 0: no limit"),
           number("range_seats_percent", &C::range_seats_percent, 1, 100,
                  "percent of the seats that others leave, which one /24 of IPv4 or /48 of IPv6 may "
-                 "take (8 at least); no limit if sessions_per_address is 0, or in local networks"),
+                 "take (8 at least, until the last eighth of the seats); no limit if "
+                 "sessions_per_address is 0, or in local networks"),
           number("connections_per_second", &C::connections_per_second, 0, 1'000'000,
                  "connections a second from one address, ten times as many at once, 0: no limit"),
           number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,

@@ -73,6 +73,8 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
       ->check(CLI::Range(0, 36'500));
+  compact->add_flag("--anyway", out.is_confirmed,
+                    "compact with --keep 0, which leaves no past to see, roll back or undo");
   compact->add_flag_callback(
       "--keep-size", [&out] { out.shrink = false; },
       "leave the free space in the file, for new edits");

@@ -8,8 +8,8 @@
 namespace runstone {
 namespace {
 
-constexpr std::array<std::string_view, 8> kListeners = {"all",  "anybody", "everybody", "everyone",
-                                                        "here", "me",      "nobody",    "op"};
+constexpr std::array<std::string_view, 7> kListeners = {"all",  "anybody", "everybody", "everyone",
+                                                        "here", "me",      "nobody"};
 
 std::optional<std::string> found_in(const std::map<std::string, std::string>& names,
                                     const Skeletons& skeletons) {

@@ -44,6 +44,7 @@ std::optional<std::string> read_as_reference(std::string_view folded) {
   if (!fingerprint_in(folded).empty()) return "the fingerprint of a key";
   if (is_key(folded)) return "a key";
   if (is_address(folded)) return "an address";
+  if (folded.starts_with(kRolePrefix)) return "a role";
   return std::nullopt;
 }
 

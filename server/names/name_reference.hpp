@@ -1,12 +1,15 @@
-// References: words that commands read as a player's number, fingerprint or key, or as an address.
-// No player gets a name that reads as one, so that a command never means two things. A player who
-// owns such a name from before keeps it, and commands refuse words that mean several.
+// References: words that commands read as a player's number, fingerprint or key, as an address, or
+// as a role. No player gets a name that reads as one, so that a command never means two things. A
+// player who owns such a name from before keeps it, and commands refuse words that mean several.
 #pragma once
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace runstone {
+
+/// Begins a word that means a role where a player may stand, too: "role:mason".
+inline constexpr std::string_view kRolePrefix = "role:";
 
 /// Returns the fingerprint in the form of key_fingerprint(), or an empty text if the word has not
 /// the form of one.

@@ -12,10 +12,12 @@ namespace runstone {
 void declare_import(SubcommandOptions& command_line, ImportOptions& options) {
   command_line.common(options.common, "folder of the world; made if it holds none");
   command_line.text("FILE", options.file, "the .rlog file to append to the world's log");
+  command_line.flag("--until-damage", options.until_damage,
+                    "make a new world of a damaged file, with the edits before the damage");
 }
 
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out) {
-  const auto done = import_rlog(options.common.world, options.file);
+  const auto done = import_rlog({options.common.world, options.file, options.until_damage}, out);
   if (!done) return failure(done.error());
   row(out, "world") << place_name(options.common.world) << (done->made_world ? ", made\n" : "\n");
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted

@@ -63,11 +63,12 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
 struct ImportOptions {
   CommonOptions common;
   std::string file;
+  bool until_damage = false;  // make a new world of a damaged file, too
 };
 
 void declare_import(SubcommandOptions& command_line, ImportOptions& options);
 /// Imports the file up to its first damaged block and prints a table. Fails if anything of the file
-/// is damaged; the edits before it stay imported.
+/// is damaged; the edits before it stay imported, but a new world is made with until_damage only.
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out);
 
 /// play: plays a world's log into a live server. Only clients join a server, so runstone-bot plays

@@ -8,11 +8,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <ostream>
 #include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "common/os/new_folder.hpp"
 #include "common/os/output_file.hpp"
 #include "common/rlog/rlog_reader.hpp"
 #include "server/store/world_folder.hpp"
@@ -207,17 +210,17 @@ class Importer {
   RlogImport report_;
 };
 
-Result<std::unique_ptr<Store>, std::string> world_for(const std::string& place,
-                                                      const std::string& file,
-                                                      const RlogWorld& wanted) {
-  if (has_world(place)) {
-    // The file may hold the very edits that the world has lost.
-    auto store = open_world(place, StoreAccess::repair);
-    if (!store) return failure(store.error().message());
-    if ((*store)->meta().world_id != wanted.world_id)
-      return failure(file + ": is of another world");
-    return *std::move(store);
-  }
+Result<std::unique_ptr<Store>, std::string> existing_world(const std::string& place,
+                                                           const std::string& file,
+                                                           const RlogWorld& wanted) {
+  // The file may hold the very edits that the world has lost.
+  auto store = open_world(place, StoreAccess::repair);
+  if (!store) return failure(store.error().message());
+  if ((*store)->meta().world_id != wanted.world_id) return failure(file + ": is of another world");
+  return *std::move(store);
+}
+
+Result<WorldMeta, std::string> meta_of_new_world(const std::string& file, const RlogWorld& wanted) {
   if (wanted.has_base || wanted.head.seq != 0) {
     return failure(file + ": does not hold its whole world (" +
                    (wanted.has_base ? "there are base chunks that no generator makes"
@@ -236,9 +239,48 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& place,
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator)
     return failure(file + ": generator " + meta.generator.name + ": " + generator.error().what);
-  auto store = create_world(place, meta);
+  return meta;
+}
+
+Result<RlogImport, std::string> import_into(Store& store, RlogReader& reader,
+                                            const std::string& file) {
+  Importer importer(store, file);
+  if (const auto begun = importer.begin(reader); !begun) return failure(begun.error());
+  const auto read = reader.read({}, [&](const EditRecord& record) { return importer.add(record); });
+  if (!importer.flush()) return failure(importer.error());
+  RlogImport report = importer.report();
+  const auto last = store.last_sequence();
+  if (!last) return failure(last.error().message());
+  report.last = *last;
+  if (!read) report.stopped = file + ": " + read.error().message();
+  return report;
+}
+
+/// Makes the world of a file. A folder gets its world when the import is complete.
+Result<RlogImport, std::string> import_new(const RlogImportRequest& request, RlogReader& reader,
+                                           std::ostream& out) {
+  const auto meta = meta_of_new_world(request.file, reader.world());
+  if (!meta) return failure(meta.error());
+  std::optional<NewFolder> folder;
+  if (!is_database(request.place)) {
+    auto made = NewFolder::make(request.place, out);
+    if (!made) return failure(made.error());
+    folder.emplace(*std::move(made));
+  }
+  auto store = create_world(folder ? folder->path() : request.place, *meta);
   if (!store) return failure(store.error().message());
-  return *std::move(store);
+  auto report = import_into(**store, reader, request.file);
+  if (!report) return report;
+  report->made_world = true;
+  if (!folder) return report;
+  if (!report->stopped.empty() && !request.until_damage) {
+    return failure(report->stopped + ". No world was made: --until-damage makes one of the " +
+                   std::to_string(report->added) + " edits before it");
+  }
+  store->reset();
+  if (const auto finished = folder->finish("world.sqlite"); !finished)
+    return failure(finished.error());
+  return report;
 }
 
 }  // namespace
@@ -254,29 +296,18 @@ Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::strin
   return done;
 }
 
-Result<RlogImport, std::string> import_rlog(const std::string& place, const std::string& file) {
+Result<RlogImport, std::string> import_rlog(const RlogImportRequest& request, std::ostream& out) {
   if (sodium_init() < 0) return failure("libsodium cannot start");
-  const File in(file);
-  if (!in.is_open()) return failure(file + ": cannot be read: " + system_error_text());
-  auto reader = RlogReader::open([&in](std::uint64_t position, std::span<std::uint8_t> out) {
-    return in.read(position, out);
+  const File in(request.file);
+  if (!in.is_open()) return failure(request.file + ": cannot be read: " + system_error_text());
+  auto reader = RlogReader::open([&in](std::uint64_t position, std::span<std::uint8_t> bytes) {
+    return in.read(position, bytes);
   });
-  if (!reader) return failure(file + ": " + reader.error().message());
-  const bool is_new = !has_world(place);
-  auto store = world_for(place, file, reader->world());
+  if (!reader) return failure(request.file + ": " + reader.error().message());
+  if (!has_world(request.place)) return import_new(request, *reader, out);
+  auto store = existing_world(request.place, request.file, reader->world());
   if (!store) return failure(store.error());
-  Importer importer(**store, file);
-  if (const auto begun = importer.begin(*reader); !begun) return failure(begun.error());
-  const auto read =
-      reader->read({}, [&](const EditRecord& record) { return importer.add(record); });
-  if (!importer.flush()) return failure(importer.error());
-  RlogImport report = importer.report();
-  report.made_world = is_new;
-  const auto last = (*store)->last_sequence();
-  if (!last) return failure(last.error().message());
-  report.last = *last;
-  if (!read) report.stopped = file + ": " + read.error().message();
-  return report;
+  return import_into(**store, *reader, request.file);
 }
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 // Calls block on the disk.
 #pragma once
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 
 #include "common/core/result.hpp"
@@ -35,11 +36,20 @@ struct RlogImport {
   std::string stopped;
 };
 
-/// Appends the edits of `file` to the world at `place`. It must be the same world and must end no
-/// earlier than the file begins; edits that both have must be equal. If the place holds no world
-/// and the file begins at edit 1, the world is made: same id, base of its generator, a new server
-/// key. Edits keep epoch and sequence number. An interrupted import can be repeated. The error is
-/// one line; what was imported before it stays.
-Result<RlogImport, std::string> import_rlog(const std::string& place, const std::string& file);
+struct RlogImportRequest {
+  std::string place;          // a folder or a database
+  std::string file;           // the .rlog file
+  bool until_damage = false;  // make a new world of a damaged file, up to the damage
+};
+
+/// Appends the edits of the file to the world at the place. It must be the same world and must end
+/// no earlier than the file begins; edits that both have must be equal. Edits keep epoch and
+/// sequence number. An interrupted import can be repeated. What was imported into a world before an
+/// error stays.
+/// If the place holds no world and the file begins at edit 1, the world is made: same id, base of its
+/// generator, a new server key. In a folder it is made as a NewFolder: after an error, and without
+/// `until_damage` also if the file is damaged, there is no world. `out` gets a line about an
+/// interrupted import that is removed. The error is one line.
+Result<RlogImport, std::string> import_rlog(const RlogImportRequest& request, std::ostream& out);
 
 }  // namespace runstone

@@ -291,7 +291,11 @@ StoreResult<std::optional<RowCounts>> MetaTable::row_counts() {
   if (!value) return failed(value.error());
   if (!*value) return std::optional<RowCounts>();
   const auto* bytes = std::get_if<Bytes>(&**value);
-  if (bytes == nullptr || bytes->size() != 36) return corrupt("row_counts", "is no list of counts");
+  // Without the number of segments: the row was written before these were counted.
+  constexpr std::size_t kBytes = 44, kBytesBefore = 36;
+  if (bytes != nullptr && bytes->size() == kBytesBefore) return std::optional<RowCounts>();
+  if (bytes == nullptr || bytes->size() != kBytes)
+    return corrupt("row_counts", "is no list of counts");
   ByteReader reader(*bytes);
   RowCounts counts;
   counts.epoch = reader.u32();
@@ -299,6 +303,7 @@ StoreResult<std::optional<RowCounts>> MetaTable::row_counts() {
   counts.player_names = reader.u64();
   counts.keyframes = reader.u64();
   counts.lost_edits = reader.u64();
+  counts.segments = reader.u64();
   const auto epoch = counter("epoch");
   if (!epoch) return failed(epoch.error());
   const auto head = log_head();
@@ -312,7 +317,7 @@ StoreResult<void> MetaTable::put_row_counts(const RowCounts& counts) {
   ByteWriter writer(bytes);
   writer.u32(counts.epoch);
   for (const std::uint64_t value :
-       {counts.head, counts.player_names, counts.keyframes, counts.lost_edits})
+       {counts.head, counts.player_names, counts.keyframes, counts.lost_edits, counts.segments})
     writer.u64(value);
   return put("row_counts", bytes);
 }

@@ -46,7 +46,7 @@ inline void remove_row(RowFold& fold, std::int64_t checksum) {
 struct RowCounts {
   Epoch epoch = 0;
   Sequence head = 0;  // of the log
-  std::uint64_t player_names = 0, keyframes = 0;
+  std::uint64_t player_names = 0, keyframes = 0, segments = 0;
   std::uint64_t lost_edits = 0;  // rows of the log whose loss was accepted
 };
 

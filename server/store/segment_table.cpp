@@ -1,8 +1,8 @@
 #include "server/store/segment_table.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/sql_result.hpp"
 
 namespace runstone {
@@ -49,9 +49,7 @@ StoreResult<SegmentTable> SegmentTable::open(sql::Database& database) {
   return SegmentTable(database, *std::move(put));
 }
 
-StoreResult<void> SegmentTable::add(const EditRecord& record) {
-  const VoxelBox box = bounding_box(record.edit);
-  const AuthorId author = record.op.author;
+StoreResult<void> SegmentTable::add(Sequence seq, AuthorId author, const VoxelBox& box) {
   if (open_.size() >= kOpenMax && !open_.contains(author)) {
     if (auto flushed = flush(); !flushed) return flushed;
     open_.clear();
@@ -61,14 +59,14 @@ StoreResult<void> SegmentTable::add(const EditRecord& record) {
     const VoxelBox joined = join(open.segment.box, box);
     if (open.edits < kSegmentEditsMin || (open.edits < kSegmentEditsMax && is_small(joined))) {
       open.segment.box = joined;
-      open.segment.last = record.version.seq;
+      open.segment.last = seq;
       ++open.edits;
       open.is_written = false;
       return {};
     }
     if (auto written = write(open); !written) return written;
   }
-  open = {{record.version.seq, record.version.seq, author, box}, 1, false};
+  open = {{seq, seq, author, box}, 1};
   return {};
 }
 
@@ -83,6 +81,7 @@ StoreResult<void> SegmentTable::write(Open& open) {
   if (open.is_written) return {};
   const LogSegment& segment = open.segment;
   open.is_written = true;
+  if (!std::exchange(open.has_row, true)) ++added_;
   return store_result(put_.bind(1, static_cast<std::int64_t>(segment.first))
                           .bind(2, std::int64_t{segment.box.min.x})
                           .bind(3, std::int64_t{segment.box.max.x})

@@ -7,12 +7,14 @@
 //   - Segments of one author do not overlap in sequence. Every edit of the log lies in one.
 // Threads: the one that owns the store.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "common/edits/descriptor/edit_record.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
 #include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/store/store_error.hpp"
@@ -33,14 +35,19 @@ class SegmentTable {
   /// The database must outlive the table.
   static StoreResult<SegmentTable> open(sql::Database& database);
 
-  /// Adds a record to the segment of its author, in the caller's transaction. flush() must be
-  /// called before the commit.
-  StoreResult<void> add(const EditRecord& record);
+  /// Adds an edit to the segment of its author, in the caller's transaction. flush() must be called
+  /// before the commit.
+  StoreResult<void> add(Sequence seq, AuthorId author, const VoxelBox& box);
   /// Writes the segments that have changed.
   StoreResult<void> flush();
   /// Drops all open segments. Call it after a transaction that was not committed. The next edit of
   /// each author begins a new segment, as after a start.
-  void forget() { open_.clear(); }
+  void forget() {
+    open_.clear();
+    added_ = 0;
+  }
+  /// Returns the number of rows that were added since the last call.
+  std::uint64_t take_added() { return std::exchange(added_, 0); }
 
   /// Returns the segments that may hold edits of first..last that answer the query, by their first
   /// sequence. Only author, box and `wants` of the query count.
@@ -53,12 +60,14 @@ class SegmentTable {
     LogSegment segment;
     std::uint32_t edits = 0;
     bool is_written = false;
+    bool has_row = false;  // an older state of the segment was written
   };
   StoreResult<void> write(Open& open);
 
   sql::Database* database_;
   sql::Statement put_;
   std::map<AuthorId, Open> open_;
+  std::uint64_t added_ = 0;  // rows
 };
 
 }  // namespace runstone

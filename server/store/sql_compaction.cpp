@@ -101,12 +101,13 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     RowCounts counted = **counts;
     counted.head = keyframe;
     counted.keyframes = left->keyframes;
+    counted.segments = left->segments;
     if (counted.lost_edits > 0) {
       const auto lost = count_lost_edits();
       if (!lost) return failed(lost.error());
       counted.lost_edits = std::min(counted.lost_edits, *lost);
     }
-    return meta_table_.put_row_counts(counted);
+    return put_counts(counted);
   });
   segments_.forget();
   if (compacted) meta_.materials = std::move(materials);

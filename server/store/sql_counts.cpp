@@ -7,6 +7,8 @@
 namespace runstone {
 namespace {
 
+constexpr const char* kSegments = "log_box";
+
 std::string rows_missing(std::uint64_t found, std::uint64_t counted) {
   return std::to_string(counted - found) + " rows are missing: " + std::to_string(found) +
          " rows, meta counts " + std::to_string(counted) + ". " + kLossAdvice;
@@ -28,6 +30,11 @@ StoreResult<RowCounts> SqlStore::counted_rows() {
   const auto keyframes = count_of("keyframe");
   if (!keyframes) return failed(keyframes.error());
   counts.keyframes = *keyframes;
+  // The R*Tree of SQLite has a table with a row for each of its entries, which is counted faster.
+  const bool is_sqlite = database().dialect() == sql::Dialect::sqlite;
+  const auto segments = count_of(is_sqlite ? "log_box_rowid" : "log_box");
+  if (!segments) return failed(segments.error());
+  counts.segments = *segments;
   return counts;
 }
 
@@ -44,17 +51,74 @@ StoreResult<void> SqlStore::put_epoch(Epoch epoch) {
   (*counts)->epoch = epoch;
   (*counts)->head = head->version.seq;
   if (auto put = meta_table_.put("epoch", std::int64_t{epoch}); !put) return put;
-  if (auto put = meta_table_.put_row_counts(**counts); !put) return put;
+  if (auto put = put_counts(**counts); !put) return put;
   if (!is_open_) return {};
   return meta_table_.put_open_epoch(epoch);
 }
 
+StoreResult<void> SqlStore::put_counts(const RowCounts& counts) {
+  counts_ = counts;
+  return meta_table_.put_row_counts(counts);
+}
+
 StoreResult<void> SqlStore::change_counts(const std::function<void(RowCounts&)>& change) {
-  auto counts = meta_table_.row_counts();
-  if (!counts) return failed(counts.error());
-  if (!*counts) return {};  // the next start counts them
-  change(**counts);
-  return meta_table_.put_row_counts(**counts);
+  if (!counts_) {
+    const auto counts = meta_table_.row_counts();
+    if (!counts) return failed(counts.error());
+    counts_ = *counts;
+  }
+  if (!counts_) return {};  // the next start counts them
+  RowCounts changed = *counts_;
+  change(changed);
+  return put_counts(changed);
+}
+
+StoreResult<void> SqlStore::flush_segments() {
+  if (auto flushed = segments_.flush(); !flushed) return flushed;
+  const std::uint64_t added = segments_.take_added();
+  if (added == 0) return {};
+  return change_counts([&](RowCounts& counts) { counts.segments += added; });
+}
+
+StoreResult<void> SqlStore::make_segments_again() {
+  segments_.forget();
+  if (auto gone = database().run("DELETE FROM log_box"); !gone) return failed(gone.error());
+  // Rows that are read in parts: no statement reads while another one writes. A gap in the log does
+  // no harm.
+  auto rows = database().prepare(
+      "SELECT seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM edit_log "
+      "WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 4096");
+  if (!rows) return failed(rows.error());
+  std::vector<LogSegment> part;
+  std::int64_t before = 0;
+  const auto coordinate = [&](int column) {
+    return static_cast<std::int32_t>(rows->integer(column));
+  };
+  do {
+    part.clear();
+    {
+      const sql::ResetAtEnd reset_at_end(*rows);
+      rows->bind(1, before);
+      for (;;) {
+        const auto more = rows->step();
+        if (!more) return failed(more.error());
+        if (!*more) break;
+        before = rows->integer(0);
+        const auto seq = static_cast<Sequence>(before);
+        part.push_back({seq,
+                        seq,
+                        static_cast<AuthorId>(rows->integer(1)),
+                        {{coordinate(2), coordinate(3), coordinate(4)},
+                         {coordinate(5), coordinate(6), coordinate(7)}}});
+      }
+    }
+    for (const LogSegment& edit : part) {
+      if (auto added = segments_.add(edit.first, edit.author, edit.box); !added) return added;
+    }
+  } while (!part.empty());
+  if (auto flushed = segments_.flush(); !flushed) return flushed;
+  segments_.forget();
+  return {};
 }
 
 StoreResult<std::uint64_t> SqlStore::count_lost_edits() {
@@ -104,6 +168,11 @@ StoreResult<std::vector<StoreError>> SqlStore::missing_rows() {
   };
   compare("player_name", found->player_names, expected.player_names);
   compare("keyframe", found->keyframes, expected.keyframes);
+  if (found->segments < expected.segments) {
+    missing.push_back({StoreError::Kind::corrupt, file(), kSegments,
+                       rows_missing(found->segments, expected.segments) +
+                           ", which makes this index again from the log: no edit is lost"});
+  }
   const auto lost = count_lost_edits();
   if (!lost) return failed(lost.error());
   if (*lost > expected.lost_edits) {
@@ -128,7 +197,11 @@ StoreResult<void> SqlStore::accept_lost_counts(std::vector<std::string>& lost) {
   const auto missing = missing_rows();
   if (!missing) return failed(missing.error());
   if (missing->empty()) return {};
-  for (const StoreError& error : *missing) lost.push_back(error.message());
+  for (const StoreError& error : *missing) {
+    lost.push_back(error.message());
+    if (error.where != kSegments) continue;
+    if (auto made = make_segments_again(); !made) return made;
+  }
   auto counts = counted_rows();
   if (!counts) return failed(counts.error());
   const auto lost_edits = count_lost_edits();
@@ -140,7 +213,7 @@ StoreResult<void> SqlStore::accept_lost_counts(std::vector<std::string>& lost) {
   const auto head = meta_table_.log_head();
   if (!head) return failed(head.error());
   counts->head = head->version.seq;
-  return meta_table_.put_row_counts(*counts);
+  return put_counts(*counts);
 }
 
 StoreResult<void> SqlStore::accept_lost_chunks(std::vector<std::string>& lost) {

@@ -7,6 +7,7 @@
 
 #include "common/core/epoch_branch.hpp"
 #include "common/core/key_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/log_search.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
@@ -179,7 +180,8 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   Watermarks marks;
   if (auto inserted = log_.insert(records); !inserted) return inserted;
   for (const EditRecord& record : records) {
-    if (auto added = segments_.add(record); !added) return added;
+    auto added = segments_.add(record.version.seq, record.op.author, bounding_box(record.edit));
+    if (!added) return added;
     raise(marks, record);
     next.author_max = std::max(next.author_max, record.op.author);
     next.seq = record.version.seq;
@@ -192,7 +194,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   if (*author_max != next.author_max) {
     if (auto put = meta_table_.put("author_max", std::int64_t{next.author_max}); !put) return put;
   }
-  return segments_.flush();
+  return flush_segments();
 }
 
 StoreResult<void> SqlStore::add_eras(std::span<const EditRecord> records) {

@@ -148,6 +148,7 @@ class SqlStore final : public Store {
   void forget_uncommitted() {
     segments_.forget();
     player_table_.forget();
+    counts_.reset();
   }
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
@@ -200,6 +201,11 @@ class SqlStore final : public Store {
   StoreResult<std::uint64_t> count_of(const char* table);
   /// Counts the rows of the tables without a fold.
   StoreResult<RowCounts> counted_rows();
+  StoreResult<void> put_counts(const RowCounts& counts);
+  /// Writes the segments of the log that have changed, and counts the new ones.
+  StoreResult<void> flush_segments();
+  /// Makes the segments of the log again from its rows, in the caller's transaction. Cost: O(log rows).
+  StoreResult<void> make_segments_again();
   /// Applies a change to the row counts in the caller's transaction, unless they do not count.
   StoreResult<void> change_counts(const std::function<void(RowCounts&)>& change);
   /// Returns how many rows the log lacks between its first and its last one. Returns 0 in PostgreSQL,
@@ -231,6 +237,9 @@ class SqlStore final : public Store {
   std::optional<RightsTable> rights_;
   LogTable log_;
   SegmentTable segments_;
+  // The row counts as they were written last; nullopt: they must be read. A commit with new segments
+  // then costs one write more and no read.
+  std::optional<RowCounts> counts_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
   // nullopt: a world without the table, or with tiles of other rules, that is open for reading only

@@ -29,15 +29,57 @@ ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered
   return is_coded ? ChunkEncoding::coded : of_chunks;
 }
 
-/// A household has so many seats, however few the others leave.
+/// A household has so many seats, until the last ones are reached (LastSeats).
 constexpr std::uint64_t kSeatsOfRangeMin = 8;
 
 /// Returns how many seats the addresses of one range may take while sessions from elsewhere take
-/// `elsewhere`: a share of those that the others leave. So whoever comes from another range finds a
-/// seat.
+/// `elsewhere`: a share of those that the others leave.
 std::uint64_t seats_of_range(const WorldConfig& config, std::size_t elsewhere) {
   const std::uint64_t left = config.sessions_max - std::min(elsewhere, config.sessions_max);
   return std::max(kSeatsOfRangeMin, (left * config.range_seats_percent + 99) / 100);
+}
+
+/// The last seats of a server. Shares of what others leave halve the free seats with each range, so
+/// a few ranges would take all of them. The last eighth is therefore for ranges without a session,
+/// and half of it for wide networks without one, because the ranges of one provider cost little. Of
+/// 256 seats three ranges take 224, 16 further ranges one each, and 16 further networks one each.
+struct LastSeats {
+  std::uint64_t for_new_ranges = 0, for_new_networks = 0;
+};
+
+/// A host who gives a range more than seven eighths of the seats keeps fewer.
+LastSeats last_seats_of(const WorldConfig& config) {
+  const std::uint64_t percent_left = 100 - config.range_seats_percent;
+  const std::uint64_t kept =
+      std::min(config.sessions_max / 8, config.sessions_max * percent_left / 100);
+  return {kept, kept / 2};
+}
+
+/// The open sessions from the surroundings of an address.
+struct NearSessions {
+  std::size_t of_range = 0, of_network = 0;
+};
+
+/// Returns why an address may not take one more of the seats, of which `all` are taken, or an empty
+/// string.
+std::string no_seat_for_range(const WorldConfig& config, std::size_t all,
+                              const NearSessions& near) {
+  constexpr const char* kWayOn =
+      " (range_seats_percent): come back later, or ask the server's host";
+  const std::uint64_t free = config.sessions_max - std::min(all, config.sessions_max);
+  const LastSeats last = last_seats_of(config);
+  const auto kept = [](std::uint64_t seats, const std::string& whom) {
+    return "the last " + std::to_string(seats) + " seats are for " + whom + " without a session" +
+           kWayOn;
+  };
+  if (near.of_network > 0 && free <= last.for_new_networks)
+    return kept(last.for_new_networks, "networks (/16 of IPv4, /32 of IPv6)");
+  if (near.of_range > 0 && free <= last.for_new_ranges)
+    return kept(last.for_new_ranges, "ranges of addresses (/24 of IPv4, /48 of IPv6)");
+  const std::uint64_t range_max = seats_of_range(config, all - near.of_range);
+  if (near.of_range < range_max) return "";
+  return "while few seats are free, your range of addresses has " + std::to_string(range_max) +
+         " sessions at most" + kWayOn;
 }
 
 }  // namespace
@@ -70,13 +112,15 @@ Welcome Joining::welcome_of(const PublicKey& key) const {
 /// count, so that sockets which never authenticate do not keep players out, and not the session
 /// that this one replaces.
 std::string Joining::no_seat(const Session& session) const {
-  std::size_t all = 0, of_key = 0, of_address = 0, of_range = 0;
+  std::size_t all = 0, of_key = 0, of_address = 0;
+  NearSessions near;
   for (const Session* other : world_.sessions.open()) {
     if (other->key == session.key && other->instance == session.instance) continue;
     ++all;
     if (other->key == session.key) ++of_key;
     if (other->address == session.address) ++of_address;
-    if (address_range_of(other->address) == address_range_of(session.address)) ++of_range;
+    if (address_range_of(other->address) == address_range_of(session.address)) ++near.of_range;
+    if (wide_network_of(other->address) == wide_network_of(session.address)) ++near.of_network;
   }
   const WorldConfig& config = world_.config;
   const auto text = [](const char* who, std::size_t count) {
@@ -90,11 +134,7 @@ std::string Joining::no_seat(const Session& session) const {
   // Without a limit for addresses the host does not count by networks.
   const bool counts_ranges =
       config.sessions_per_address != 0 && !is_of_local_network(session.address);
-  const std::uint64_t range_max = seats_of_range(config, all - of_range);
-  if (counts_ranges && of_range >= range_max)
-    return text("while few seats are free, your range of addresses has ", range_max) +
-           " (range_seats_percent): come back later, or ask the server's host";
-  return "";
+  return counts_ranges ? no_seat_for_range(config, all, near) : "";
 }
 
 bool Joining::close_if_no_seat(Session& session) {

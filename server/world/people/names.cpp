@@ -10,13 +10,24 @@
 namespace runstone {
 namespace {
 
+void add_to(LookalikeNames& names, const std::string& name) {
+  names.add(name, is_compared_whole(name) ? LookalikeNames::Compare::whole
+                                          : LookalikeNames::Compare::words);
+}
+
 LookalikeNames lookalikes_of(const std::set<std::string>& reserved) {
   LookalikeNames names;
-  for (const std::string& name : reserved) {
-    names.add(name, is_compared_whole(name) ? LookalikeNames::Compare::whole
-                                            : LookalikeNames::Compare::words);
-  }
+  for (const std::string& name : reserved) add_to(names, name);
   return names;
+}
+
+/// Returns true for the name that clients give their player until the player chooses another one,
+/// while the role of that name has no rights over others. It says nothing about the role of its
+/// player, and a client that is started for the first time must be able to join.
+bool is_first_name(const std::string& folded, const RightsState& rights) {
+  if (folded != kBuilderRole) return false;
+  const Decided<Role>* role = rights.find_role(folded);
+  return role == nullptr || role->value.rights.and_in(kRightsOverOthers) == RightSet();
 }
 
 }  // namespace
@@ -33,8 +44,10 @@ Names::Names(const WorldConfig& config, WorldEnvironment& environment, Order& or
 const LookalikeNames& Names::names_of_roles() const {
   if (roles_revision_ == rights_.revision()) return roles_;
   roles_ = LookalikeNames();
+  // Everybody has the default role, so nobody seems to have more by its name.
+  const std::string& of_everybody = rights_.state().default_role().value;
   for (const auto& [name, role] : rights_.state().roles()) {
-    if (role.value.rights.and_in(kRightsOverOthers) != RightSet()) roles_.add(name);
+    if (name != of_everybody) add_to(roles_, name);
   }
   roles_revision_ = rights_.revision();
   return roles_;
@@ -50,8 +63,9 @@ std::optional<std::string> Names::not_for_new_owners(const std::string& name,
   if (reference && !is_own) return "is refused: commands read it as " + *reference;
   if (const auto like = reserved_.like(name))
     return "looks like \"" + *like + "\", which is reserved";
-  if (const auto like = names_of_roles().like(name))
-    return "looks like \"" + *like + "\", a role of this world";
+  const auto like =
+      is_first_name(folded, rights_.state()) ? std::nullopt : names_of_roles().like(name);
+  if (like) return "looks like \"" + *like + "\", a role of this world";
   return std::nullopt;
 }
 

@@ -24,9 +24,11 @@ class Names {
   /// Returns why the session may not have its name, for goodbye name_refused, or nullopt:
   ///   - the name breaks a rule of name_fault(), or is reserved;
   ///   - it belongs to another key, or the key owns names_per_key others already;
-  ///   - its key does not own it yet, and commands would read it as a reference to another player
-  ///     or an address (name_reference.hpp), or it looks like a reserved name or like the name of a role with
-  ///     rights over others (lookalike_names.hpp).
+  ///   - its key does not own it yet, and commands would read it as a reference to another player,
+  ///     a role or an address (name_reference.hpp), or it looks like a reserved name or like the
+  ///     name of a role (lookalike_names.hpp). The default role does not count, because everybody
+  ///     has it. "builder" itself is free while the role of that name has no rights over others,
+  ///     because clients call their player so at first.
   /// Changes nothing. Cost: O(log claims), and that of LookalikeNames::like().
   std::optional<std::string> refusal(const Session& session) const;
   /// Makes the session's key own its name, if the client keeps its key (kFeatureNames) and nobody
@@ -41,8 +43,8 @@ class Names {
   Result<NameClaim, std::string> release(const std::string& name);
 
  private:
-  /// Returns the names of the roles with rights over others. They are collected again after a change
-  /// of rights.
+  /// Returns the names of all roles but the default role. They are collected again after a change of
+  /// rights.
   const LookalikeNames& names_of_roles() const;
   std::optional<std::string> not_for_new_owners(const std::string& name, const std::string& folded,
                                                 const PublicKey& key) const;

@@ -87,7 +87,8 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
     auto store = *open_world(world, StoreAccess::read_only);
     REQUIRE(export_rlog(*store, file, kSequenceMax).has_value());
   }
-  const auto done = import_rlog(imported, file);
+  std::ostringstream out;
+  const auto done = import_rlog({imported, file}, out);
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
   CHECK(done->stopped.empty());
@@ -100,15 +101,14 @@ TEST_CASE("added materials survive kill -9, export, import, compaction and backu
     auto store = *open_world(world, StoreAccess::read_only);
     const std::string early = folder / "early.rlog";
     REQUIRE(export_rlog(*store, early, 0).has_value());
-    REQUIRE(import_rlog(older, early).has_value());
+    REQUIRE(import_rlog({older, early}, out).has_value());
     CHECK(table_of(older) == default_material_table());
   }
-  REQUIRE(import_rlog(older, file).has_value());
+  REQUIRE(import_rlog({older, file}, out).has_value());
   CHECK(verified_digest(older) == digest);
   CHECK(table_of(older) == table_of(world));
 
-  std::ostringstream out;
-  succeed(compact_world({world, 0, false}, kCompactedUs, out));
+  succeed(compact_world({world, 0, false, false, true}, kCompactedUs, out));
   {
     auto store = *open_world(world, StoreAccess::read_only);
     CHECK(store->log_range()->first > 1);
@@ -140,7 +140,8 @@ TEST_CASE("materials of a later record follow those that a compaction kept",
       CHECK(server->stop().is_clean);
     }
     std::ostringstream out;
-    if (std::string(name) != "plum") succeed(compact_world({world, 0, false}, kCompactedUs, out));
+    if (std::string(name) != "plum")
+      succeed(compact_world({world, 0, false, false, true}, kCompactedUs, out));
   }
   const MaterialTable table = table_of(world);
   CHECK(table.find("lime") == kLime);

@@ -41,7 +41,7 @@ enum class CompactionEnd { done, cut, failed };
 inline Result<void, std::string> compact_all(const std::string& folder, bool shrinks) {
   constexpr TimeUs kLaterUs = 2'000'000'000'000'000;  // than any edit
   std::ostringstream out;
-  return compact_world({folder, 0, shrinks}, kLaterUs, out);
+  return compact_world({folder, 0, shrinks, false, true}, kLaterUs, out);
 }
 /// Prints why a compaction failed that nothing cut.
 inline CompactionEnd failed_compaction(const std::string& why) {

@@ -123,7 +123,8 @@ struct Outcome {
 Outcome compact(const std::string& folder, TimeUs now_us, std::uint64_t keep_days,
                 const SqliteOptions& options = {}) {
   std::ostringstream out;
-  const auto compacted = compact_world({folder, keep_days}, now_us, out, options);
+  const auto compacted =
+      compact_world({folder, keep_days, true, false, true}, now_us, out, options);
   return {compacted.has_value(), compacted ? out.str() : compacted.error()};
 }
 
@@ -186,6 +187,27 @@ TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][c
   CHECK(store->log_range()->first == kEdits + 4);
   CHECK(store->check().has_value());
   CHECK(store->keyframes()->empty());
+}
+
+TEST_CASE("a compaction that keeps no day says what it would do and asks for --anyway",
+          "[store][compact]") {
+  const TempFolder folder;
+  make_compaction_world(folder.path());
+  std::ostringstream out;
+  const TimeUs later = kCutTime + 30 * kDay;
+  const auto asked = compact_world({folder.path(), 0}, later, out);
+  REQUIRE_FALSE(asked.has_value());
+  CHECK(asked.error() ==
+        folder / "world.sqlite" +
+            ": nothing has changed: --keep 0 would move 160 of 160 edits of the log into the base, "
+            "and they could not be seen in the past, rolled back or undone any more. To do it all "
+            "the same, add --anyway");
+  CHECK(out.str().empty());
+  CHECK(compacted_store(folder.path())->log_range()->first == 1);
+  REQUIRE(compact(folder.path(), later, 0).done);
+  // No edit is left that could be lost.
+  CHECK(compact_world({folder.path(), 0}, later, out).has_value());
+  CHECK(out.str() == "nothing to compact: no edit of the log is older than 0 days\n");
 }
 
 TEST_CASE("a compaction leaves a world without old edits unchanged", "[store][compact]") {

@@ -171,18 +171,67 @@ TEST_CASE(
     Bytes bytes = sound;
     damage.make(bytes);
     write_bytes(torn, bytes);
-    const ReplayOutcome imported = run_replay({"import", torn, "--world", copy});
-    CAPTURE(i, imported.out);
+    const std::string what = "runstone-replay: " + torn + ": edit " +
+                             std::to_string(damage.edits + 1) + " at byte " +
+                             std::to_string(begins[damage.block]) + ": " + damage.what;
+    // A new world that lacks edits looks finished, so it is made on request only.
+    const ReplayOutcome refused = run_replay({"import", torn, "--world", copy});
+    CAPTURE(i, refused.out);
+    CHECK(refused.code == 2);
+    CHECK(refused.err == what + ". No world was made: --until-damage makes one of the " +
+                             std::to_string(damage.edits) + " edits before it\n");
+    CHECK_FALSE(std::filesystem::exists(copy));
+    CHECK_FALSE(std::filesystem::exists(copy + ".partial"));
+    const ReplayOutcome imported = run_replay({"import", torn, "--world", copy, "--until-damage"});
+    CAPTURE(imported.out);
     CHECK(imported.code == 2);
-    CHECK(imported.err == "runstone-replay: " + torn + ": edit " +
-                              std::to_string(damage.edits + 1) + " at byte " +
-                              std::to_string(begins[damage.block]) + ": " + damage.what + "\n");
+    CHECK(imported.err == what + "\n");
     const auto stands = log_of(copy);
     CHECK(stands == std::vector<EditRecord>(
                         log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
     // An import of the sound file completes the world.
     CHECK(run_replay({"import", file, "--world", copy}).code == 0);
     CHECK(log_of(copy) == log);
+  }
+}
+
+TEST_CASE("an import makes a new world under the rule of new folders", "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "log.rlog", torn = folder / "torn";
+  make_logged_world(world, 40);
+  export_small_blocks(world, file);
+  Bytes bytes = bytes_of(file);
+  bytes.resize(blocks_of(bytes)[4] - 5);
+  write_bytes(torn, bytes);
+  SECTION("an empty folder stays and is filled, and stays empty after an error") {
+    const std::string empty = folder / "empty";
+    std::filesystem::create_directory(empty);
+    CHECK(run_replay({"import", torn, "--world", empty}).code == 2);
+    CHECK(std::filesystem::is_empty(empty));
+    CHECK(run_replay({"import", file, "--world", empty}).code == 0);
+    CHECK(log_of(empty) == log_of(world));
+    CHECK_FALSE(std::filesystem::exists(empty + "/.partial"));
+  }
+  SECTION("a folder with other files is left alone") {
+    const std::string full = folder / "full";
+    std::filesystem::create_directory(full);
+    write_bytes(full + "/notes.txt", {'n'});
+    const ReplayOutcome refused = run_replay({"import", file, "--world", full});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("full: is not empty") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(full + "/world.sqlite"));
+  }
+  SECTION("an import that was interrupted is removed by the next one") {
+    const std::string copy = folder / "copy";
+    std::filesystem::create_directory(copy + ".partial");
+    write_bytes(copy + ".partial/partial.lock", {});
+    write_bytes(copy + ".partial/world.sqlite", {'n'});
+    const ReplayOutcome made = run_replay({"import", file, "--world", copy});
+    CHECK(made.code == 0);
+    CHECK(made.out.find("copy.partial, which was interrupted\n") != std::string::npos);
+    CHECK(log_of(copy) == log_of(world));
+    CHECK_FALSE(std::filesystem::exists(copy + ".partial"));
+    CHECK_FALSE(std::filesystem::exists(copy + "/partial.lock"));
   }
 }
 

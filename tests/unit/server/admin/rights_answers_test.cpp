@@ -60,6 +60,16 @@ struct RightsBench : RollbackBench {
   std::string role_of(std::uint8_t who) {
     return bench.server.rights().state().role_of(key_of(who)).name;
   }
+  /// Lets a key join once more, under a name that it owns.
+  void join_as(SessionId session, std::uint8_t who, const std::string& name) {
+    Hello hello = bench.hello(who, session);
+    hello.name = name;
+    bench.server.connected(session, bench.now());
+    bench.server.received(session, hello, bench.now());
+    const auto welcome = bench.environment.messages<Welcome>(session, 0);
+    REQUIRE(welcome.size() == 1);
+    bench.server.received(session, bench.client_auth(who, hello, welcome[0]), bench.now());
+  }
   Sequence head() { return bench.server.order().head(); }
   static std::string record(Sequence seq) { return " (record " + std::to_string(seq) + ")"; }
 
@@ -115,14 +125,7 @@ TEST_CASE("a number or address that is also a player's name is refused with a wo
     start.name_claims.push_back({name, name, RightsBench::key_of(2)});
   RightsBench bench(start);
   constexpr SessionId kThird = 3;
-  Hello hello = bench.bench.hello(2, kThird);
-  hello.name = "#1";
-  bench.bench.server.connected(kThird, bench.bench.now());
-  bench.bench.server.received(kThird, hello, bench.bench.now());
-  const auto welcome = bench.bench.environment.messages<Welcome>(kThird, 0);
-  REQUIRE(welcome.size() == 1);
-  bench.bench.server.received(kThird, bench.bench.client_auth(2, hello, welcome[0]),
-                              bench.bench.now());
+  bench.join_as(kThird, 2, "#1");
   const std::string one =
       RightsBench::text_of(1) + " (say " + key_fingerprint(RightsBench::key_of(1)) + ")";
   const std::string other = RightsBench::text_of(2) + " (say #2)";
@@ -145,6 +148,18 @@ TEST_CASE("a number or address that is also a player's name is refused with a wo
   CHECK(has(bench.done("ban address 192.0.2.7"), "everybody from 192.0.2.7, except"));
   bench.done("unban address 192.0.2.7");
   CHECK(has(bench.done("mute #2"), " is muted"));
+}
+
+TEST_CASE("an answer about a role says that a player has the word as a name",
+          "[admin][rights][names]") {
+  WorldStart start;
+  start.name_claims.push_back({"role:moderator", "role:moderator", RightsBench::key_of(2)});
+  RightsBench bench(start);
+  bench.join_as(3, 2, "role:moderator");
+  bench.done("protect town 0 0 0 9 9 9");
+  CHECK(bench.done("protect town add role:moderator role:visitor") ==
+        "town admits: the role moderator [\"role:moderator\" is also the name of " +
+            RightsBench::text_of(2) + " (say #2)], the role visitor" + bench.record(2));
 }
 
 TEST_CASE("a change with wide consequences says what it would do and asks for a word more",
@@ -174,6 +189,23 @@ TEST_CASE("a change with wide consequences says what it would do and asks for a 
   bench.done("invite role administrator");
   bench.done("role set mason see,build");
   bench.done("role set mason see,build,undo");
+
+  const std::string world = "protect world columns -536870912 -536870912 536870911 536870911";
+  asked(world,
+        "world would protect columns -536870912 -536870912 to 536870911 536870911, "
+        "1152921504606846976 columns of ground: nobody could build there but its owner, its "
+        "members, its roles and whoever has the right build_protected, apart from boxes of a "
+        "higher priority");
+  asked("protect plain -8192 0 -8192 8192 0 8191", "268451840 columns of ground");
+  bench.done("protect plain columns -8192 -8192 8191 8191");
+  asked("protect plain columns -8192 -8192 8191 8192", "columns of ground");
+  CHECK(has(bench.done(world + " anyway"), "world protects columns"));
+  bench.done("protect world owner player1");
+  asked("protect world priority 1", "world would protect");
+  bench.done("protect world priority -1");
+  // The word is also the name of an owner.
+  CHECK(has(bench.console("protect world owner anyway").text, "\"anyway\": nobody of that name"));
+  CHECK(has(bench.done("unprotect world"), "world protects nothing any more"));
 
   const JoinPassword password{"administrator", {1}, {2}};
   const std::string verifier = verifier_text(password);

@@ -129,6 +129,9 @@ TEST_CASE("compact gives the space back unless the size is to be kept", "[server
   CHECK(plain.options->compact->shrink);
   CHECK_FALSE(
       parse({"compact", "--world", "a", "--keep", "9", "--keep-size"}).options->compact->shrink);
+  CHECK_FALSE(plain.options->compact->is_confirmed);
+  CHECK(
+      parse({"compact", "--world", "a", "--keep", "0", "--anyway"}).options->compact->is_confirmed);
 }
 
 TEST_CASE("an unknown flag ends the program with 2", "[server_options]") {

@@ -27,5 +27,14 @@ TEST_CASE("the 64 upper bits of an IPv6 address are its block", "[server]") {
   CHECK(address_block_v6(loopback) != address_block_v4(0));
 }
 
+TEST_CASE("an address lies in a range and in a wide network", "[server]") {
+  const auto v4 = address_block_v4(0xc633'6407);
+  CHECK(address_range_of(v4) == address_block_v4(0xc633'6400));
+  CHECK(wide_network_of(v4) == address_block_v4(0xc633'0000));
+  const AddressBlock v6 = address_block_v6(Address{0x20, 0x01, 0x0d, 0xb8, 1, 2, 3, 4, 5});
+  CHECK(address_range_of(v6) == address_block_v6(Address{0x20, 0x01, 0x0d, 0xb8, 1, 2}));
+  CHECK(wide_network_of(v6) == address_block_v6(Address{0x20, 0x01, 0x0d, 0xb8}));
+}
+
 }  // namespace
 }  // namespace runstone

@@ -45,6 +45,27 @@ TEST_CASE("other names are free, also with a word that only means listeners", "[
   CHECK(names.like("m e") == "me");
 }
 
+TEST_CASE("only words that mean listeners are compared as a whole", "[names]") {
+  for (const char* name : {"all", "anybody", "everybody", "everyone", "here", "me", "nobody"}) {
+    CAPTURE(name);
+    CHECK(is_compared_whole(name));
+  }
+  for (const char* name : {"admin", "mod", "op", "staff"}) {
+    CAPTURE(name);
+    CHECK_FALSE(is_compared_whole(name));
+  }
+  LookalikeNames names;
+  names.add("op");
+  for (const char* name : {"[OP] ana", "ana (op)", "0p", "o.p. ana", "\u043e\u0440 ana"}) {
+    CAPTURE(name);
+    CHECK(names.like(name) == "op");
+  }
+  for (const char* name : {"opal", "Opa", "Opa Heinz", "drop", "Poppy", "go play"}) {
+    CAPTURE(name);
+    CHECK(names.like(name) == std::nullopt);
+  }
+}
+
 TEST_CASE("words are parted by all but letters, digits and marks", "[names]") {
   CHECK(name_words("[ADMIN] ana") == std::vector<std::string>{"ADMIN", "ana"});
   CHECK(name_words("a_b-c.7").size() == 4);

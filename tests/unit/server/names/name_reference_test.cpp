@@ -4,7 +4,8 @@
 
 using namespace runstone;
 
-TEST_CASE("names that commands read as a number, a key or an address are found", "[names]") {
+TEST_CASE("names that commands read as a number, a key, an address or a role are found",
+          "[names]") {
   for (const char* name : {"#1", "#", "#ana"}) {
     CAPTURE(name);
     CHECK(read_as_reference(name) == "the number of a player");
@@ -15,7 +16,10 @@ TEST_CASE("names that commands read as a number, a key or an address are found",
   }
   CHECK(read_as_reference("9m1q-z7cr-04kd") == "the fingerprint of a key");
   CHECK(read_as_reference(std::string(64, 'a')) == "a key");
-  for (const char* name : {"ana", "ana #1", "192", "1.2", "9m1q-z7cr", "abba", "7/8", "address"}) {
+  CHECK(read_as_reference("role:builder") == "a role");
+  CHECK(read_as_reference("role:") == "a role");
+  for (const char* name : {"ana", "ana #1", "192", "1.2", "9m1q-z7cr", "abba", "7/8", "address",
+                           "role", "role builder", "a role:builder"}) {
     CAPTURE(name);
     CHECK(read_as_reference(name) == std::nullopt);
   }

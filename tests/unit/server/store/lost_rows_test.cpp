@@ -1,5 +1,5 @@
 // Worlds that have lost rows which a start does not read: base chunks, names, keyframes, edits in the
-// middle of the log; and snapshots, which can be made again.
+// middle of the log; and snapshots and segments of the log, which can be made again.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -98,6 +98,41 @@ TEST_CASE("missing rows of base, names, keyframes and log are counted, named and
     }
     CHECK(counted(*full_world(place.path(), StoreAccess::read_write)).empty());
     CHECK(full_world(place.path(), StoreAccess::repair)->accept_losses()->empty());
+  }
+}
+
+TEST_CASE("missing segments of the log are counted, named and made again from the log",
+          "[store][loss]") {
+  TempPlace place;
+  make_full_world(place.path());
+  const std::string file = place / "world.sqlite";
+  const std::string count = "SELECT count(*) FROM log_box";
+  const std::string sum =
+      "SELECT sum(first_seq * 100000 + last_seq * 1000 + author * 10 + min_x + max_z) FROM log_box";
+  const std::string rows = raw_sql(file, count), sum_before = raw_sql(file, sum);
+  REQUIRE(std::stoi(rows) > 0);
+  for (const std::string where : {"", " WHERE first_seq = (SELECT max(first_seq) FROM log_box)"}) {
+    CAPTURE(where);
+    static_cast<void>(raw_sql(file, "DELETE FROM log_box" + where));
+    const std::string left = raw_sql(file, count);
+    const std::string error = "log_box: " + std::to_string(std::stoi(rows) - std::stoi(left)) +
+                              " rows are missing: " + left + " rows, meta counts " + rows + ". " +
+                              kWayOn +
+                              ", which makes this index again from the log: no edit is lost";
+    CHECK(counted(*full_world(place.path(), StoreAccess::read_write)) == error);
+    CHECK(counted(*full_world(place.path(), StoreAccess::read_only)) == error);
+    {
+      const auto store = full_world(place.path(), StoreAccess::repair);
+      const auto accepted = store->accept_losses();
+      REQUIRE(accepted.has_value());
+      REQUIRE(accepted->size() == 1);
+      CHECK(accepted->front().find(error) != std::string::npos);
+      CHECK(counted(*store).empty());
+      CHECK(store->raise_epoch().has_value());
+    }
+    CHECK(raw_sql(file, count) == rows);
+    CHECK(raw_sql(file, sum) == sum_before);
+    CHECK(counted(*full_world(place.path(), StoreAccess::read_write)).empty());
   }
 }
 

@@ -302,6 +302,88 @@ TEST_CASE("a range of addresses takes a share of the seats that the others leave
   }
 }
 
+namespace {
+
+/// A world with 256 seats, of which one range may take half of those that others leave.
+struct SeatBench : Bench {
+  SeatBench() : Bench(config_of_seats()) {}
+  static WorldConfig config_of_seats() {
+    WorldConfig c = config();
+    c.sessions_max = 256;
+    c.sessions_per_address = 64;
+    c.range_seats_percent = 50;
+    return c;
+  }
+  /// Returns the text of the refusal, or an empty text.
+  std::string enters(AddressBlock from) {
+    ++session;
+    const auto who = static_cast<std::uint8_t>(session);
+    server.connected(session, now(), from);
+    const Hello first = hello(who, session);
+    server.received(session, first, now());
+    const auto welcome = environment.messages<Welcome>(session, 0);
+    if (welcome.empty()) return environment.closed.back().text;
+    server.received(session, client_auth(who, first, welcome[0]), now());
+    return "";
+  }
+  /// Lets five addresses of a range take all seats that they get. Returns how many.
+  int fill(AddressBlock first) {
+    for (int taken = 0;; ++taken) {
+      const auto at = static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(taken % 5);
+      if (!enters(AddressBlock{at}).empty()) return taken;
+    }
+  }
+  SessionId session = 0;
+};
+
+}  // namespace
+
+TEST_CASE("many ranges of addresses leave seats to those without a session", "[world]") {
+  SeatBench bench;
+  // Each /24 lies in a /16 of its own.
+  const auto range = [](std::uint32_t number) {
+    return address_block_v4(0x0b000000 + (number << 16));
+  };
+  std::uint32_t next = 0;
+  for (const int taken : {128, 64, 32}) CHECK(bench.fill(range(next++)) == taken);
+  for (int i = 0; i < 31; ++i) {
+    CAPTURE(i);
+    CHECK(bench.fill(range(next++)) == 1);
+  }
+  CHECK(bench.server.session_count() == 255);
+  CHECK(bench.enters(range(0)) ==
+        "the last 16 seats are for networks (/16 of IPv4, /32 of IPv6) without a session "
+        "(range_seats_percent): come back later, or ask the server's host");
+  CHECK(bench.enters(range(next)).empty());
+  CHECK(bench.enters(range(next + 1)) == "the server holds 256 sessions at most");
+}
+
+TEST_CASE("the ranges of one network leave seats to other networks", "[world]") {
+  SeatBench bench;
+  const auto range = [](std::uint64_t network, std::uint64_t number) {
+    return AddressBlock{network << 32 | number << 16};
+  };
+  constexpr std::uint64_t kProvider = 0x20010db8;
+  std::uint64_t next = 0;
+  for (const int taken : {128, 64, 32}) CHECK(bench.fill(range(kProvider, next++)) == taken);
+  CHECK(bench.enters(range(kProvider, 0)) ==
+        "the last 32 seats are for ranges of addresses (/24 of IPv4, /48 of IPv6) without a "
+        "session (range_seats_percent): come back later, or ask the server's host");
+  for (int i = 0; i < 16; ++i) {
+    CAPTURE(i);
+    CHECK(bench.fill(range(kProvider, next++)) == 1);
+  }
+  for (int i = 0; i < 20; ++i) {
+    CAPTURE(i);
+    CHECK(bench.fill(range(kProvider, next++)) == 0);
+  }
+  CHECK(bench.server.session_count() == 240);
+  for (std::uint64_t i = 1; i <= 16; ++i) {
+    CAPTURE(i);
+    CHECK(bench.enters(range(kProvider + i, 0)).empty());
+  }
+}
+
 TEST_CASE("seats are counted again when a session has proved its key", "[world]") {
   WorldConfig c = config();
   c.sessions_per_key = 1;

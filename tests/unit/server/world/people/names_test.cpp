@@ -172,7 +172,7 @@ TEST_CASE("reserved names and names with a fault are refused", "[world][names]")
 TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a reference",
           "[world][names]") {
   WorldConfig c = config();
-  c.reserved_names = {"admin", "me", "server"};
+  c.reserved_names = {"admin", "me", "op", "server"};
   NameBench bench(c);
   const auto change = [&](const RightsChange& what) {
     REQUIRE(bench.server.changes().change_rights(what, {}, 0, bench.now()).has_value());
@@ -188,6 +188,8 @@ TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a 
         "the name \"adm\u0131n\" looks like \"admin\", which is reserved: choose another name");
   CHECK(refused("[ADMIN] ana").find("looks like \"admin\"") != std::string::npos);
   CHECK(refused("\u13daerver").find("looks like \"server\"") != std::string::npos);
+  CHECK(refused("[OP] ana").find("looks like \"op\"") != std::string::npos);
+  CHECK(refused("ana (op)").find("looks like \"op\"") != std::string::npos);
   CHECK(refused("Captain Ana").find("looks like \"captain\", a role") != std::string::npos);
   CHECK(refused("moderat0r").find("looks like \"moderator\", a role") != std::string::npos);
   CHECK(
@@ -197,6 +199,8 @@ TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a 
                 "1")
             .find("the number of a player") != std::string::npos);
   CHECK(refused("192.0.2.7").find("an address") != std::string::npos);
+  CHECK(refused("role:builder").find("commands read it as a role") != std::string::npos);
+  CHECK(refused("Role\uff1amason").find("commands read it as a role") != std::string::npos);
   CHECK(refused(key_fingerprint(public_key_of(2))).find("a key") != std::string::npos);
   CHECK(bench.environment.names.empty());
 
@@ -207,14 +211,43 @@ TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a 
   change(DefineRole{{"captain", {Right::see, Right::moderate}, 0, 0, 0}});
   CHECK(bench.enters(++session, 3, "Captain Ana"));  // the owner keeps the name
   CHECK_FALSE(bench.enters(++session, 4, "Captain Bob"));
-  // Roles without rights over others are free: "builder" is what clients call their player at first.
-  CHECK_FALSE(bench.enters(++session, 5, "builder"));
-  CHECK(bench.refusal(session).empty());
   // A fingerprint means its own player whether or not it is a name too.
   CHECK_FALSE(bench.enters(++session, 7, key_fingerprint(public_key_of(7))));
   CHECK(bench.refusal(session).empty());
   CHECK_FALSE(bench.enters(++session, 6, "Call me Ana"));
   CHECK(bench.refusal(session).empty());
+}
+
+TEST_CASE("the names of all roles are guarded but that of the default role", "[world][names]") {
+  NameBench bench;
+  const auto change = [&](const RightsChange& what) {
+    REQUIRE(bench.server.changes().change_rights(what, {}, 0, bench.now()).has_value());
+  };
+  SessionId session = 0;
+  // The clients keep no key, so nobody claims a name.
+  const auto why = [&](const std::string& name) {
+    ++session;
+    bench.enters(session, static_cast<std::uint8_t>(session), name, {}, 0);
+    return bench.refusal(session);
+  };
+  change(DefineRole{{"mason", {Right::see, Right::build}, 0, 0, 0}});
+  CHECK(why("mason").find("looks like \"mason\", a role of this world") != std::string::npos);
+  CHECK(why("[MASON] ana").find("looks like \"mason\"") != std::string::npos);
+  CHECK(why("mas0n").find("looks like \"mason\"") != std::string::npos);
+  CHECK(why("Visitor").find("looks like \"visitor\"") != std::string::npos);
+  CHECK(why("masonry").empty());
+  CHECK(why("Nobody Special").empty());  // "nobody" is a role, and means a listener
+  // Everybody has the default role.
+  CHECK(why("builder-1").empty());
+  CHECK(why("Bob the Builder").empty());
+  change(SetDefaultRole{"mason"});
+  CHECK(why("Ana the Mason").empty());
+  CHECK(why("Bob the Builder").find("looks like \"builder\"") != std::string::npos);
+  // Clients call their player so at first, until the role has rights over others.
+  CHECK(why("builder").empty());
+  CHECK(why("Builder").empty());
+  change(DefineRole{{"builder", {Right::see, Right::moderate}, 0, 0, 0}});
+  CHECK(why("builder").find("looks like \"builder\"") != std::string::npos);
 }
 
 TEST_CASE("an address claims so many names an hour, and its other players play without",
