@@ -23,6 +23,9 @@ namespace {
 constexpr int kShortCycles = 6, kKills = 500, kPowerLosses = 250;
 // Another world is made after so many cycles, because each cycle adds about a megabyte.
 constexpr int kCyclesPerWorld = 25;
+constexpr int kCyclesPerLongOne = 4;
+// So many cycles have something of each kind, on a slow machine as well.
+constexpr int kManyCycles = 100;
 
 struct CrashTally {
   int cycles = 0, failed_starts = 0;
@@ -98,7 +101,9 @@ void live_and_die(World& world, int cycles, bool is_verified, SplitMix64& random
       const HostileClients attackers(port, random.next());
       const HostAtWork host(port, changes, rollbacks, World::kHasFiles ? &backups : nullptr);
       builder.join(port);
-      builder.build(std::chrono::milliseconds(random.between(50, 800)));
+      // A rollback may need longer than most cycles last.
+      const int times = cycle % kCyclesPerLongOne == 0 ? 4 : 1;
+      builder.build(times * std::chrono::milliseconds(random.between(50, 800)));
       world.die();
       builder.read_rest();
     }
@@ -137,6 +142,11 @@ void crash_cycles(const char* how, int cycles) {
   CHECK(tally.mine > 0);
   CHECK(tally.hostile > 0);
   CHECK(tally.commands > 0);
+  if (cycles < kManyCycles) return;
+  CHECK(tally.rollbacks > 0);
+  CHECK((tally.backups > 0 || !World::kHasFiles));
+  CHECK(tally.compacted(CompactionEnd::done) > 0);
+  CHECK(tally.compacted(CompactionEnd::cut) > 0);
 }
 
 /// Returns the number of cycles of a long test: that of the environment, if it has one.
