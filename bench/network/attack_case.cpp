@@ -125,6 +125,7 @@ class AttackRun {
                               .has_replicas = false});
     if (!fleet) return failure(fleet.error());
     const double cores_before = server_.program->core_seconds();
+    const double web_before = web_ ? web_->program->core_seconds() : 0;
     const double bots_before = fleet->bots().core_seconds();
     std::optional<RunningAttack> attack;
     std::optional<JoinProbe> probe;
@@ -147,6 +148,7 @@ class AttackRun {
     for (std::size_t page = 0; page < readers.size(); ++page)
       out_.pages[phase].pages[page] = page_times(readers[page]->finish());
     out_.server_cores[phase] = (server_.program->core_seconds() - cores_before) / seconds;
+    if (web_) out_.gateway_cores[phase] = (web_->program->core_seconds() - web_before) / seconds;
     if (phase == during) {
       out_.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
       out_.written_kb = written_kb(server_) - written_before_kb_;

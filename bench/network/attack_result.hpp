@@ -33,6 +33,7 @@ struct AttackResult {
   std::array<double, 3> resident_mb{};
   double resident_max_mb = 0;  // from the begin of the attack to the end of the server
   std::array<double, 3> server_cores{};
+  std::array<double, 3> gateway_cores{};
   double bot_cores = 0;  // during the attack, of the program that all builders share
   double attacker_cores = 0;
   double written_kb = 0;      // to disk, during the attack

@@ -83,6 +83,9 @@ void request_random_tiles(AttackThread& thread) {
       if (wanted[i].revents != 0) strangers[i].read();
     }
   }
+  for (const TileStranger& stranger : strangers) {
+    if (stranger.waits()) ++thread.outcome.endings["still waits"];
+  }
 }
 
 }  // namespace runstone::bench

@@ -20,6 +20,9 @@ std::string figure_of(const char* page) {
 void add_page_figures(const AttackResult& result, std::vector<Figure>& figures) {
   if (!result.has_gateway) return;
   for (const AttackPhase phase : kAttackPhases) {
+    figures.push_back({"attack", "loopback", "loopback", result.name,
+                       fmt::format("{}_gateway_cores", kAttackPhaseNames[phase]),
+                       result.gateway_cores[phase]});
     for (std::size_t i = 0; i < kProbedPages.size(); ++i) {
       const PageTimes::Page& page = result.pages[phase].pages[i];
       const auto add = [&](const char* name, double value) {
@@ -62,17 +65,19 @@ std::string page_table(std::span<const AttackResult> results) {
         answers += result.pages[phase].pages[i].answers;
         failed += result.pages[phase].pages[i].failed;
       }
-      fmt::format_to(std::back_inserter(rows), "| {} | {} | {} | {} | {} | {}, {} |\n", result.name,
+      fmt::format_to(std::back_inserter(rows),
+                     "| {} | {} | {} | {} | {} | {}, {} | {:.2f}, {:.2f} |\n", result.name,
                      kProbedPages[i], times(result.pages[before].pages[i]),
                      times(result.pages[during].pages[i]), times(result.pages[after].pages[i]),
-                     answers, failed);
+                     answers, failed, result.gateway_cores[before], result.gateway_cores[during]);
     }
   }
   if (rows.empty()) return rows;
   return "\nA gateway with default settings and a map stands before the server. An honest reader asks for "
          "each page twenty times a second; from when a request was due to the whole answer:\n\n"
-         "| attack | page | before p50, p99, max ms | during | after | answers, failed |\n"
-         "|---|---|---|---|---|---|\n" +
+         "| attack | page | before p50, p99, max ms | during | after | answers, failed | "
+         "gateway cores before, during |\n"
+         "|---|---|---|---|---|---|---|\n" +
          rows;
 }
 

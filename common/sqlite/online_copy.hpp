@@ -20,7 +20,7 @@ class OnlineCopy {
   static Result<OnlineCopy> begin(Database& from, Database& to);
 
   /// Copies at most `pages` further pages. Returns false if the copy is complete. A copy that is
-  /// destroyed before that leaves a file that is no database.
+  /// destroyed before that leaves a file that is no database. An error names the file that caused it.
   Result<bool> step(int pages);
   /// Return the numbers of pages as of the last step().
   std::uint64_t pages_left() const;
@@ -30,9 +30,10 @@ class OnlineCopy {
   struct Finish {
     void operator()(sqlite3_backup* handle) const;
   };
-  OnlineCopy(sqlite3_backup* handle, Database& to) : handle_(handle), to_(&to) {}
+  OnlineCopy(sqlite3_backup* handle, Database& from, Database& to)
+      : handle_(handle), from_(&from), to_(&to) {}
   std::unique_ptr<sqlite3_backup, Finish> handle_;
-  Database* to_;
+  Database *from_, *to_;
 };
 
 }  // namespace runstone::sql

@@ -69,26 +69,54 @@ Result<Database> open_sqlite(const std::string& file, SqliteMode mode, const std
       break;
   }
   sqlite3* handle = nullptr;
-  const int code =
-      sqlite3_open_v2(uri.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
+  const char* const vfs_name = vfs.empty() ? nullptr : vfs.c_str();
+  errno = 0;
+  const int code = sqlite3_open_v2(uri.c_str(), &handle, flags, vfs_name);
+  const int system = errno;
   Database database(std::make_unique<SqliteConnection>(file, handle));
   if (code != SQLITE_OK) {
+    errno = system;
     auto error = sqlite_failure(handle, code);
     error.error.file = file;
+    if (mode == SqliteMode::create && (code & 0xff) == SQLITE_CANTOPEN)
+      error.error.what = why_not_made("cannot be made", sqlite3_vfs_find(vfs_name), file);
     return error;
   }
   // A file that cannot be opened for writing SQLite opens for reading.
   const bool is_for_writing = mode == SqliteMode::write || mode == SqliteMode::create;
   if (is_for_writing && sqlite3_db_readonly(handle, "main") == 1) {
-    return failure(Error{Error::Kind::io, file,
-                         "cannot be opened for writing: it or its file system is read-only, or the "
-                         "disk failed"});
+    return failure(Error{Error::Kind::io, file, why_read_only(system)});
   }
   sqlite3_busy_timeout(handle, kBusyMsMax);
   return database;
 }
 
+Result<void> check_transaction(sqlite3* handle, bool is_in_write) {
+  if (!is_in_write || sqlite3_get_autocommit(handle) == 0) return {};
+  return failure(Error{Error::Kind::io, sqlite3_db_filename(handle, "main"),
+                       "an error before has rolled the transaction back"});
+}
+
+Result<void> SqliteConnection::begin_write() {
+  auto begun = run("BEGIN IMMEDIATE");
+  if (begun) is_in_write_ = true;
+  return begun;
+}
+
+Result<void> SqliteConnection::commit() {
+  auto committed = run("COMMIT");
+  if (committed) is_in_write_ = false;
+  return committed;
+}
+
+Result<void> SqliteConnection::roll_back() {
+  is_in_write_ = false;
+  return run("ROLLBACK");
+}
+
 Result<void> SqliteConnection::run(const char* sql) {
+  if (auto lives = check_transaction(handle_.get(), is_in_write_); !lives) return lives;
+  errno = 0;
   const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) return sqlite_failure(handle_.get(), code);
   return {};
@@ -96,10 +124,11 @@ Result<void> SqliteConnection::run(const char* sql) {
 
 Result<Statement> SqliteConnection::prepare(std::string_view sql) {
   sqlite3_stmt* statement = nullptr;
+  errno = 0;
   const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
   if (code != SQLITE_OK) return sqlite_failure(handle_.get(), code);
-  return Statement(std::make_unique<SqliteStatement>(statement));
+  return Statement(std::make_unique<SqliteStatement>(statement, is_in_write_));
 }
 
 std::int64_t SqliteConnection::changes() { return sqlite3_changes64(handle_.get()); }
@@ -107,6 +136,14 @@ std::int64_t SqliteConnection::changes() { return sqlite3_changes64(handle_.get(
 void keep_wal_on_close(Database& database, bool keep) {
   sqlite3_db_config(sqlite_handle(database), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0,
                     nullptr);
+}
+
+Result<std::string> check_structure(Database& database) {
+  auto verdict = database.text("PRAGMA integrity_check(1)");
+  const int system = errno;  // of the last call that read
+  if (!verdict || *verdict == "ok" || !is_of_reading(system)) return verdict;
+  return failure(
+      Error{Error::Kind::io, database.file(), with_system_error("cannot be read", system)});
 }
 
 Result<std::optional<SqliteHeader>> file_header(Database& database) {

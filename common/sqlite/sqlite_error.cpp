@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,19 +12,36 @@
 namespace runstone::sql {
 namespace {
 
-/// Returns the system's error behind an error of SQLite, or 0. sqlite3_system_errno() does not know
-/// it if a commit fails, so the WAL and the main file are asked first.
-int system_error_of(sqlite3* handle, int code) {
-  const int kind = code & 0xff;
-  if (kind != SQLITE_IOERR && kind != SQLITE_CORRUPT && kind != SQLITE_CANTOPEN) return 0;
-  if (kind != SQLITE_CANTOPEN) {
-    for (const int which : {SQLITE_FCNTL_JOURNAL_POINTER, SQLITE_FCNTL_FILE_POINTER}) {
-      sqlite3_file* file = nullptr;
-      if (sqlite3_file_control(handle, "main", which, &file) != SQLITE_OK) continue;
-      if (const int system = last_error_of(file); system != 0) return system;
-    }
+/// Returns the last error of the WAL or the journal, or else of the main file, or 0.
+int last_error_of_files(sqlite3* handle) {
+  for (const int which : {SQLITE_FCNTL_JOURNAL_POINTER, SQLITE_FCNTL_FILE_POINTER}) {
+    sqlite3_file* file = nullptr;
+    if (sqlite3_file_control(handle, "main", which, &file) != SQLITE_OK) continue;
+    if (const int system = last_error_of(file); system != 0) return system;
   }
-  return kind == SQLITE_CORRUPT ? 0 : sqlite3_system_errno(handle);
+  return 0;
+}
+
+/// Returns the system's error behind an error of SQLite, or 0. `last` is errno after the call that
+/// failed. If it is no error of a disk, SQLite has looked for another file afterwards. Then the files
+/// know the error, unless it was that of a journal that is gone. sqlite3_system_errno() does not know
+/// the error if a commit fails.
+int system_error_of(sqlite3* handle, int code, int last) {
+  switch (code & 0xff) {
+    case SQLITE_READONLY:
+      return disk_error(last);
+    case SQLITE_CANTOPEN:
+      return last != 0 ? last : sqlite3_system_errno(handle);
+    case SQLITE_CORRUPT:
+      return is_of_reading(last) ? last : last_error_of_files(handle);
+    case SQLITE_IOERR: {
+      if (disk_error(last) != 0) return last;
+      const int of_files = last_error_of_files(handle);
+      return of_files != 0 ? of_files : sqlite3_system_errno(handle);
+    }
+    default:
+      return 0;
+  }
 }
 
 /// Returns true if a write found no room and wrote nothing that counts. SQLite itself knows ENOSPC
@@ -35,14 +54,12 @@ bool has_no_room(int code, int system) {
                         code == SQLITE_IOERR_TRUNCATE);
 }
 
-/// Returns true if SQLite calls a file damaged because the system could not read it: it reports EIO
-/// and ENXIO of a read as damage.
+/// Returns true if SQLite calls a file damaged because the system could not read it.
 bool is_unreadable(int code, int system) {
-  return (code & 0xff) == SQLITE_CORRUPT && (system == EIO || system == ENXIO);
+  return (code & 0xff) == SQLITE_CORRUPT && is_of_reading(system);
 }
 
-/// Returns true if SQLite could not make a file beside a database that is there. It then tries to open
-/// that file for reading, so that the reason is lost.
+/// Returns true if SQLite could not make a file that it needs, and the database is there.
 bool cannot_make_file(const char* database, int code, int system) {
   return (code & 0xff) == SQLITE_CANTOPEN && system == ENOENT && database != nullptr &&
          ::access(database, F_OK) == 0;
@@ -69,7 +86,57 @@ Error::Kind kind_of_code(int code, int system) {
   }
 }
 
+/// Returns the system's error of making a file beside `file`, or 0 if that is possible.
+int error_of_new_file(sqlite3_vfs* vfs, const std::string& file) {
+  constexpr int kSystemCallsVersion = 3;
+  if (vfs == nullptr || vfs->iVersion < kSystemCallsVersion || vfs->xGetSystemCall == nullptr)
+    return 0;
+  using Open = int (*)(const char*, int, int);
+  const auto open = reinterpret_cast<Open>(vfs->xGetSystemCall(vfs, "open"));
+  if (open == nullptr) return 0;
+  const std::string probe = file + "-probe";
+  ::unlink(probe.c_str());  // of a program that was killed here
+  const int descriptor =
+      open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor < 0) return errno;
+  ::close(descriptor);
+  ::unlink(probe.c_str());
+  return 0;
+}
+
 }  // namespace
+
+bool is_of_reading(int system) { return system == EIO || system == ENXIO; }
+
+int disk_error(int system) {
+  switch (system) {
+    case EACCES:
+    case EDQUOT:
+    case EFBIG:
+    case EIO:
+    case EMFILE:
+    case ENFILE:
+    case ENOSPC:
+    case ENXIO:
+    case EPERM:
+    case EROFS:
+      return system;
+    default:
+      return 0;
+  }
+}
+
+std::string why_not_made(std::string what, sqlite3_vfs* vfs, const std::string& file) {
+  const int system = error_of_new_file(vfs, file);
+  if (system != 0) return with_system_error(std::move(what), system);
+  return std::move(what) + ", but another one can be made there now: try again";
+}
+
+std::string why_read_only(int system) {
+  const std::string what = "cannot be opened for writing";
+  if (disk_error(system) != 0) return with_system_error(what, system);
+  return what + ": it or its file system is read-only, or the disk failed";
+}
 
 int last_error_of(sqlite3_file* file) {
   int system = 0;
@@ -86,14 +153,21 @@ std::string with_system_error(std::string what, int system) {
 
 Unexpected<Error> sqlite_failure(sqlite3* handle, int code) {
   if (handle == nullptr) return {Error{Error::Kind::io, "", "out of memory"}};
-  const char* name = sqlite3_db_filename(handle, "main");
+  const int last = errno;
   std::string what = sqlite3_errmsg(handle);
-  const int system = system_error_of(handle, code);
+  errno = last;
+  return sqlite_failure(handle, code, std::move(what));
+}
+
+Unexpected<Error> sqlite_failure(sqlite3* handle, int code, std::string what) {
+  const int system = system_error_of(handle, code, errno);
+  const char* name = sqlite3_db_filename(handle, "main");
   if (is_unreadable(code, system)) what = "cannot be read";
   if (cannot_make_file(name, code, system)) {
+    sqlite3_vfs* vfs = nullptr;
+    sqlite3_file_control(handle, "main", SQLITE_FCNTL_VFS_POINTER, &vfs);
     return {Error{Error::Kind::io, name,
-                  "a file beside it, such as its -wal, cannot be made: the disk is full or "
-                  "read-only, or the folder cannot be written"}};
+                  why_not_made("a file beside it, such as its -wal, cannot be made", vfs, name)}};
   }
   return {Error{kind_of_code(code, system), name == nullptr ? "" : name,
                 with_system_error(std::move(what), system)}};

@@ -28,6 +28,9 @@ Result<bool> file_exists(const std::string& file, const std::string& vfs);
 /// If `keep` is true, closing the last connection leaves the WAL as it is. Otherwise closing
 /// writes the WAL into the main file and deletes it.
 void keep_wal_on_close(Database& database, bool keep);
+/// Checks the structure of the database. Returns "ok", or the first fault. Fails (io) if a page cannot
+/// be read, which SQLite reports as a fault.
+Result<std::string> check_structure(Database& database);
 using SqliteHeader = std::array<std::uint8_t, 100>;
 /// Returns the first 100 bytes of the main file as they are on disk, or nullopt if it is shorter.
 /// Fails (io) if they cannot be read.

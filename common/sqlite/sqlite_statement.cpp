@@ -1,5 +1,7 @@
 #include <sqlite3.h>
 
+#include <cerrno>
+
 #include "common/sqlite/sqlite_connection.hpp"
 
 namespace runstone::sql {
@@ -28,10 +30,14 @@ void SqliteStatement::bind(int parameter, std::string_view value) {
 int SqliteStatement::parameter_count() const { return sqlite3_bind_parameter_count(handle_.get()); }
 
 Result<bool> SqliteStatement::step() {
+  sqlite3* const connection = sqlite3_db_handle(handle_.get());
+  if (const auto lives = check_transaction(connection, is_in_write_); !lives)
+    return failure(lives.error());
+  errno = 0;
   const int code = bind_error_ != SQLITE_OK ? bind_error_ : sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
-  return sqlite_failure(sqlite3_db_handle(handle_.get()), code);
+  return sqlite_failure(connection, code);
 }
 
 Result<void> SqliteStatement::run() {

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <utility>
 #include <vector>
 
@@ -53,17 +54,17 @@ Result<VfsFile> VfsFile::open(const std::string& file, Mode mode, const std::str
       (mode == Mode::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   auto handle = std::make_unique<Handle>(file, system->szOsFile);
   int flags_given = 0;
+  errno = 0;
   const int code = system->xOpen(system, handle->name.c_str(), handle->get(), flags, &flags_given);
+  const int system_error = errno;
   if (code != SQLITE_OK) {
-    const int system_error = system->xGetLastError(system, 0, nullptr);
+    if (mode == Mode::write && system_error == ENOENT)
+      return failure(Error{Error::Kind::io, file, why_not_made("cannot be made", system, file)});
     return file_failure(handle->name, "opened", code, system_error);
   }
   // A VFS opens a file for reading that it may not write.
   if (mode == Mode::write && (flags_given & SQLITE_OPEN_READONLY) != 0) {
-    return failure(
-        Error{Error::Kind::io, file,
-              "cannot be opened for writing: it or its file system is read-only, or the disk "
-              "failed"});
+    return failure(Error{Error::Kind::io, file, why_read_only(system_error)});
   }
   return VfsFile(std::move(handle));
 }

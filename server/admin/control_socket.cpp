@@ -125,7 +125,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
   void accept() {
     acceptor.async_accept(asio::bind_executor(
         strand, [self = shared_from_this()](const asio::error_code& error, Local::socket socket) {
-          if (error == asio::error::operation_aborted) return;
+          // A connection may have come just before stop() closed the acceptor.
+          if (error == asio::error::operation_aborted || !self->acceptor.is_open()) return;
           if (error) return self->accept_later();  // for example, too many open files
           // The maximum number of connections. A user needs no more at a time, so further ones are
           // closed.

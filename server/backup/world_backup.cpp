@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "common/os/private_file.hpp"
+#include "common/sqlite/sqlite_file.hpp"
+#include "server/store/sql_result.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -65,6 +67,17 @@ Result<std::vector<std::string>, std::string> copy_configuration(const fs::path&
   return left_out;
 }
 
+/// Moves the write-ahead log of a closed database into it. Closing it does the same, and says nothing
+/// if it could not.
+StoreResult<void> move_log(const std::string& file) {
+  auto database = sql::open_sqlite(file, sql::SqliteMode::write);
+  if (!database) return failed(database.error());
+  const auto is_busy = database->integer("PRAGMA wal_checkpoint(TRUNCATE)");
+  if (!is_busy) return failed(is_busy.error());
+  if (*is_busy == 0) return {};
+  return failure(StoreError{StoreError::Kind::locked, file, "", "another program has it open"});
+}
+
 /// Verifies the copy in `folder` and begins its branch. Completes `backup`.
 StoreResult<void> verify(const std::string& folder, TimeUs now_us, WorldBackup& backup) {
   // This fails if the copied mark is ahead of the copied log: then the source has lost edits.
@@ -115,14 +128,17 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
   backup.left_out = *std::move(left_out);
   backup.copy_s = seconds_since(begun);
   const auto checked = Clock::now();
-  if (auto verified = verify(to, now_us, backup); !verified)
-    return failure("the copy is not sound, and is removed: " + verified.error().message());
+  if (auto verified = verify(to, now_us, backup); !verified) {
+    const std::string verdict = verified.error().may_pass() ? "cannot be verified" : "is not sound";
+    return failure("the copy " + verdict + ", and is removed: " + verified.error().message());
+  }
   backup.check_s = seconds_since(checked);
-  // SQLite moves the write-ahead log into the database when the copy is closed, and says nothing if
-  // it could not.
   const fs::path wal = target / "world.sqlite-wal";
-  if (fs::exists(wal, error) && fs::file_size(wal, error) != 0)
-    return failure(wal.string() + ": SQLite could not move it into the database");
+  if (fs::exists(wal, error) && fs::file_size(wal, error) != 0) {
+    if (const auto moved = move_log((target / kDatabase).string()); !moved)
+      return failure("world.sqlite-wal cannot be moved into the copy, which is removed: " +
+                     moved.error().message());
+  }
   for (const std::string_view name : kMadeAnew) fs::remove(target / name, error);
   return backup;
 }

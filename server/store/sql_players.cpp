@@ -39,7 +39,8 @@ StoreResult<void> SqlStore::check_fold(const std::string& table, const RowFold& 
 }
 
 StoreResult<void> SqlStore::check_players(const FoldedRows<PlayerRow>& players) {
-  if (auto sound = check_fold(kPlayers, players.fold); sound) return sound;
+  if (auto sound = check_fold(kPlayers, players.fold); sound || sound.error().may_pass())
+    return sound;
   const auto missing = log_.authors_without(players.rows);
   if (!missing) return failed(missing.error());
   std::string more;
@@ -202,26 +203,29 @@ StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
   if (auto accepted = accept_lost_counts(lost); !accepted) return accepted;
   const auto players = player_table_.players();
   if (!players) return failed(players.error());
-  if (const auto sound = check_players(*players); !sound) {
+  if (auto sound = check_players(*players); !sound) {
+    if (sound.error().may_pass()) return sound;
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kPlayers), players->fold); !put) return put;
   }
   const auto claims = claims_->claims();
   if (!claims) return failed(claims.error());
-  if (const auto sound = check_fold(kClaims, claims->fold); !sound) {
+  if (auto sound = check_fold(kClaims, claims->fold); !sound) {
+    if (sound.error().may_pass()) return sound;
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kClaims), claims->fold); !put) return put;
   }
   const auto rights = rights_->records();
   if (!rights) return failed(rights.error());
-  if (const auto sound = check_fold(kRights, rights->fold); !sound) {
+  if (auto sound = check_fold(kRights, rights->fold); !sound) {
+    if (sound.error().may_pass()) return sound;
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kRights), rights->fold); !put) return put;
   }
   const auto found = player_table_.high_waters();
   if (!found) return failed(found.error());
-  const auto sound = check_fold(kWatermarks, found->fold);
-  if (sound) return {};
+  auto sound = check_fold(kWatermarks, found->fold);
+  if (sound || sound.error().may_pass()) return sound;
   lost.push_back(sound.error().message());
   if (auto put = meta_table_.put_fold(fold_key_of(kWatermarks), found->fold); !put) return put;
   Watermarks marks;

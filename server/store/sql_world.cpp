@@ -188,6 +188,8 @@ StoreResult<void> SqlStore::read_state() {
   if (!read) return read;
   // A server that starts meanwhile makes the mark before it says that it writes.
   if (is_open_ && marked && !*marked) marked = backend_->read_mark(meta_.world_id);
+  // A mark that cannot be read now says nothing about a loss.
+  if (!marked && marked.error().may_pass()) return failed(marked.error());
   has_mark_file_ = marked && *marked;
   if (end && *end != state_.seq) {
     loss_ = mixture(file(), backend_->mixture_advice(), *end, state_.seq);

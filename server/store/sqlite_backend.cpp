@@ -204,7 +204,7 @@ std::string SqliteBackend::mixture_advice() const {
 void SqliteBackend::keep_on_close(bool keep) { sql::keep_wal_on_close(database_, keep); }
 
 StoreResult<void> SqliteBackend::check() {
-  const auto verdict = database_.text("PRAGMA integrity_check(1)");
+  const auto verdict = sql::check_structure(database_);
   if (!verdict) return failed(verdict.error());
   if (*verdict == "ok") return {};
   return failure(StoreError{StoreError::Kind::corrupt, database_.file(), "database", *verdict});

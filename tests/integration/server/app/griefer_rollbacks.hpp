@@ -34,7 +34,7 @@ class GrieferRollbacks {
     ClientSequence seq = 0;
     while (!is_over && griefer.is_open()) {
       for (int n = 0; n < kEdits; ++n) griefer.send(EditRequest{++seq, 0, edit_of(seq)});
-      if (!sees_commit_of(griefer, seq, accepted->author)) return;
+      if (!sees_commit_of(griefer, seq, accepted->author, is_over)) return;
       const auto preview = give({"rollback", "preview", "author", author});
       if (!preview) {  // the budget is used up, or the edits are not on disk yet
         std::this_thread::sleep_for(std::chrono::milliseconds(kPauseMs));
@@ -72,16 +72,20 @@ class GrieferRollbacks {
  private:
   static constexpr std::uint32_t kAddress = INADDR_LOOPBACK + 60;
   static constexpr std::uint8_t kKey = 60;
-  static constexpr int kEdits = 20, kPauseMs = 20;
+  static constexpr int kEdits = 20, kPauseMs = 20, kReadMs = 100;
 
   /// Each edit sets another voxel, far from all others.
   static EditDescriptor edit_of(ClientSequence seq) {
     const auto n = static_cast<std::int32_t>(seq);
     return {SetVoxel{{n % 64, 80 + n / 64 % 64, -5'000}}, {}, static_cast<Material>(1 + seq % 5)};
   }
-  /// Reads until the last of the griefer's edits is ordered or rejected.
-  static bool sees_commit_of(RawClient& griefer, ClientSequence seq, AuthorId author) {
-    while (const auto message = griefer.next()) {
+  /// Reads until the last of the griefer's edits is ordered or rejected. Returns false if the server
+  /// ends before, or `is_over`: other messages may arrive without end.
+  static bool sees_commit_of(RawClient& griefer, ClientSequence seq, AuthorId author,
+                             const std::atomic<bool>& is_over) {
+    while (!is_over && griefer.is_open()) {
+      const auto message = griefer.next(kReadMs);
+      if (!message) continue;
       if (const auto* reject = std::get_if<Reject>(&*message); reject && reject->client_seq == seq)
         return true;
       const auto* commit = std::get_if<Commit>(&*message);

@@ -2,6 +2,7 @@
 // edit budget, remembers which of its edits the server reported as durable, and offers all others
 // again to the next server. audit() looks for the durable edits in the log.
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <iterator>
@@ -25,9 +26,12 @@ class HonestBuilder {
     author_ = accepted->author;
     ordered_.erase(ordered_.upper_bound(durable_), ordered_.end());
     next_ = ordered_.empty() ? 1 : ordered_.rbegin()->second.seq + 1;
+    answered_ = next_ - 1;
   }
   /// Offers again what may be lost, and builds a voxel each millisecond: for `time`, and on until
-  /// an edit of this builder and one of another client are known to be durable, at most kPatience.
+  /// an edit of this builder and one of another client are known to be durable, at most kPatience. At
+  /// most kUnansweredMax edits wait for an answer. Otherwise a server that orders fewer than a
+  /// thousand a second would be sent more in each cycle, and each cycle would last longer.
   void build(std::chrono::milliseconds time) {
     using std::chrono::steady_clock;
     const auto begin = steady_clock::now();
@@ -35,8 +39,10 @@ class HonestBuilder {
     for (auto now = begin; client_->is_open(); now = steady_clock::now()) {
       if (now >= begin + (has_durable_edits() ? time : kPatience)) break;
       const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - begin);
-      offered_ = offered + 1 + static_cast<ClientSequence>(elapsed.count());
-      for (; next_ <= offered_; ++next_) client_->send(EditRequest{next_, 0, edit_of(next_)});
+      const ClientSequence due = offered + 1 + static_cast<ClientSequence>(elapsed.count());
+      for (; next_ <= std::min(due, answered_ + kUnansweredMax); ++next_)
+        client_->send(EditRequest{next_, 0, edit_of(next_)});
+      offered_ = std::max(offered_, next_ - 1);
       if (const auto message = client_->next(kReadMs)) take(*message);
     }
   }
@@ -85,6 +91,7 @@ class HonestBuilder {
   static constexpr std::uint8_t kKey = 1;
   static constexpr ClientInstance kInstance = 33;
   static constexpr int kReadMs = 2;
+  static constexpr ClientSequence kUnansweredMax = 500;
   // A slow machine under attack may need seconds for the first commit.
   static constexpr std::chrono::milliseconds kPatience{60'000};
 
@@ -102,17 +109,22 @@ class HonestBuilder {
 
   void take(const Message& message) {
     if (const auto* durable = std::get_if<Durable>(&message)) durable_ = durable->seq;
+    if (const auto* reject = std::get_if<Reject>(&message))
+      answered_ = std::max(answered_, reject->client_seq);
     const auto* commit = std::get_if<Commit>(&message);
     if (commit == nullptr) return;
     for (const OrderedEdit& edit : commit->edits) {
-      if (edit.op.author == author_) ordered_[edit.seq] = edit.op;
+      if (edit.op.author != author_) continue;
+      ordered_[edit.seq] = edit.op;
+      answered_ = std::max(answered_, edit.op.seq);
     }
   }
 
   std::unique_ptr<RawClient> client_;
   AuthorId author_ = 0;
-  ClientSequence next_ = 1;     // the next one to send
-  ClientSequence offered_ = 0;  // the last one that was ever sent
+  ClientSequence next_ = 1;      // the next one to send
+  ClientSequence offered_ = 0;   // the last one that was ever sent
+  ClientSequence answered_ = 0;  // the last one that was ordered or rejected
   Sequence durable_ = 0;
   Sequence audited_ = 0;                     // durable_ at the last audit
   std::map<Sequence, OperationId> ordered_;  // this builder's edits in the log

@@ -2,11 +2,14 @@
 #include "common/sqlite/sqlite_file.hpp"
 
 #include <catch2/catch.hpp>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "common/sql/transaction.hpp"
 #include "tests/support/core/temp_folder.hpp"
+#include "tests/support/sql/fault_vfs.hpp"
 
 using namespace runstone;
 using namespace runstone::test;
@@ -96,6 +99,29 @@ TEST_CASE("a transaction that is not committed leaves nothing", "[sqlite]") {
   CHECK(rows_of(database) == 1);
 }
 
+TEST_CASE("nothing is written behind an error that has rolled the transaction back", "[sqlite]") {
+  const TempFolder folder;
+  auto database = created(folder / "a.sqlite");
+  REQUIRE(database.run("INSERT INTO t VALUES(1, 'one')").has_value());
+  auto late = database.prepare("INSERT INTO t(v) VALUES('late')");
+  REQUIRE(late.has_value());
+  {
+    auto transaction = sql::Transaction::begin(database);
+    REQUIRE(transaction.has_value());
+    REQUIRE(database.run("INSERT INTO t VALUES(2, 'two')").has_value());
+    // An error of the disk has this effect, too.
+    CHECK_FALSE(database.run("INSERT OR ROLLBACK INTO t VALUES(1, 'again')").has_value());
+    CHECK_FALSE(database.run("INSERT INTO t VALUES(3, 'three')").has_value());
+    const auto refused = late->run();
+    REQUIRE_FALSE(refused.has_value());
+    CHECK(refused.error().what == "an error before has rolled the transaction back");
+    CHECK_FALSE(transaction->commit().has_value());
+  }
+  CHECK(rows_of(database) == 1);
+  CHECK(late->run().has_value());
+  CHECK(rows_of(database) == 2);
+}
+
 TEST_CASE("errors name the file and their kind", "[sqlite]") {
   const TempFolder folder;
   const std::string file = folder / "a.sqlite";
@@ -171,4 +197,29 @@ TEST_CASE("a file is looked up through its VFS", "[sqlite]") {
   created(folder / "a.sqlite");
   CHECK(*sql::file_exists(folder / "a.sqlite", ""));
   CHECK_FALSE(sql::file_exists(folder / "a.sqlite", "no such vfs").has_value());
+}
+
+TEST_CASE("a file that cannot be made or written is named with the error of the disk",
+          "[sqlite][faults]") {
+  const TempFolder folder;
+  created(folder / "there.sqlite");
+  FaultVfs vfs;
+  const auto opening_error = [&](const std::string& name, sql::SqliteMode mode) {
+    const auto opened = sql::open_sqlite(folder / name, mode, FaultVfs::name());
+    vfs.heal();
+    return opened ? std::string() : opened.error().what;
+  };
+  vfs.fail(1, EDQUOT, FaultVfs::Lasts::for_ever);
+  CHECK(opening_error("new.sqlite", sql::SqliteMode::create) ==
+        "cannot be made: Disk quota exceeded (system error " + std::to_string(EDQUOT) + ")");
+  vfs.fail(1, EDQUOT, FaultVfs::Lasts::once);
+  CHECK(opening_error("new.sqlite", sql::SqliteMode::create) ==
+        "cannot be made, but another one can be made there now: try again");
+  for (const int system_error : {EROFS, EIO}) {
+    vfs.fail(1, system_error, FaultVfs::Lasts::once);
+    CHECK(opening_error("there.sqlite", sql::SqliteMode::write) ==
+          std::string("cannot be opened for writing: ") + std::strerror(system_error) +
+              " (system error " + std::to_string(system_error) + ")");
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "new.sqlite-probe"));
 }
