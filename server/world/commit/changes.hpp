@@ -51,6 +51,9 @@ class Changes {
   /// its sequence, or why it was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
+  /// Reads both clocks for the time of the log. Commits do that too, but the first commit may come
+  /// later than the call that needs the time.
+  void read_clocks(const Clocks& now) { order_.authority().log_clock().advance(now); }
   /// Makes the log's time that of the wall clock. Requires that the wall clock is not behind:
   /// otherwise a CorrectTime does it.
   void accept_wall_clock();

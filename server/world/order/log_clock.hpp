@@ -49,8 +49,6 @@ class LogClock {
   TimeUs time() const { return std::max(last_us_, time_us_ + ahead_us_); }
   /// Returns the wall clock at the last advance().
   TimeUs wall_us() const { return wall_us_; }
-  /// Returns true after the first advance().
-  bool has_begun() const { return steady_us_.has_value(); }
   /// Returns true if the wall clock has jumped, and has not kept the jump for kAcceptUs.
   bool has_jumped() const { return jump_.has_value(); }
   /// Makes the log's time that of the wall clock at the last advance(). If it was ahead, the

@@ -113,29 +113,38 @@ TEST_CASE("there is nothing to correct while both clocks agree", "[admin][clock]
 TEST_CASE("a wall clock that has jumped just now is taken only on confirmation", "[admin][clock]") {
   ClockBench bench(0);
   const bool is_back = GENERATE(true, false);
-  const TimeUs jump_us = is_back ? -kYear : kYear;
-  const auto wrong = [&] {
-    const Clocks right = bench.bench.now();
-    return Clocks{right.steady_us, right.utc_us + jump_us};
-  };
-  bench.bench.time_us += kOneSecond;
-  bench.bench.server.tick(wrong());
-  const auto give = [&](const std::string& line) {
-    bench.answers.clear();
-    give_command({bench.services, {}, wrong(), bench.reply()}, line);
-    bench.bench.server.commit(wrong());
-    bench.write_log();
-    bench.services.tick(wrong());
-    return bench.answer();
-  };
-  CHECK(tells(give("clock").text, "The wall clock has jumped"));
-  const CommandAnswer refused = give("clock correct");
+  bench.bench.wall_error_us = is_back ? -kYear : kYear;
+  bench.bench.tick(kOneSecond);
+  CHECK(tells(bench.done("clock"), "The wall clock has jumped"));
+  const CommandAnswer refused = bench.give("clock correct");
   CHECK_FALSE(refused.is_ok);
   CHECK(tells(refused.text, "give the command as: clock correct anyway"));
   CHECK(bench.bench.server.order().head() == 0);
-  CHECK(give("clock correct anyway").is_ok);
+  bench.done("clock correct anyway");
   CHECK(bench.bench.server.order().head() == (is_back ? 1 : 0));
-  CHECK(std::abs(bench.bench.server.rights().time() - wrong().utc_us) <= kOneSecond);
+  const TimeUs apart_us = bench.bench.server.rights().time() - bench.bench.now().utc_us;
+  CHECK(std::abs(apart_us) <= kOneSecond);
+}
+
+TEST_CASE("a correction before the first tick leaves a ban the time that it had",
+          "[admin][clock]") {
+  WorldStart start = start_ahead(2 * kYear);
+  const PublicKey mole = key_pair_of(seed_of(2)).public_key;
+  const TimeUs given_us = start.log.last_time_us;
+  start.log.last = start.log.last_epoch = 1;
+  start.rights.push_back(
+      {Restrict{RestrictionKind::ban, mole, given_us + kHour, ""}, {1, 0, given_us}});
+  RollbackBench bench(config(), start);
+  CommandServices services{
+      bench.bench.server, bench.service, bench, bench.folder.path(), {}, [](const PublicKey&) {
+        return false;
+      }};
+  give_command({services, {}, bench.bench.now(), bench.reply()}, "clock correct");
+  CHECK(bench.bench.server.order().head() == 2);
+  const auto* ban =
+      bench.bench.server.rights().state().find_restriction(RestrictionKind::ban, mole);
+  REQUIRE(ban != nullptr);
+  CHECK(ban->value.until_us == bench.bench.now().utc_us + kHour);
 }
 
 TEST_CASE("a correction cannot be taken back", "[admin][clock]") {
