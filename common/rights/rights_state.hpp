@@ -122,6 +122,9 @@ class RightsState {
   std::vector<const Decided<Restrict>*> restrictions() const;
   std::size_t restriction_count() const { return by_key_.size() + address_bans_.size(); }
 
+  /// Returns true if the records have a correction of the time.
+  bool is_time_corrected() const { return corrected_ != 0; }
+
   // Protected ground.
   const Decided<ProtectedBox>* find_box(const std::string& name) const;
   const std::map<std::string, Decided<ProtectedBox>>& boxes() const { return boxes_; }
