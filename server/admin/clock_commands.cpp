@@ -32,9 +32,14 @@ std::string both_times(const LogClock& clock) {
 }
 
 /// Returns why the wall clock may be wrong, or nullopt.
-std::optional<std::string> doubt_of(const LogClock& clock) {
-  if (!clock.has_jumped()) return std::nullopt;
-  return "the wall clock has jumped within the hour, and may be wrong: " + both_times(clock);
+std::optional<std::string> doubt_of(const CommandCall& call) {
+  const LogClock& clock = clock_of(call);
+  if (clock.has_jumped())
+    return "the wall clock has jumped within the hour, and may be wrong: " + both_times(clock);
+  const auto& doubt_clock = call.services.actions.doubt_clock;
+  const auto why = doubt_clock && ahead_us(clock) > 0 ? doubt_clock(clock.wall_us()) : std::nullopt;
+  if (!why) return std::nullopt;
+  return "the wall clock may be wrong, because " + *why + ": " + both_times(clock);
 }
 
 void show_clock(const CommandCall& call) {
@@ -63,7 +68,7 @@ void correct_clock(const CommandCall& call, const bool& is_confirmed) {
   }
   CommandCall given = call;
   given.is_confirmed = is_confirmed;
-  if (given.refuse_unless_confirmed(doubt_of(clock))) return;
+  if (given.refuse_unless_confirmed(doubt_of(call))) return;
   const TimeUs apart_us = ahead_us(clock);
   const std::string before = utc_text(clock.time());
   const std::string now = utc_text(clock.wall_us());

@@ -48,6 +48,15 @@ ClockCheck check_clock(const ClockEvidence& evidence) {
   return check;
 }
 
+std::optional<std::string> doubt_of_clock_behind(const ClockEvidence& evidence) {
+  if (evidence.is_synchronised)
+    return *evidence.is_synchronised ? std::nullopt
+                                     : std::optional<std::string>("no time service has set it");
+  if (evidence.written_us - evidence.wall_us <= LogClock::kJumpUs) return std::nullopt;
+  return "it is behind the time at which " + evidence.file + " was written, " +
+         utc_text(evidence.written_us);
+}
+
 ClockEvidence read_clock_evidence(const std::string& place, TimeUs last_us) {
   ClockEvidence evidence;
   evidence.wall_us = read_clocks().utc_us;

@@ -34,6 +34,11 @@ struct ClockCheck {
 
 ClockCheck check_clock(const ClockEvidence& evidence);
 
+/// Returns why a wall clock that is behind the time of the log may be wrong, as a part of a sentence,
+/// or nullopt. It may be if the kernel reports that no time service has set it. It also may be if the
+/// kernel reports nothing, and the clock is more than kJumpUs behind a file of the world.
+std::optional<std::string> doubt_of_clock_behind(const ClockEvidence& evidence);
+
 /// Reads the clocks and the times of the files of a world, at a place. Call it before the world is
 /// changed.
 ClockEvidence read_clock_evidence(const std::string& place, TimeUs last_us);

@@ -26,12 +26,19 @@ WorldStart start_ahead(TimeUs ahead_us) {
 struct ClockBench : RollbackBench {
   explicit ClockBench(TimeUs ahead_us)
       : RollbackBench(config(), start_ahead(ahead_us)),
-        services{bench.server,  service, *this,
-                 folder.path(), {},      [](const PublicKey&) {
-                   return false; }} {
+        services{bench.server,  service,   *this,
+                 folder.path(), actions(), [](const PublicKey&) { return false; }} {
     join(kMoleSession);
     join(kAnaSession);
     tick();
+  }
+  OperatorActions actions() {
+    OperatorActions all;
+    all.doubt_clock = [this](TimeUs wall_us) {
+      asked_us = wall_us;
+      return doubt;
+    };
+    return all;
   }
   CommandAnswer give(const std::string& line) {
     answers.clear();
@@ -61,6 +68,8 @@ struct ClockBench : RollbackBench {
     return text.empty() ? 0 : static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
   }
 
+  std::optional<std::string> doubt;  // the answer of OperatorActions::doubt_clock()
+  TimeUs asked_us = 0;               // its last argument
   CommandServices services;
 };
 
@@ -124,6 +133,21 @@ TEST_CASE("a wall clock that has jumped just now is taken only on confirmation",
   CHECK(bench.bench.server.order().head() == (is_back ? 1 : 0));
   const TimeUs apart_us = bench.bench.server.rights().time() - bench.bench.now().utc_us;
   CHECK(std::abs(apart_us) <= kOneSecond);
+}
+
+TEST_CASE("a wall clock that is doubtful and behind the log is taken only on confirmation",
+          "[admin][clock]") {
+  // The clock of this machine begins in 1970: nothing has set it.
+  ClockBench bench(56 * kYear);
+  bench.doubt = "no time service has set it";
+  const CommandAnswer refused = bench.give("clock correct");
+  CHECK_FALSE(refused.is_ok);
+  CHECK(tells(refused.text, "the wall clock may be wrong, because no time service has set it: "));
+  CHECK(tells(refused.text, "give the command as: clock correct anyway"));
+  CHECK(std::abs(bench.asked_us - bench.bench.now().utc_us) <= kOneSecond);
+  CHECK(bench.bench.server.order().head() == 0);
+  bench.done("clock correct anyway");
+  CHECK(bench.bench.server.order().head() == 1);
 }
 
 TEST_CASE("a correction before the first tick leaves a ban the time that it had",
