@@ -148,6 +148,7 @@ class SqlStore final : public Store {
   void forget_uncommitted() {
     segments_.forget();
     player_table_.forget();
+    is_format_raised_ = false;
   }
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
@@ -189,7 +190,8 @@ class SqlStore final : public Store {
                            DurableState& next);
   /// Lists the eras that begin at these records, in the caller's transaction.
   StoreResult<void> add_eras(std::span<const EditRecord> records);
-  /// Makes the world one of this format unless it is of a later one, in the caller's transaction.
+  /// Makes the world one of this format unless it is of a later one, in the caller's transaction. The
+  /// commit then moves the number into the main file.
   StoreResult<void> raise_format(std::uint32_t format);
   StoreResult<void> put_players(std::span<const PlayerRow> players);
   StoreResult<void> raise_watermarks(const Watermarks& marks);
@@ -245,7 +247,8 @@ class SqlStore final : public Store {
   bool has_mark_file_ = false;
   bool is_open_ = false;               // `meta` says that the database is being written
   bool is_open_in_file_ = false;       // this program has written that into the main file
-  bool is_reader_in_the_way_ = false;  // it lies in the WAL still
+  bool is_reader_in_the_way_ = false;  // that or the format lies in the WAL still
+  bool is_format_raised_ = false;      // by the present transaction
   bool is_whole_ = false;              // this program may say so when it closes the world
   bool broken_ = false;
 };

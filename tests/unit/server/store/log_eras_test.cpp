@@ -1,9 +1,12 @@
 // A log whose time was corrected: what a time means where times fall.
+#include <array>
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <limits>
 #include <span>
 
 #include "server/store/copy_stored_world.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -145,6 +148,24 @@ TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]"
   REQUIRE((*other)->append({}, records).has_value());
   other->reset();
   CHECK(format(place / "plain/world.sqlite") == "5");
+}
+
+TEST_CASE("the main file of a corrected world has the format although no program has closed it",
+          "[store][clock][sqlite]") {
+  const TempFolder folder;
+  auto store = *create_world(folder / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  const auto records = corrected_records();
+  const auto format = [&] {
+    std::ifstream file(folder / "w/world.sqlite", std::ios::binary);
+    std::array<char, 64> header{};
+    REQUIRE(file.read(header.data(), header.size()));
+    return int{header[63]};  // the last byte of user_version
+  };
+  REQUIRE(store->append({}, std::span(records).first(20)).has_value());
+  CHECK(format() == 5);
+  REQUIRE(store->append({}, std::span(records).subspan(20, 1)).has_value());
+  CHECK(format() == 6);
 }
 
 TEST_CASE("the check names a fallen time without a correction, and a list of eras that lacks one",
