@@ -217,9 +217,9 @@ class SqlStore final : public Store {
                                const std::string& more = "");
   StoreResult<void> check_players(const FoldedRows<PlayerRow>& players);
   StoreResult<void> check_chunks(ChunkTable& table);
-  StoreResult<void> check_marks_cover_log();
-  /// Checks that times fall only where an era begins, and that each of them is listed.
-  StoreResult<void> check_eras();
+  /// Checks that a watermark covers each edit of the log, that times fall only where an era begins, and
+  /// that `meta` lists the eras. Cost: one pass over the log.
+  StoreResult<void> check_log_rows();
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
