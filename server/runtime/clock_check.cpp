@@ -28,7 +28,7 @@ ClockCheck check_clock(const ClockEvidence& evidence) {
   if (known_us == 0) return check;
   const std::string reads = "the wall clock reads " + utc_text(evidence.wall_us);
   // LogClock warns of a log that ends ahead of the wall clock.
-  const bool is_log_ahead = evidence.last_us - evidence.wall_us > LogClock::kJumpUs;
+  const bool is_log_ahead = evidence.last_us > evidence.wall_us + LogClock::kJumpUs;
   if (evidence.written_us - evidence.wall_us > LogClock::kJumpUs && !is_log_ahead) {
     check.warning = reads + ", but " + evidence.file + " was written at " +
                     utc_text(evidence.written_us) +

@@ -251,6 +251,10 @@ void WorldServer::tick(const Clocks& now) {
   Ground& ground = rooms_->ground;
   People& people = rooms_->people;
   commit_one(now);
+  if (!cluster.is_following()) {
+    const auto news = rooms_->changes.follow_kept_jump(cluster.correction_refusal(), now);
+    if (news) rooms_->environment.report(OperatorLogLevel::warn, *news);
+  }
   if (const auto warning = rooms_->order.authority().log_clock().take_warning())
     rooms_->environment.report(OperatorLogLevel::warn, *warning);
   people.forget_gone_authors();

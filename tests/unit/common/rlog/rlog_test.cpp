@@ -94,7 +94,7 @@ TEST_CASE("time falls in an .rlog only at a correction, which begins a block", "
   EditRecord& correction = records[20];
   correction.cause = Cause::rights;
   correction.subject = 0;
-  correction.edit = rights_edit(CorrectTime{2 * kYear});
+  correction.edit = rights_edit(CorrectTime{-2 * kYear, 11});
   Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
   const RlogContents read = read_rlog(file);
   if (read.error) FAIL(read.error->message());

@@ -24,8 +24,9 @@ WorldStart start_ahead(TimeUs ahead_us) {
 }
 
 struct ClockBench : RollbackBench {
-  explicit ClockBench(TimeUs ahead_us)
-      : RollbackBench(config(), start_ahead(ahead_us)),
+  explicit ClockBench(TimeUs ahead_us) : ClockBench(start_ahead(ahead_us)) {}
+  explicit ClockBench(const WorldStart& start)
+      : RollbackBench(config(), start),
         services{bench.server,  service,   *this,
                  folder.path(), actions(), [](const PublicKey&) { return false; }} {
     join(kMoleSession);
@@ -115,7 +116,7 @@ TEST_CASE("there is nothing to correct while both clocks agree", "[admin][clock]
   CHECK_FALSE(refused.is_ok);
   CHECK(tells(refused.text, "clock correct: there is nothing to correct"));
   CHECK_FALSE(bench.give("clock correct anyway").is_ok);
-  CHECK(tells(bench.give("clock correct now").text, "clock correct"));
+  CHECK(bench.give("clock correct now").text == "clock correct \"now\": nothing comes after it");
   CHECK(bench.bench.server.order().head() == 0);
 }
 
@@ -133,6 +134,58 @@ TEST_CASE("a wall clock that has jumped just now is taken only on confirmation",
   CHECK(bench.bench.server.order().head() == (is_back ? 1 : 0));
   const TimeUs apart_us = bench.bench.server.rights().time() - bench.bench.now().utc_us;
   CHECK(std::abs(apart_us) <= kOneSecond);
+}
+
+TEST_CASE("a restriction counts by what has passed when the log follows a clock that is ahead",
+          "[admin][clock]") {
+  ClockBench bench(0);
+  const bool is_by_command = GENERATE(true, false);
+  bench.bench.wall_error_us = kYear;
+  bench.bench.tick(kOneSecond);
+  bench.done("freeze player2 for 3h");
+  const TimeUs end_us = bench.bench.time_us + 3 * kHour;  // of the steady clock
+  if (is_by_command) {
+    const std::string text = bench.done("clock correct anyway");
+    CHECK(tells(text, "the time of the log goes on from "));
+    CHECK(tells(text, "(record 2)"));
+  } else {
+    bench.wait(kHour + 5 * kOneSecond);
+    const auto& lines = bench.bench.environment.lines;
+    CHECK(std::ranges::count_if(lines, [](const std::string& line) {
+            return tells(line, "the wall clock has kept its jump: ") && tells(line, "(record 2)");
+          }) == 1);
+  }
+  CHECK(corrects_time(bench.bench.environment.records.back()));
+  CHECK(tells(bench.done("clock"), ": they agree"));
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(end_us - bench.bench.time_us - 60 * kOneSecond);
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(2 * 60 * kOneSecond);
+  CHECK_FALSE(bench.holds(RestrictionKind::freeze, 2));
+  CHECK(bench.store->check().has_value());
+}
+
+TEST_CASE("a log without restrictions follows a clock that is ahead without a record",
+          "[admin][clock]") {
+  ClockBench bench(0);
+  bench.done("freeze player2 for 10s");
+  bench.bench.wall_error_us = kYear;
+  bench.wait(kHour + 5 * kOneSecond);
+  CHECK(bench.bench.server.order().head() == 1);
+  CHECK(tells(bench.done("clock"), ": they agree"));
+}
+
+TEST_CASE("a start that doubts its clock loses no ban when the host corrects the time",
+          "[admin][clock]") {
+  WorldStart start;
+  start.log.begin_us = WorldBench().now().utc_us - 900 * kOneSecond;
+  ClockBench bench(start);
+  bench.done("freeze player2 for 10m");
+  bench.done("clock correct anyway");
+  bench.wait(9 * 60 * kOneSecond);
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(2 * 60 * kOneSecond);
+  CHECK_FALSE(bench.holds(RestrictionKind::freeze, 2));
 }
 
 TEST_CASE("a wall clock that is doubtful and behind the log is taken only on confirmation",

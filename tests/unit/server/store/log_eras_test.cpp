@@ -21,7 +21,7 @@ constexpr TimeUs kAhead = 2 * 365 * 24 * 60 * kMinute;
 void make_correction(EditRecord& record) {
   record.cause = Cause::rights;
   record.subject = 0;
-  record.edit = rights_edit(CorrectTime{kAhead});
+  record.edit = rights_edit(CorrectTime{-kAhead, record.version.seq});
 }
 
 /// Returns 40 edits, one each minute: 1 to 10 by a right clock, 11 to 20 by one that is ahead, 21 the

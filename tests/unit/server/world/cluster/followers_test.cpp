@@ -179,6 +179,44 @@ TEST_CASE("no correction of the time goes to a follower that cannot read it",
   CHECK_FALSE(refused());
 }
 
+TEST_CASE(
+    "a step of the time that would shorten a restriction waits for a follower that cannot read it",
+    "[world][servers][clock]") {
+  constexpr TimeUs kSecond = 1'000'000;
+  WorldBench bench;
+  handshake(bench, kLink, kWorldKey, kFeatureServers);
+  const PublicKey key = key_pair_of(seed_of(5)).public_key;
+  const TimeUs until_us = bench.now().utc_us + 10'000 * kSecond;
+  const Restrict ban{RestrictionKind::ban, key, until_us, ""};
+  REQUIRE(bench.server.changes().change_rights(ban, {}, 0, bench.now()).has_value());
+  bench.wall_error_us = 20'000 * kSecond;
+  const auto wait = [&](int seconds) {
+    for (int i = 0; i < seconds; ++i) {
+      bench.tick(kSecond);
+      if (bench.server.cluster().follower_count() > 0)
+        bench.server.received(kLink, Ping{7}, bench.now());
+    }
+  };
+  const auto refusals = [&] {
+    return std::ranges::count_if(bench.environment.lines, [](const std::string& line) {
+      return line.find("the time of the log cannot follow") != std::string::npos;
+    });
+  };
+  wait(3'590);
+  CHECK(refusals() == 0);
+  wait(20);
+  CHECK(refusals() == 1);
+  CHECK(bench.server.order().head() == 1);
+  CHECK(bench.server.rights().time() == bench.now().utc_us - bench.wall_error_us);
+  bench.server.disconnected(kLink);
+  wait(1);
+  CHECK(bench.server.order().head() == 2);
+  CHECK(bench.server.rights().time() == bench.now().utc_us);
+  const auto* moved = bench.server.rights().state().find_restriction(RestrictionKind::ban, key);
+  REQUIRE(moved != nullptr);
+  CHECK(moved->value.until_us == until_us + bench.wall_error_us);
+}
+
 TEST_CASE("a server that cannot read a correction does not follow a world whose time was corrected",
           "[world][servers][clock]") {
   WorldBench bench;
@@ -191,7 +229,7 @@ TEST_CASE("a server that cannot read a correction does not follow a world whose 
   bench.server.connected(kWaiting, bench.now());
   bench.server.received(kWaiting, hello, bench.now());
   const Welcome welcome = bench.environment.messages<Welcome>(kWaiting, 0).at(0);
-  REQUIRE(bench.server.changes().change_rights(CorrectTime{1}, {}, 0, bench.now()).has_value());
+  REQUIRE(bench.server.changes().change_rights(CorrectTime{-1, 1}, {}, 0, bench.now()).has_value());
   bench.server.received(kWaiting, bench.client_auth(kWorldKey, hello, welcome), bench.now());
   bench.server.connected(kLink, bench.now());
   bench.server.received(kLink, hello, bench.now());
@@ -217,7 +255,7 @@ TEST_CASE("no player corrects the time with an edit", "[world][clock]") {
   WorldBench bench;
   bench.join(1, 3);
   const bool is_relayed = GENERATE(false, true);
-  const EncodedMessage request = encode_message(EditRequest{1, 0, rights_edit(CorrectTime{1})});
+  const EncodedMessage request = encode_message(EditRequest{1, 0, rights_edit(CorrectTime{-1, 1})});
   if (is_relayed) {
     handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
     bench.server.received(kLink, open_of(4), bench.now());
