@@ -267,8 +267,7 @@ Result<RlogImport, std::string> import_rlog(const std::string& place, const std:
   if (!store) return failure(store.error());
   Importer importer(**store, file);
   if (const auto begun = importer.begin(*reader); !begun) return failure(begun.error());
-  const auto read =
-      reader->read(1, [&](const EditRecord& record) { return importer.add(record); });
+  const auto read = reader->read(1, [&](const EditRecord& record) { return importer.add(record); });
   if (!importer.flush()) return failure(importer.error());
   RlogImport report = importer.report();
   report.made_world = is_new;
