@@ -47,7 +47,7 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
   std::vector<bool> used(kMaterialCountMax, false);
   TimeUs last_us = 0, passed_us = 0;
   std::string wrong;
-  const auto read = reader->read({}, [&](const EditRecord& record) {
+  const auto read = reader->read(1, [&](const EditRecord& record) {
     if (const AddedMaterials* added = added_materials_of(record.edit)) {
       const auto appended = log.materials.append(added->first, added->rows);
       if (!appended)

@@ -6,8 +6,8 @@
 
 namespace runstone {
 
-/// Returns true if a time service has set the wall clock and keeps it right, as the kernel knows.
-/// Returns nullopt if the kernel does not say, for example in a sandbox.
+/// Returns true if the kernel reports that a time service has set the wall clock and keeps it right.
+/// Returns nullopt if the kernel reports nothing, for example in a sandbox.
 inline std::optional<bool> is_clock_synchronised() {
   struct timex about{};  // modes 0: nothing is changed
   if (::adjtimex(&about) < 0) return std::nullopt;

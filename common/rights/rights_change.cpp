@@ -176,8 +176,10 @@ Result<void> check_change(const SetPassword& change) {
 Result<void> check_change(const AcceptPassword& /*change*/) { return {}; }
 
 Result<void> check_change(const CorrectTime& change) {
-  if (change.back_us <= 0)
-    return fail(ErrorCode::bad_value, "correction of the time that sets nothing back");
+  if (change.step_us == 0)
+    return fail(ErrorCode::bad_value, "correction of the time without a step");
+  if (change.since == 0 || change.since > kSequenceMax)
+    return fail(ErrorCode::bad_value, "correction of the time since no record");
   return {};
 }
 
@@ -275,7 +277,8 @@ void write_change(ByteWriter& w, const SetPassword& change) {
 void write_change(ByteWriter& w, const AcceptPassword& change) { w.bytes(change.key); }
 
 void write_change(ByteWriter& w, const CorrectTime& change) {
-  w.varint(static_cast<std::uint64_t>(change.back_us));
+  w.svarint(change.step_us);
+  w.varint(change.since);
 }
 
 std::string read_text(ByteReader& r, std::size_t bytes_max, const char* what) {
@@ -328,12 +331,10 @@ Role read_role_with_quotas(ByteReader& r) {
   return role;
 }
 
-TimeUs read_time(ByteReader& r, const char* what) {
+TimeUs read_end_time(ByteReader& r) {
   constexpr auto kTimeMax = static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max());
-  return static_cast<TimeUs>(r.varint_max(kTimeMax, what));
+  return static_cast<TimeUs>(r.varint_max(kTimeMax, "end too late"));
 }
-
-TimeUs read_end_time(ByteReader& r) { return read_time(r, "end too late"); }
 
 Invite read_invite(ByteReader& r) {
   Invite invite;
@@ -440,8 +441,11 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
       return AcceptPassword{read_key(r)};
     case ChangeTag::define_role_with_quotas:
       return DefineRole{read_role_with_quotas(r)};
-    case ChangeTag::correct_time:
-      return CorrectTime{read_time(r, "correction of the time too large")};
+    case ChangeTag::correct_time: {
+      CorrectTime change{r.svarint(), {}};
+      change.since = r.varint();
+      return change;
+    }
   }
   r.reject(ErrorCode::unknown_kind, "unknown rights change");
   return RemoveRole{};

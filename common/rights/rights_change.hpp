@@ -103,11 +103,12 @@ struct AcceptPassword {
   friend bool operator==(const AcceptPassword&, const AcceptPassword&) = default;
 };
 
-/// Sets the time of the log back: to the time of this record, which may be earlier than that of the
-/// record before it. Restrictions and invites whose records have later times were given by the wrong
-/// clock. They keep the time that they had left.
+/// Corrects the time of the log: it steps to the time of this record, which may be earlier than that of
+/// the record before it. The ends of restrictions and invites that the wrong clock gave step with it, so
+/// that these keep the time that they had left (RightsState).
 struct CorrectTime {
-  TimeUs back_us = 0;  // how far the time of the log was ahead, above 0
+  TimeUs step_us = 0;  // by which the time of the log steps: not 0; below 0 it steps back
+  Sequence since = 1;  // the first record of the wrong clock, as far as the server knows; from 1
   friend bool operator==(const CorrectTime&, const CorrectTime&) = default;
 };
 

@@ -1,6 +1,8 @@
 #include "common/rights/rights_state.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "common/core/assert.hpp"
 
@@ -10,6 +12,13 @@ namespace {
 bool holds(const Decided<Restrict>& restriction, TimeUs now_us) {
   const TimeUs until_us = restriction.value.until_us;
   return until_us == 0 || now_us < until_us;
+}
+
+/// Returns an end that steps with the time. Requires that it is above 0. An end of 0 would be none.
+TimeUs moved_end(TimeUs until_us, TimeUs step_us) {
+  constexpr TimeUs kEndMax = std::numeric_limits<TimeUs>::max();
+  if (step_us > kEndMax - until_us) return kEndMax;
+  return std::max<TimeUs>(1, until_us + step_us);
 }
 
 BoxRank rank_of(const Decided<ProtectedBox>& box) {
@@ -130,25 +139,47 @@ void RightsState::apply_kind(const AcceptPassword& change, const ChangeOrigin& o
   grants_[change.key] = {password_.value->role, origin};
 }
 
+const ChangeOrigin& RightsState::giver_of_end(const ChangeOrigin& by) const {
+  const auto moved = moved_ends_.find(by.seq);
+  return moved == moved_ends_.end() ? by : moved->second;
+}
+
 void RightsState::apply_kind(const CorrectTime& change, const ChangeOrigin& origin) {
-  // An end that an earlier correction has moved is right already.
-  const auto is_by_wrong_clock = [&](const ChangeOrigin& by) {
-    return by.seq > corrected_ && by.time_us > origin.time_us;
+  std::map<Sequence, ChangeOrigin> moved_ends;
+  const auto correct = [&](const ChangeOrigin& by, TimeUs& until_us) {
+    const ChangeOrigin& giver = giver_of_end(by);
+    // A record with a later time than a correct one has its time from a wrong clock.
+    const bool is_later = change.step_us < 0 && giver.time_us > origin.time_us;
+    if (giver.seq >= change.since || is_later) {
+      until_us = moved_end(until_us, change.step_us);
+      moved_ends[by.seq] = origin;
+    } else if (giver.seq != by.seq) {
+      moved_ends[by.seq] = giver;
+    }
   };
-  // An end of 0 would be none.
-  const auto move_back = [&](TimeUs& until_us) {
-    until_us = std::max<TimeUs>(1, until_us - change.back_us);
+  const auto correct_restriction = [&](Decided<Restrict>& restriction) {
+    if (restriction.value.until_us != 0) correct(restriction.by, restriction.value.until_us);
   };
-  const auto correct = [&](Decided<Restrict>& restriction) {
-    if (restriction.value.until_us != 0 && is_by_wrong_clock(restriction.by))
-      move_back(restriction.value.until_us);
+  for (auto& [subject, restriction] : by_key_) correct_restriction(restriction);
+  for (auto& [range, ban] : address_bans_) correct_restriction(ban);
+  for (auto& [id, invite] : invites_) correct(invite.by, invite.value.invite.until_us);
+  moved_ends_ = std::move(moved_ends);
+  is_time_corrected_ = true;
+}
+
+bool RightsState::has_ends_given_since(Sequence since, TimeUs now_us) const {
+  const auto is_meant = [&](const ChangeOrigin& by, TimeUs until_us) {
+    return until_us > now_us && giver_of_end(by).seq >= since;
   };
-  for (auto& [subject, restriction] : by_key_) correct(restriction);
-  for (auto& [range, ban] : address_bans_) correct(ban);
-  for (auto& [id, invite] : invites_) {
-    if (is_by_wrong_clock(invite.by)) move_back(invite.value.invite.until_us);
-  }
-  corrected_ = origin.seq;
+  const auto is_meant_restriction = [&](const auto& entry) {
+    const Decided<Restrict>& restriction = entry.second;
+    return restriction.value.until_us != 0 && is_meant(restriction.by, restriction.value.until_us);
+  };
+  return std::ranges::any_of(by_key_, is_meant_restriction) ||
+         std::ranges::any_of(address_bans_, is_meant_restriction) ||
+         std::ranges::any_of(invites_, [&](const auto& entry) {
+           return is_meant(entry.second.by, entry.second.value.invite.until_us);
+         });
 }
 
 const Decided<OpenInvite>* RightsState::usable_invite(InviteId id, TimeUs now_us) const {

@@ -122,6 +122,13 @@ class RightsState {
   std::vector<const Decided<Restrict>*> restrictions() const;
   std::size_t restriction_count() const { return by_key_.size() + address_bans_.size(); }
 
+  // Corrections of the time.
+  /// Returns true if the records have a correction of the time.
+  bool is_time_corrected() const { return is_time_corrected_; }
+  /// Returns true if a restriction or an invite has an end behind `now_us` (UTC) that a record from
+  /// `since` on has given. Cost: O(log n) for each restriction and invite.
+  bool has_ends_given_since(Sequence since, TimeUs now_us) const;
+
   // Protected ground.
   const Decided<ProtectedBox>* find_box(const std::string& name) const;
   const std::map<std::string, Decided<ProtectedBox>>& boxes() const { return boxes_; }
@@ -177,6 +184,9 @@ class RightsState {
   void apply_kind(const SetPassword& change, const ChangeOrigin& origin);
   void apply_kind(const AcceptPassword& change, const ChangeOrigin& origin);
   void apply_kind(const CorrectTime& change, const ChangeOrigin& origin);
+  /// Returns the record that has given an end its present value: the one of the restriction or invite,
+  /// or the correction of the time that has moved the end last.
+  const ChangeOrigin& giver_of_end(const ChangeOrigin& by) const;
   void remove_box(const std::string& name);
 
   std::map<std::string, Decided<Role>> roles_;
@@ -189,7 +199,11 @@ class RightsState {
   std::map<std::pair<PublicKey, RestrictionKind>, Decided<Restrict>> by_key_;
   std::map<AddressRange, Decided<Restrict>> address_bans_;
   std::array<std::uint32_t, 65> bans_of_length_{};  // by the bits of the prefix
-  Sequence corrected_ = 0;  // of the newest correction of the time, 0: there was none
+
+  bool is_time_corrected_ = false;
+  // The correction that has moved an end last, by the sequence of the record of the restriction or
+  // invite.
+  std::map<Sequence, ChangeOrigin> moved_ends_;
 
   std::map<std::string, Decided<ProtectedBox>> boxes_;
   BoxIndex index_;

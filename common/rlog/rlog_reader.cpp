@@ -154,16 +154,15 @@ RlogResult<bool> RlogReader::read_block(const std::function<bool(const EditRecor
   return true;
 }
 
-RlogResult<void> RlogReader::read(const RlogFrom& from,
+RlogResult<void> RlogReader::read(Sequence from,
                                   const std::function<bool(const EditRecord&)>& each) {
   for (;;) {
     const auto block = next_block();
     if (!block) return failure(block.error());
     if (!block->has_value()) return {};
-    if (next_ <= from.seq || last_us_ < from.time_us) continue;
-    const auto read = read_block([&](const EditRecord& record) {
-      return record.version.seq < from.seq || record.time_us < from.time_us || each(record);
-    });
+    if (next_ <= from) continue;
+    const auto read = read_block(
+        [&](const EditRecord& record) { return record.version.seq < from || each(record); });
     if (!read) return failure(read.error());
     if (!*read) return {};
   }

@@ -4,7 +4,6 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,12 +18,6 @@ namespace runstone {
 /// smaller only at the end of the file. Returns nullopt if the file cannot be read.
 using RlogSource =
     std::function<std::optional<std::size_t>(std::uint64_t position, std::span<std::uint8_t> out)>;
-
-/// The edits to read: those from this sequence on whose time is not before this one.
-struct RlogFrom {
-  Sequence seq = 1;
-  TimeUs time_us = std::numeric_limits<TimeUs>::min();  // UTC
-};
 
 class RlogReader {
  public:
@@ -42,10 +35,10 @@ class RlogReader {
   /// `each` returns false, and then returns false.
   RlogResult<bool> read_block(const std::function<bool(const EditRecord&)>& each);
 
-  /// Calls next_block() and read_block() for all remaining edits from `from` on. Only the headers
-  /// of the blocks before `from` are checked. Stops if `each` returns false; otherwise returns at
+  /// Calls next_block() and read_block() for all remaining edits from sequence `from` on. Only the
+  /// headers of the blocks before it are checked. Stops if `each` returns false; otherwise returns at
   /// the valid end of the file.
-  RlogResult<void> read(const RlogFrom& from, const std::function<bool(const EditRecord&)>& each);
+  RlogResult<void> read(Sequence from, const std::function<bool(const EditRecord&)>& each);
 
  private:
   explicit RlogReader(RlogSource source) : source_(std::move(source)) {}

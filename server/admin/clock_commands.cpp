@@ -16,14 +16,11 @@ const LogClock& clock_of(const CommandCall& call) {
   return call.world().order().authority().log_clock();
 }
 
-/// Returns how far the time of the log is ahead of the wall clock; below 0: how far it is behind.
-TimeUs ahead_us(const LogClock& clock) { return clock.time() - clock.wall_us(); }
-
-bool agree(const LogClock& clock) { return std::abs(ahead_us(clock)) <= LogClock::kJumpUs; }
+bool agree(const LogClock& clock) { return std::abs(clock.ahead_us()) <= LogClock::kJumpUs; }
 
 /// Returns both times, and how far they differ.
 std::string both_times(const LogClock& clock) {
-  const TimeUs apart_us = ahead_us(clock);
+  const TimeUs apart_us = clock.ahead_us();
   std::string text = "the time of the log is " + utc_text(clock.time()) +
                      ", the wall clock reads " + utc_text(clock.wall_us());
   if (agree(clock)) return text + ": they agree";
@@ -32,9 +29,15 @@ std::string both_times(const LogClock& clock) {
 }
 
 /// Returns why the wall clock may be wrong, or nullopt.
-std::optional<std::string> doubt_of(const LogClock& clock) {
-  if (!clock.has_jumped()) return std::nullopt;
-  return "the wall clock has jumped within the hour, and may be wrong: " + both_times(clock);
+std::optional<std::string> doubt_of(const CommandCall& call) {
+  const LogClock& clock = clock_of(call);
+  if (clock.has_jumped())
+    return "the wall clock has jumped within the hour, and may be wrong: " + both_times(clock);
+  const auto& doubt_clock = call.services.actions.doubt_clock;
+  const auto why =
+      doubt_clock && clock.ahead_us() > 0 ? doubt_clock(clock.wall_us()) : std::nullopt;
+  if (!why) return std::nullopt;
+  return "the wall clock may be wrong, because " + *why + ": " + both_times(clock);
 }
 
 void show_clock(const CommandCall& call) {
@@ -43,7 +46,7 @@ void show_clock(const CommandCall& call) {
   if (agree(clock)) return call.answer(text);
   if (clock.has_jumped()) {
     text += ". The wall clock has jumped; if it keeps the jump for an hour, the log follows";
-    if (ahead_us(clock) > 0) text += ", but times of edits do not go back";
+    if (clock.ahead_us() > 0) text += ", but times of edits do not go back";
   }
   call.answer(text + ". If the wall clock is right, `clock correct` makes the log follow now");
 }
@@ -63,19 +66,20 @@ void correct_clock(const CommandCall& call, const bool& is_confirmed) {
   }
   CommandCall given = call;
   given.is_confirmed = is_confirmed;
-  if (given.refuse_unless_confirmed(doubt_of(clock))) return;
-  const TimeUs apart_us = ahead_us(clock);
-  const std::string before = utc_text(clock.time());
-  const std::string now = utc_text(clock.wall_us());
-  if (apart_us > 0) {
-    if (const auto why = call.world().cluster().correction_refusal()) return call.refuse(*why);
-    return call.change_rights(CorrectTime{apart_us},
-                              "the time of the log goes back from " + before + " to " + now +
+  if (given.refuse_unless_confirmed(doubt_of(call))) return;
+  const bool is_ahead = clock.ahead_us() > 0;
+  const std::string step = std::string("the time of the log goes ") + (is_ahead ? "back" : "on") +
+                           " from " + utc_text(clock.time()) + " to " + utc_text(clock.wall_us());
+  Changes& changes = call.world().changes();
+  const auto change = changes.time_correction();
+  if (!change) {
+    changes.accept_wall_clock();
+    return call.answer(step);
+  }
+  if (const auto why = call.world().cluster().correction_refusal()) return call.refuse(*why);
+  call.change_rights(*change, step +
                                   ". Bans, mutes, freezes and invites of the wrong clock keep the "
                                   "time that they had left");
-  }
-  call.world().changes().accept_wall_clock();
-  call.answer("the time of the log goes on from " + before + " to " + now);
 }
 
 constexpr CommandRule kClockAdministrators = needs(Right::administer);
@@ -85,7 +89,7 @@ constexpr std::array<CommandRow, 2> kClockRows = {{
      "clock                     the time of the log and the wall clock, and how far they differ",
      alone<show_clock>()},
     {"clock correct", kClockAdministrators,
-     "clock correct             make the time of the log that of the wall clock, after it was wrong",
+     "clock correct [anyway]    make the time of the log that of the wall clock, after it was wrong",
      parsed_by<parse_correct, correct_clock>()},
 }};
 

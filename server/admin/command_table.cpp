@@ -169,9 +169,10 @@ std::string logged_command(const std::string& line) {
 }
 
 void give_command(const CommandCall& call, const std::string& line) {
-  // Ages refer to the time of the log, and restrictions end by it.
-  const bool has_log_time = call.world().order().authority().log_clock().has_begun();
-  const auto command = parse_command(line, has_log_time ? call.rights_time() : call.now.utc_us);
+  // Ages refer to the time of the log, and restrictions end by it. The command may come before the
+  // first commit.
+  call.world().changes().read_clocks(call.now);
+  const auto command = parse_command(line, call.rights_time());
   if (!command) return call.refuse(command.error());
   if (auto why = why_not(call.caller, call.rights(), command->row->rule, call.rights_time()))
     return call.refuse(*std::move(why));

@@ -21,6 +21,9 @@ struct OperatorActions {
   /// Lets another server take the world over: the one of this number, or nullopt: the one with the
   /// most players. The last reply has the outcome.
   std::function<void(std::optional<SessionId> successor, CommandReply)> hand_over;
+  /// Returns why a wall clock of this time (UTC), which is behind the time of the log, may be wrong, as
+  /// a part of a sentence, or nullopt. The runtime sets it, because the world reads no clock.
+  std::function<std::optional<std::string>(TimeUs wall_us)> doubt_clock;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

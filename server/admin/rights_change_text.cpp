@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -57,7 +60,11 @@ std::string line_for(const AcceptPassword& change) {
   return key_fingerprint(change.key) + " joined with the password";
 }
 std::string line_for(const CorrectTime& change) {
-  return "set the time of the log back by " + apart_text(change.back_us);
+  const bool is_back = change.step_us < 0;
+  // The smallest step has no opposite.
+  const TimeUs us = std::abs(std::max(change.step_us, -std::numeric_limits<TimeUs>::max()));
+  return "set the time of the log " + std::string(is_back ? "back" : "forward") + " by " +
+         apart_text(us);
 }
 
 }  // namespace

@@ -109,7 +109,11 @@ sql::Result<void> ChatDatabase::prepare() {
     return ok;
   if (auto ok = take("DELETE FROM line WHERE id <= (SELECT MAX(id) FROM line) - ?1", trim_); !ok)
     return ok;
-  if (auto ok = take("DELETE FROM line WHERE utc_us < ?1", forget_); !ok) return ok;
+  // The times of lines fall where the time of the log was corrected.
+  if (auto ok = take("DELETE FROM line WHERE id <= (SELECT MAX(id) FROM line WHERE utc_us < ?1)",
+                     forget_);
+      !ok)
+    return ok;
   return take("SELECT utc_us, kind, key, name, text FROM line ORDER BY id DESC", newest_);
 }
 
@@ -149,8 +153,9 @@ sql::Result<std::vector<ChatEntry>> ChatDatabase::search(const ChatQuery& query)
     if (!row) return failure(row.error());
     if (!*row) break;
     auto entry = entry_of(newest_);
-    if (!entry || !is_written_by(*entry, query.by)) continue;
-    if (query.since_us && entry->line.utc_us < *query.since_us) continue;
+    if (!entry) continue;
+    if (query.since_us && entry->line.utc_us < *query.since_us) break;
+    if (!is_written_by(*entry, query.by)) continue;
     found.push_back(*std::move(entry));
   }
   std::reverse(found.begin(), found.end());

@@ -24,7 +24,8 @@ class ChatDatabase {
 
   /// Writes the lines, all or none.
   sql::Result<void> append(std::span<const ChatEntry> entries);
-  /// Removes the lines that are older.
+  /// Removes the lines up to the newest one that is older. The lines before it are older too, whatever
+  /// time a wrong clock has given them.
   sql::Result<void> forget_before(TimeUs utc_us);
   /// Returns the newest lines that the query selects, the last one last. Author numbers are 0. Rows
   /// with values that no line has are left out. Cost: O(lines in the file).

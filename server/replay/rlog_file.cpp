@@ -246,7 +246,7 @@ Result<RlogImport, std::string> import_into(Store& store, RlogReader& reader,
                                             const std::string& file) {
   Importer importer(store, file);
   if (const auto begun = importer.begin(reader); !begun) return failure(begun.error());
-  const auto read = reader.read({}, [&](const EditRecord& record) { return importer.add(record); });
+  const auto read = reader.read(1, [&](const EditRecord& record) { return importer.add(record); });
   if (!importer.flush()) return failure(importer.error());
   RlogImport report = importer.report();
   const auto last = store.last_sequence();

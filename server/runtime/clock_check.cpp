@@ -28,7 +28,7 @@ ClockCheck check_clock(const ClockEvidence& evidence) {
   if (known_us == 0) return check;
   const std::string reads = "the wall clock reads " + utc_text(evidence.wall_us);
   // LogClock warns of a log that ends ahead of the wall clock.
-  const bool is_log_ahead = evidence.last_us - evidence.wall_us > LogClock::kJumpUs;
+  const bool is_log_ahead = evidence.last_us > evidence.wall_us + LogClock::kJumpUs;
   if (evidence.written_us - evidence.wall_us > LogClock::kJumpUs && !is_log_ahead) {
     check.warning = reads + ", but " + evidence.file + " was written at " +
                     utc_text(evidence.written_us) +
@@ -46,6 +46,15 @@ ClockCheck check_clock(const ClockEvidence& evidence) {
       "the wall clock if it stays so for an hour. If the clock is right, the command `clock correct "
       "anyway` makes the log follow at once; otherwise set it right now";
   return check;
+}
+
+std::optional<std::string> doubt_of_clock_behind(const ClockEvidence& evidence) {
+  if (evidence.is_synchronised)
+    return *evidence.is_synchronised ? std::nullopt
+                                     : std::optional<std::string>("no time service has set it");
+  if (evidence.written_us - evidence.wall_us <= LogClock::kJumpUs) return std::nullopt;
+  return "it is behind the time at which " + evidence.file + " was written, " +
+         utc_text(evidence.written_us);
 }
 
 ClockEvidence read_clock_evidence(const std::string& place, TimeUs last_us) {

@@ -1,12 +1,13 @@
-// ClockCheck: whether the wall clock can be right when a server starts. It is compared with all times
-// that the world knows: that of the last record of the log, and those at which the files of the world
-// were written. The rule:
+// ClockCheck decides if the wall clock may be wrong when a server starts. It compares the wall clock with
+// all times that the world has: that of the last record of the log, and those at which the files of the
+// world were written. The rule:
 //   - The wall clock is more than kJumpUs behind one of them: it is wrong now, or was wrong then. The
 //     operator is warned.
-//   - The wall clock is more than kRestUs ahead of all of them, and the kernel does not say that a time
-//     service has set it: the world has rested for long, or the clock is wrong. The operator is warned.
-//     If the kernel says that no time service has set the clock, it is doubtful: the log's time goes on
-//     from the newest of these times, and treats the wall clock as one that has jumped (LogClock).
+//   - The wall clock is more than kRestUs ahead of all of them, and the kernel does not report that a
+//     time service has set it: the world has rested for long, or the clock is wrong. The operator is
+//     warned. If the kernel reports that no time service has set the clock, it is doubtful: the log's
+//     time goes on from the newest of these times, and treats the wall clock as one that has jumped
+//     (LogClock).
 // A clock that is wrong by less than kRestUs cannot be told from a right one.
 #pragma once
 #include <optional>
@@ -18,7 +19,7 @@ namespace runstone {
 
 inline constexpr TimeUs kRestUs = TimeUs{30} * 24 * 3600 * 1'000'000;
 
-/// What a start knows about times (UTC).
+/// The times (UTC) that a start compares.
 struct ClockEvidence {
   TimeUs wall_us = 0;
   TimeUs last_us = 0;     // of the last record of the log, 0: there is none
@@ -33,6 +34,11 @@ struct ClockCheck {
 };
 
 ClockCheck check_clock(const ClockEvidence& evidence);
+
+/// Returns why a wall clock that is behind the time of the log may be wrong, as a part of a sentence,
+/// or nullopt. It may be if the kernel reports that no time service has set it. It also may be if the
+/// kernel reports nothing, and the clock is more than kJumpUs behind a file of the world.
+std::optional<std::string> doubt_of_clock_behind(const ClockEvidence& evidence);
 
 /// Reads the clocks and the times of the files of a world, at a place. Call it before the world is
 /// changed.

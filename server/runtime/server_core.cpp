@@ -6,11 +6,11 @@
 #include <chrono>
 #include <span>
 
+#include "common/os/clock_service.hpp"
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/config_reload.hpp"
-#include "server/runtime/clock_check.hpp"
 #include "server/runtime/counters_line.hpp"
 #include "server/runtime/derived_config.hpp"
 #include "server/runtime/logging.hpp"
@@ -85,8 +85,8 @@ Result<void, std::string> ServerCore::listen_for_gateway(const std::string& path
 Result<void, std::string> ServerCore::recover() {
   auto start = read_world_start(store_);
   if (!start) return failure(start.error());
-  const ClockCheck clock =
-      check_clock(read_clock_evidence(world_place(config_), start->log.last_time_us));
+  clock_evidence_ = read_clock_evidence(world_place(config_), start->log.last_time_us);
+  const ClockCheck clock = check_clock(clock_evidence_);
   if (clock.warning) logger("world").warn("{}", *clock.warning);
   start->log.begin_us = clock.begin_us;
   const auto epoch = store_.raise_epoch();
@@ -135,6 +135,12 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
 void ServerCore::make_log(Store& store, Sequence durable) {
   if (!commands_) {
     OperatorActions actions = actions_;
+    actions.doubt_clock = [this](TimeUs wall_us) {
+      ClockEvidence evidence = clock_evidence_;
+      evidence.wall_us = wall_us;
+      evidence.is_synchronised = is_clock_synchronised();
+      return doubt_of_clock_behind(evidence);
+    };
     if (chat_log_) {
       actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
         runstone::list_chat(*chat_log_, query, reply);

@@ -22,6 +22,7 @@
 #include "server/runtime/activity_line.hpp"
 #include "server/runtime/chat_logging.hpp"
 #include "server/runtime/chunk_sender.hpp"
+#include "server/runtime/clock_check.hpp"
 #include "server/runtime/command_runner.hpp"
 #include "server/runtime/commit_scheduler.hpp"
 #include "server/runtime/connected_sessions.hpp"
@@ -183,7 +184,8 @@ class ServerCore final : public NetEvents {
   const Generator& generator_;
   const std::function<void()> on_failure_;
   const OperatorActions actions_;
-  ServerConfig running_;  // config_ with what was reloaded. Used on the world strand
+  ClockEvidence clock_evidence_;  // of the start
+  ServerConfig running_;          // config_ with what was reloaded. Used on the world strand
   WorldStrand strand_;
   std::shared_ptr<Listener> listener_;
   std::shared_ptr<GatewayListener> gateway_;  // null: there is no gateway

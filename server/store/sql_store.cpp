@@ -63,6 +63,12 @@ StoreResult<void> SqlStore::transact(const std::function<StoreResult<void>()>& b
     // committed, and the next transaction overwrites what was written. A database that takes no
     // writes has rolled the transaction back.
     broken_ = !can_be_repeated(committed.error());
+    return committed;
+  }
+  if (std::exchange(is_format_raised_, false)) {
+    // An older program looks for the number in the main file alone, before it opens the database.
+    const auto completed = backend_->complete_file(false);
+    if (!completed || !*completed) is_reader_in_the_way_ = true;
   }
   return committed;
 }
@@ -214,7 +220,9 @@ StoreResult<void> SqlStore::raise_format(std::uint32_t format) {
   const auto present = backend_->format();
   if (!present) return failed(present.error());
   if (*present >= format) return {};
-  return backend_->set_format(format);
+  if (auto set = backend_->set_format(format); !set) return set;
+  is_format_raised_ = true;
+  return {};
 }
 
 StoreResult<void> SqlStore::save_chunks(ChunkTable& table, ChunkSpan chunks) {

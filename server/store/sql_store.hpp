@@ -149,6 +149,7 @@ class SqlStore final : public Store {
     segments_.forget();
     player_table_.forget();
     counts_.reset();
+    is_format_raised_ = false;
   }
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
@@ -190,7 +191,8 @@ class SqlStore final : public Store {
                            DurableState& next);
   /// Lists the eras that begin at these records, in the caller's transaction.
   StoreResult<void> add_eras(std::span<const EditRecord> records);
-  /// Makes the world one of this format unless it is of a later one, in the caller's transaction.
+  /// Makes the world one of this format unless it is of a later one, in the caller's transaction. The
+  /// commit then moves the number into the main file.
   StoreResult<void> raise_format(std::uint32_t format);
   StoreResult<void> put_players(std::span<const PlayerRow> players);
   StoreResult<void> raise_watermarks(const Watermarks& marks);
@@ -221,9 +223,9 @@ class SqlStore final : public Store {
                                const std::string& more = "");
   StoreResult<void> check_players(const FoldedRows<PlayerRow>& players);
   StoreResult<void> check_chunks(ChunkTable& table);
-  StoreResult<void> check_marks_cover_log();
-  /// Checks that times fall only where an era begins, and that each of them is listed.
-  StoreResult<void> check_eras();
+  /// Checks that a watermark covers each edit of the log, that times fall only where an era begins, and
+  /// that `meta` lists the eras. Cost: one pass over the log.
+  StoreResult<void> check_log_rows();
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
@@ -254,7 +256,8 @@ class SqlStore final : public Store {
   bool has_mark_file_ = false;
   bool is_open_ = false;               // `meta` says that the database is being written
   bool is_open_in_file_ = false;       // this program has written that into the main file
-  bool is_reader_in_the_way_ = false;  // it lies in the WAL still
+  bool is_reader_in_the_way_ = false;  // that or the format lies in the WAL still
+  bool is_format_raised_ = false;      // by the present transaction
   bool is_whole_ = false;              // this program may say so when it closes the world
   bool broken_ = false;
 };

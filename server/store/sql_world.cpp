@@ -116,10 +116,14 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   if (!store->tiles_ && access != StoreAccess::read_only) {
     if (const auto converted = store->convert(); !converted) return failed(converted.error());
   }
-  // A copy has the row before it has the number.
-  if (rows->contains(kLogErasKey) && access != StoreAccess::read_only) {
-    const auto raised = store->transact([&] { return store->raise_format(kWorldFormatOfEras); });
-    if (!raised) return failed(raised.error());
+  // A copy is made with format 5; its row `log_eras` shows that it needs format 6.
+  if (rows->contains(kLogErasKey) && access != StoreAccess::read_only && !store->loss_) {
+    const auto format = store->backend_->format();
+    if (!format) return failed(format.error());
+    if (*format < kWorldFormatOfEras) {
+      const auto raised = store->transact([&] { return store->raise_format(kWorldFormatOfEras); });
+      if (!raised) return failed(raised.error());
+    }
   }
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =

@@ -35,62 +35,47 @@ StoreResult<void> SqlStore::check_chunks(ChunkTable& table) {
   return {};
 }
 
-StoreResult<void> SqlStore::check_marks_cover_log() {
-  // The log is read before the watermarks, because a running server increases both.
+StoreResult<void> SqlStore::check_log_rows() {
+  // The end of the log is read first, because a running server adds watermarks and eras, too.
   const auto last = last_sequence();
   if (!last) return failed(last.error());
   const auto all = player_table_.high_waters();
   if (!all) return failed(all.error());
+  const auto head = meta_table_.log_head();
+  if (!head) return failed(head.error());
+  auto eras = meta_table_.log_eras();
+  if (!eras) return failed(eras.error());
+  std::erase_if(*eras, [&](const LogEra& era) { return era.first > *last; });
   Watermarks marks;
   for (const HighWater& row : all->rows) marks[{row.author, row.instance}] = row;
-  std::optional<OperationId> uncovered;
+  std::vector<LogEra> found;
+  TimeUs before_us = head->version.seq == 0 ? std::numeric_limits<TimeUs>::min() : head->time_us;
+  std::optional<StoreError> wrong;
   auto read = read_log(1, *last, [&](const EditRecord& record) {
     const auto mark = marks.find({record.op.author, record.op.instance});
     if (mark == marks.end() || mark->second.resolved < record.op.seq ||
         mark->second.last_us < record.time_us) {
-      uncovered = record.op;
+      wrong =
+          StoreError{StoreError::Kind::corrupt, file(),
+                     "player_instance author=" + std::to_string(record.op.author) +
+                         " instance=" + std::to_string(record.op.instance),
+                     "is behind the log, which holds client edit " + std::to_string(record.op.seq)};
+    } else if (corrects_time(record)) {
+      found.push_back({record.version.seq, record.time_us});
+    } else if (record.time_us < before_us) {
+      wrong = StoreError{StoreError::Kind::corrupt, file(),
+                         "edit_log seq=" + std::to_string(record.version.seq),
+                         "is earlier than the edit before it, and corrects no time"};
     }
-    return !uncovered.has_value();
+    before_us = record.time_us;
+    return !wrong.has_value();
   });
-  if (!read || !uncovered) return read;
-  return failure(
-      StoreError{StoreError::Kind::corrupt, file(),
-                 "player_instance author=" + std::to_string(uncovered->author) +
-                     " instance=" + std::to_string(uncovered->instance),
-                 "is behind the log, which holds client edit " + std::to_string(uncovered->seq)});
-}
-
-StoreResult<void> SqlStore::check_eras() {
-  return at_one_moment<void>([&]() -> StoreResult<void> {
-    const auto head = meta_table_.log_head();
-    if (!head) return failed(head.error());
-    const auto range = log_.range(*head);
-    if (!range) return failed(range.error());
-    const auto eras = meta_table_.log_eras();
-    if (!eras) return failed(eras.error());
-    std::vector<LogEra> found;
-    TimeUs before_us = head->version.seq == 0 ? std::numeric_limits<TimeUs>::min() : head->time_us;
-    Sequence wrong = 0;
-    auto read =
-        log_.read(*range, range->first, range->last.version.seq, [&](const EditRecord& record) {
-          if (corrects_time(record))
-            found.push_back({record.version.seq, record.time_us});
-          else if (record.time_us < before_us)
-            wrong = record.version.seq;
-          before_us = record.time_us;
-          return wrong == 0;
-        });
-    if (!read) return read;
-    if (wrong != 0) {
-      return failure(StoreError{StoreError::Kind::corrupt, file(),
-                                "edit_log seq=" + std::to_string(wrong),
-                                "is earlier than the edit before it, and corrects no time"});
-    }
-    if (found == *eras) return {};
-    return failure(StoreError{StoreError::Kind::corrupt, file(),
-                              std::string("meta key=") + kLogErasKey,
-                              "does not list the corrections of the time that the log holds"});
-  });
+  if (!read) return read;
+  if (wrong) return failure(*std::move(wrong));
+  if (found == *eras) return {};
+  return failure(StoreError{StoreError::Kind::corrupt, file(),
+                            std::string("meta key=") + kLogErasKey,
+                            "does not list the corrections of the time that the log holds"});
 }
 
 StoreResult<void> SqlStore::check_segments_cover_log() {
@@ -161,9 +146,8 @@ StoreResult<void> SqlStore::check() {
   if (const auto table = materials(); !table) return failed(table.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   // A watermark that the log proves to be missing is named before the rows are counted.
-  if (auto marks = check_marks_cover_log(); !marks) return marks;
+  if (auto rows = check_log_rows(); !rows) return rows;
   if (const auto rows = high_waters(); !rows) return failed(rows.error());
-  if (auto eras = check_eras(); !eras) return eras;
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;

@@ -96,7 +96,8 @@ constexpr const char* kChunkColumns = R"sql((
 ) STRICT;
 )sql";
 
-// There is no index by time: times never fall along the log, so a time is found by bisection.
+// There is no index by time. Times never fall within an era (log_eras), so a time is found by
+// bisection.
 // Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
 CREATE INDEX edit_log_author ON edit_log(author, seq);

@@ -169,7 +169,11 @@ void WorldServer::handle(Session& session, Message&& message, const Clocks& now)
 void WorldServer::authenticate(Session& session, const ClientAuth& auth, const Clocks& now) {
   Joining& joining = rooms_->people.joining();
   if (!joining.proves_key(session, auth)) return;
-  if (joining.is_server(session)) return rooms_->cluster.admit_follower(session, now);
+  if (joining.is_server(session)) {
+    // The time may have been corrected since its hello.
+    if (joining.close_if_old_server(session)) return;
+    return rooms_->cluster.admit_follower(session, now);
+  }
   if (rooms_->cluster.is_following()) return rooms_->cluster.join_at_owner(session, auth);
   joining.let_in(session, {auth.ticket, auth.password_key}, now);
 }
@@ -247,6 +251,10 @@ void WorldServer::tick(const Clocks& now) {
   Ground& ground = rooms_->ground;
   People& people = rooms_->people;
   commit_one(now);
+  if (!cluster.is_following()) {
+    const auto news = rooms_->changes.follow_kept_jump(cluster.correction_refusal(), now);
+    if (news) rooms_->environment.report(OperatorLogLevel::warn, *news);
+  }
   if (const auto warning = rooms_->order.authority().log_clock().take_warning())
     rooms_->environment.report(OperatorLogLevel::warn, *warning);
   people.forget_gone_authors();

@@ -61,6 +61,7 @@ bool Cluster::take_over(const Takeover& start, const Clocks& now) {
   followers_.close_all("this server owns the world again");  // they get its log from the start
   world_.order.ownership().end_takeover();
   handover_.begin_owning(now);
+  world_.order.authority().log_clock().take_over(now);
   world_.order.begin_owning(start.checkpoint, start.author_max);
   servers_.hold(now);
   world_.commits.begin_epoch(start.epoch);

@@ -136,6 +136,8 @@ void Following::on_log_part(LogPart part, const Clocks& now) {
   for (const LogName& name : part.names)
     world_.order.names().follow({{name.folded, name.name, name.key}, name.is_release});
   follow(part.records, now);
+  if (!part.records.empty())
+    world_.order.authority().log_clock().hear_owner(part.records.back().record.time_us, now);
   not_durable_.push_back({std::move(part), now.steady_us});
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/core/utc_text.hpp"
 #include "protocol/rules/edit_price.hpp"
 
 namespace runstone {
@@ -109,10 +110,41 @@ Result<Sequence, std::string> Changes::change_rights(const RightsChange& change,
   return failure(why_not_ordered(ordered));
 }
 
-void Changes::accept_wall_clock() {
-  LogClock& clock = order_.authority().log_clock();
-  RUNSTONE_ASSERT(clock.time() <= clock.wall_us());
-  clock.accept_wall_clock();
+std::optional<CorrectTime> Changes::time_correction() const {
+  const Authority& authority = std::as_const(order_).authority();
+  const LogClock& clock = authority.log_clock();
+  const CorrectTime change{-clock.ahead_us(), authority.timed_from()};
+  const bool is_needed =
+      change.step_us < 0 ||
+      (change.step_us > 0 && rights_.state().has_ends_given_since(change.since, clock.time()));
+  return is_needed ? std::optional(change) : std::nullopt;
+}
+
+std::optional<std::string> Changes::follow_kept_jump(const std::optional<std::string>& refusal,
+                                                     const Clocks& now) {
+  const LogClock& clock = std::as_const(order_).authority().log_clock();
+  if (!clock.is_step_due()) {
+    is_jump_refused_ = false;
+    return std::nullopt;
+  }
+  if (!order_.accepts_edits()) return std::nullopt;
+  const std::string step = "the wall clock has kept its jump: the time of the log goes from " +
+                           utc_text(clock.time()) + " to " + utc_text(clock.wall_us());
+  const auto change = time_correction();
+  if (!change) {
+    accept_wall_clock();
+    return step;
+  }
+  std::optional<std::string> why = refusal;
+  if (!why) {
+    const auto seq = change_rights(*change, {}, 0, now);
+    if (seq) return step + " (record " + std::to_string(*seq) + ")";
+    why = seq.error();
+  }
+  if (std::exchange(is_jump_refused_, true)) return std::nullopt;
+  return "the wall clock has kept its jump, but the time of the log cannot follow without shortening "
+         "bans, mutes, freezes or invites: " +
+         *why;
 }
 
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,

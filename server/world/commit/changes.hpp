@@ -51,9 +51,21 @@ class Changes {
   /// its sequence, or why it was refused, as a sentence.
   Result<Sequence, std::string> change_rights(const RightsChange& change, const RightsActor& actor,
                                               AuthorId author, const Clocks& now);
-  /// Makes the log's time that of the wall clock. Requires that the wall clock is not behind:
-  /// otherwise a CorrectTime does it.
-  void accept_wall_clock();
+  /// Reads both clocks for the time of the log. Commits do that too, but the first commit may come
+  /// later than the call that needs the time.
+  void read_clocks(const Clocks& now) { order_.authority().log_clock().advance(now); }
+  /// Returns the record that makes the log's time that of the wall clock. Returns nullopt if none is
+  /// needed, because the time does not step back, and no restriction or invite in force has an end of
+  /// the time before: then accept_wall_clock() makes it so.
+  std::optional<CorrectTime> time_correction() const;
+  /// Makes the log's time that of the wall clock. Requires that it is not ahead.
+  void accept_wall_clock() { order_.authority().accept_wall_clock(); }
+  /// Makes the log's time that of a wall clock that has kept a jump ahead (LogClock::is_step_due()), by
+  /// a record if one is needed. `refusal` is why no CorrectTime may be ordered, if so: then, and if
+  /// the log takes no record, a later call tries again. Returns a line for the operator, if there is
+  /// news.
+  std::optional<std::string> follow_kept_jump(const std::optional<std::string>& refusal,
+                                              const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log: all or none.
   /// Refuses bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them,
   /// and while the log takes no edits.
@@ -76,6 +88,7 @@ class Changes {
   const Rights& rights_;
   Quotas& quotas_;
   Commits& commits_;
+  bool is_jump_refused_ = false;  // follow_kept_jump() has reported that it cannot
 };
 
 }  // namespace runstone

@@ -19,7 +19,7 @@ struct LogPosition {
   Sequence last = 0;        // last sequence in the log; every record of the log is durable
   Epoch last_epoch = 0;     // of that record
   TimeUs last_time_us = 0;  // of that record; 0 if the log is empty
-  // With which the log's time begins; nullopt: the wall clock.
+  // The log's time begins with this time, or with the wall clock if nullopt.
   std::optional<TimeUs> begin_us = std::nullopt;
 };
 

@@ -22,6 +22,7 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
       epoch_(log.epoch),
       last_epoch_(log.last_epoch),
       head_(log.last),
+      timed_from_(log.last + 1),
       log_clock_(log.last_time_us, log.begin_us),
       chunks_(limits.chunk_edge),
       queue_(limits.chunk_edge) {}
@@ -69,11 +70,20 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
     push(std::move(ordered), version, batch);
     EditRecord& record = batch.records.emplace_back(
         EditRecord{version, offer.op, 0, offer.cause, offer.edit, subject});
-    if (corrects_time(record)) log_clock_.accept_wall_clock();
+    if (corrects_time(record)) {
+      log_clock_.accept_wall_clock();
+      timed_from_ = version.seq;
+    }
     record.time_us = log_clock_.stamp();
   }
   publish_touched(batch);
   return batch;
+}
+
+void Authority::accept_wall_clock() {
+  RUNSTONE_ASSERT(log_clock_.ahead_us() <= 0);
+  log_clock_.accept_wall_clock();
+  timed_from_ = head_ + 1;
 }
 
 OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clocks& now) {
@@ -85,6 +95,7 @@ OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clo
     RUNSTONE_ASSERT(record.version.epoch == batch.commit.epoch);
     ++head_;
     log_clock_.follow(record.time_us, corrects_time(record));
+    if (corrects_time(record)) timed_from_ = head_;
     resolved_.raise(record.op);
     OrderedEdit ordered;
     ordered.seq = head_;

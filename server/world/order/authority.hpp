@@ -71,9 +71,16 @@ class Authority {
   /// Returns nullopt if there are none. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now, std::uint64_t large_room = kAllLargeEdits);
 
+  /// Makes the log's time that of the wall clock, without a record. Requires that the time is not
+  /// ahead: otherwise a CorrectTime does it.
+  void accept_wall_clock();
+  /// Returns the first record whose time is of the present course of the log's time: the first one of
+  /// this server, or behind the last step of the time. It may be behind the head.
+  Sequence timed_from() const { return timed_from_; }
+
   // A server that follows. It orders nothing itself.
-  /// Applies records that the owner has ordered. The commit has their order and the time `now`.
-  /// Requires records of one epoch that continue the log.
+  /// Applies records that the owner has ordered, now or earlier. The commit has their order and the
+  /// time `now`. Requires records of one epoch that continue the log.
   OrderedBatch follow(std::span<const LogPartRecord> records, const Clocks& now);
   /// From now on edits are ordered in this epoch. Requires that it is not below epoch().
   void begin_epoch(Epoch epoch) { epoch_ = epoch; }
@@ -96,6 +103,7 @@ class Authority {
   EditLimits limits_;
   Epoch epoch_, last_epoch_;
   Sequence head_;
+  Sequence timed_from_;
   LogClock log_clock_;
   WorldChunks chunks_;
   OperationWatermarks resolved_;

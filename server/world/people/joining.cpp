@@ -211,6 +211,15 @@ bool Joining::is_server(const Session& session) const {
   return session.key == world_.config.server_keys.public_key && session.has(kFeatureServers);
 }
 
+bool Joining::close_if_old_server(Session& session) {
+  if (!is_server(session) || session.has(kFeatureTimeCorrections) ||
+      !world_.rights.state().is_time_corrected())
+    return false;
+  world_.sessions.close(session, GoodbyeReason::wrong_protocol,
+                        "the time of this world was corrected: start a version that can read this");
+  return true;
+}
+
 /// Makes the session one of the world, under this author number. `is_listed`: this server makes the
 /// list of players.
 void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clocks& now) {
@@ -294,6 +303,8 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   } else if (world_.order.is_following()) {
     return world_.sessions.close(session, GoodbyeReason::closing,
                                  "this server does not own the world");
+  } else if (close_if_old_server(session)) {
+    return;
   }
   Welcome welcome = welcome_of(session.key);
   welcome.encoding = choose_encoding(config, hello.encodings);

@@ -23,8 +23,7 @@ class Rights {
          Sessions& sessions);
 
   const RightsState& state() const { return state_; }
-  /// Returns the time by which restrictions end (UTC): that of the log, which only a CorrectTime sets
-  /// back.
+  /// Returns the time by which restrictions end (UTC): that of the log (LogClock::time()).
   TimeUs time() const { return order_.authority().log_clock().time(); }
   /// Returns the sequence of the last change of rights in this run, or 0.
   Sequence newest() const { return newest_; }

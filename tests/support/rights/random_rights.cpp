@@ -108,8 +108,11 @@ RightsChange random_rights_change(SplitMix64& rng) {
       return SetPassword{any_password(rng, any_rights_name(rng))};
     case 12:
       return AcceptPassword{any_key(rng)};
-    case 13:
-      return CorrectTime{std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))};
+    case 13: {
+      const auto step_us = static_cast<TimeUs>(any_number(rng));
+      return CorrectTime{step_us == 0 ? -1 : step_us,
+                         std::max<Sequence>(1, any_number(rng) & kSequenceMax)};
+    }
     case 8:
       return CreateInvite{{rng.next(), any_rights_name(rng), 1 + rng.below(kInviteUsesMax),
                            std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))}};

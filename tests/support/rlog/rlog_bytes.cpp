@@ -68,7 +68,7 @@ RlogSource source_of(const Bytes& file) {
       };
 }
 
-RlogContents read_rlog(const Bytes& file, const RlogFrom& from) {
+RlogContents read_rlog(const Bytes& file, Sequence from) {
   RlogContents contents;
   auto reader = RlogReader::open(source_of(file));
   if (!reader) {

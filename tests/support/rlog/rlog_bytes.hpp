@@ -27,7 +27,7 @@ struct RlogContents {
   std::vector<EditRecord> records;
   std::optional<RlogError> error;
 };
-RlogContents read_rlog(const Bytes& file, const RlogFrom& from = {});
+RlogContents read_rlog(const Bytes& file, Sequence from = 1);
 
 /// Returns where the blocks of a valid file begin, the end block included, and last the length of
 /// the file.

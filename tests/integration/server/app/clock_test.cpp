@@ -70,7 +70,8 @@ TEST_CASE("a clock that was ahead at one start is corrected by a command", "[int
   {
     auto server = start_server(config, flat_creation());
     CHECK(must(world, {"clock"}).text.find("the log is 7") != std::string::npos);
-    const std::string text = must(world, {"clock", "correct"}).text;
+    // Without the word it is refused on a machine whose clock no time service has set.
+    const std::string text = must(world, {"clock", "correct", "anyway"}).text;
     CHECK(text.find("(record 5)") != std::string::npos);
     CHECK_FALSE(control(world, {"clock", "correct"}).is_ok);
     // The ban has nearly an hour left, not two years.

@@ -100,9 +100,11 @@ TEST_CASE("each field of a change has its range", "[rights]") {
   CHECK(invalid(Lift{RestrictionKind::ban, AddressRange{AddressBlock{0}, 65}}) ==
         ErrorCode::not_canonical);
   CHECK(invalid(Unprotect{"x y"}) == ErrorCode::bad_value);
-  CHECK(invalid(CorrectTime{0}) == ErrorCode::bad_value);
-  CHECK(invalid(CorrectTime{-1}) == ErrorCode::bad_value);
-  CHECK(validate(CorrectTime{std::numeric_limits<TimeUs>::max()}).has_value());
+  CHECK(invalid(CorrectTime{0, 1}) == ErrorCode::bad_value);
+  CHECK(invalid(CorrectTime{1, 0}) == ErrorCode::bad_value);
+  CHECK(invalid(CorrectTime{-1, kSequenceMax + 1}) == ErrorCode::bad_value);
+  CHECK(validate(CorrectTime{std::numeric_limits<TimeUs>::max(), 1}).has_value());
+  CHECK(validate(CorrectTime{std::numeric_limits<TimeUs>::min(), kSequenceMax}).has_value());
 }
 
 TEST_CASE("each field of a protected box has its range", "[rights]") {

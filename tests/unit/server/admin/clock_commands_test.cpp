@@ -24,14 +24,22 @@ WorldStart start_ahead(TimeUs ahead_us) {
 }
 
 struct ClockBench : RollbackBench {
-  explicit ClockBench(TimeUs ahead_us)
-      : RollbackBench(config(), start_ahead(ahead_us)),
-        services{bench.server,  service, *this,
-                 folder.path(), {},      [](const PublicKey&) {
-                   return false; }} {
+  explicit ClockBench(TimeUs ahead_us) : ClockBench(start_ahead(ahead_us)) {}
+  explicit ClockBench(const WorldStart& start)
+      : RollbackBench(config(), start),
+        services{bench.server,  service,   *this,
+                 folder.path(), actions(), [](const PublicKey&) { return false; }} {
     join(kMoleSession);
     join(kAnaSession);
     tick();
+  }
+  OperatorActions actions() {
+    OperatorActions all;
+    all.doubt_clock = [this](TimeUs wall_us) {
+      asked_us = wall_us;
+      return doubt;
+    };
+    return all;
   }
   CommandAnswer give(const std::string& line) {
     answers.clear();
@@ -61,6 +69,8 @@ struct ClockBench : RollbackBench {
     return text.empty() ? 0 : static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
   }
 
+  std::optional<std::string> doubt;  // the answer of OperatorActions::doubt_clock()
+  TimeUs asked_us = 0;               // its last argument
   CommandServices services;
 };
 
@@ -106,36 +116,112 @@ TEST_CASE("there is nothing to correct while both clocks agree", "[admin][clock]
   CHECK_FALSE(refused.is_ok);
   CHECK(tells(refused.text, "clock correct: there is nothing to correct"));
   CHECK_FALSE(bench.give("clock correct anyway").is_ok);
-  CHECK(tells(bench.give("clock correct now").text, "clock correct"));
+  CHECK(bench.give("clock correct now").text == "clock correct \"now\": nothing comes after it");
   CHECK(bench.bench.server.order().head() == 0);
 }
 
 TEST_CASE("a wall clock that has jumped just now is taken only on confirmation", "[admin][clock]") {
   ClockBench bench(0);
   const bool is_back = GENERATE(true, false);
-  const TimeUs jump_us = is_back ? -kYear : kYear;
-  const auto wrong = [&] {
-    const Clocks right = bench.bench.now();
-    return Clocks{right.steady_us, right.utc_us + jump_us};
-  };
-  bench.bench.time_us += kOneSecond;
-  bench.bench.server.tick(wrong());
-  const auto give = [&](const std::string& line) {
-    bench.answers.clear();
-    give_command({bench.services, {}, wrong(), bench.reply()}, line);
-    bench.bench.server.commit(wrong());
-    bench.write_log();
-    bench.services.tick(wrong());
-    return bench.answer();
-  };
-  CHECK(tells(give("clock").text, "The wall clock has jumped"));
-  const CommandAnswer refused = give("clock correct");
+  bench.bench.wall_error_us = is_back ? -kYear : kYear;
+  bench.bench.tick(kOneSecond);
+  CHECK(tells(bench.done("clock"), "The wall clock has jumped"));
+  const CommandAnswer refused = bench.give("clock correct");
   CHECK_FALSE(refused.is_ok);
   CHECK(tells(refused.text, "give the command as: clock correct anyway"));
   CHECK(bench.bench.server.order().head() == 0);
-  CHECK(give("clock correct anyway").is_ok);
+  bench.done("clock correct anyway");
   CHECK(bench.bench.server.order().head() == (is_back ? 1 : 0));
-  CHECK(std::abs(bench.bench.server.rights().time() - wrong().utc_us) <= kOneSecond);
+  const TimeUs apart_us = bench.bench.server.rights().time() - bench.bench.now().utc_us;
+  CHECK(std::abs(apart_us) <= kOneSecond);
+}
+
+TEST_CASE("a restriction counts by what has passed when the log follows a clock that is ahead",
+          "[admin][clock]") {
+  ClockBench bench(0);
+  const bool is_by_command = GENERATE(true, false);
+  bench.bench.wall_error_us = kYear;
+  bench.bench.tick(kOneSecond);
+  bench.done("freeze player2 for 3h");
+  const TimeUs end_us = bench.bench.time_us + 3 * kHour;  // of the steady clock
+  if (is_by_command) {
+    const std::string text = bench.done("clock correct anyway");
+    CHECK(tells(text, "the time of the log goes on from "));
+    CHECK(tells(text, "(record 2)"));
+  } else {
+    bench.wait(kHour + 5 * kOneSecond);
+    const auto& lines = bench.bench.environment.lines;
+    CHECK(std::ranges::count_if(lines, [](const std::string& line) {
+            return tells(line, "the wall clock has kept its jump: ") && tells(line, "(record 2)");
+          }) == 1);
+  }
+  CHECK(corrects_time(bench.bench.environment.records.back()));
+  CHECK(tells(bench.done("clock"), ": they agree"));
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(end_us - bench.bench.time_us - 60 * kOneSecond);
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(2 * 60 * kOneSecond);
+  CHECK_FALSE(bench.holds(RestrictionKind::freeze, 2));
+  CHECK(bench.store->check().has_value());
+}
+
+TEST_CASE("a log without restrictions follows a clock that is ahead without a record",
+          "[admin][clock]") {
+  ClockBench bench(0);
+  bench.done("freeze player2 for 10s");
+  bench.bench.wall_error_us = kYear;
+  bench.wait(kHour + 5 * kOneSecond);
+  CHECK(bench.bench.server.order().head() == 1);
+  CHECK(tells(bench.done("clock"), ": they agree"));
+}
+
+TEST_CASE("a start that doubts its clock loses no ban when the host corrects the time",
+          "[admin][clock]") {
+  WorldStart start;
+  start.log.begin_us = WorldBench().now().utc_us - 900 * kOneSecond;
+  ClockBench bench(start);
+  bench.done("freeze player2 for 10m");
+  bench.done("clock correct anyway");
+  bench.wait(9 * 60 * kOneSecond);
+  CHECK(bench.holds(RestrictionKind::freeze, 2));
+  bench.wait(2 * 60 * kOneSecond);
+  CHECK_FALSE(bench.holds(RestrictionKind::freeze, 2));
+}
+
+TEST_CASE("a wall clock that is doubtful and behind the log is taken only on confirmation",
+          "[admin][clock]") {
+  // The clock of this machine begins in 1970: nothing has set it.
+  ClockBench bench(56 * kYear);
+  bench.doubt = "no time service has set it";
+  const CommandAnswer refused = bench.give("clock correct");
+  CHECK_FALSE(refused.is_ok);
+  CHECK(tells(refused.text, "the wall clock may be wrong, because no time service has set it: "));
+  CHECK(tells(refused.text, "give the command as: clock correct anyway"));
+  CHECK(std::abs(bench.asked_us - bench.bench.now().utc_us) <= kOneSecond);
+  CHECK(bench.bench.server.order().head() == 0);
+  bench.done("clock correct anyway");
+  CHECK(bench.bench.server.order().head() == 1);
+}
+
+TEST_CASE("a correction before the first tick leaves a ban the time that it had",
+          "[admin][clock]") {
+  WorldStart start = start_ahead(2 * kYear);
+  const PublicKey mole = key_pair_of(seed_of(2)).public_key;
+  const TimeUs given_us = start.log.last_time_us;
+  start.log.last = start.log.last_epoch = 1;
+  start.rights.push_back(
+      {Restrict{RestrictionKind::ban, mole, given_us + kHour, ""}, {1, 0, given_us}});
+  RollbackBench bench(config(), start);
+  CommandServices services{
+      bench.bench.server, bench.service, bench, bench.folder.path(), {}, [](const PublicKey&) {
+        return false;
+      }};
+  give_command({services, {}, bench.bench.now(), bench.reply()}, "clock correct");
+  CHECK(bench.bench.server.order().head() == 2);
+  const auto* ban =
+      bench.bench.server.rights().state().find_restriction(RestrictionKind::ban, mole);
+  REQUIRE(ban != nullptr);
+  CHECK(ban->value.until_us == bench.bench.now().utc_us + kHour);
 }
 
 TEST_CASE("a correction cannot be taken back", "[admin][clock]") {

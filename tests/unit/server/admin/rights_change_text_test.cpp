@@ -1,6 +1,7 @@
 #include "server/admin/rights_change_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "protocol/codec/key_fingerprint.hpp"
 
@@ -35,8 +36,12 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
   CHECK(rights_change_text(SetPassword{{{"mason", {1}, {2}}}}) ==
         "set a password for the role mason");
   CHECK(rights_change_text(SetPassword{}) == "removed the password");
-  CHECK(rights_change_text(CorrectTime{63'072'000'000'000 + 7'200'000'000 + 5'000'000}) ==
+  CHECK(rights_change_text(CorrectTime{-63'072'000'000'000 - 7'200'000'000 - 5'000'000, 1}) ==
         "set the time of the log back by 730d2h");
+  CHECK(rights_change_text(CorrectTime{7'200'000'000, 1}) ==
+        "set the time of the log forward by 2h");
+  CHECK(rights_change_text(CorrectTime{std::numeric_limits<TimeUs>::min(), 1}) ==
+        "set the time of the log back by 106751991d4h");
   CHECK(rights_change_text(AcceptPassword{key}) == ana + " joined with the password");
 }
 

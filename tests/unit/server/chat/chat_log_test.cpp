@@ -116,6 +116,23 @@ TEST_CASE("a search selects lines by player and time, the newest ones", "[chat]"
   CHECK(since->size() == 2);
 }
 
+TEST_CASE("lines that a wrong clock has dated ahead are neither new nor kept for longer",
+          "[chat][clock]") {
+  LogBench bench;
+  bench.log->append(entry_by(1, "before", 10));
+  bench.log->append(entry_by(1, "of the wrong clock", 1'000'000));
+  bench.log->append(entry_by(2, "corrected", 20));
+  bench.log->append(entry_by(1, "after", 30));
+  const auto since = bench.find({"player1", 25, 20});
+  REQUIRE(since.has_value());
+  REQUIRE(since->size() == 1);
+  CHECK(since->front().line.text == "after");
+  // A time before the correction selects all that came after it.
+  CHECK(bench.find({"", 15, 20})->size() == 3);
+  bench.log->forget_before(25);
+  CHECK(bench.texts() == Texts{"after"});
+}
+
 TEST_CASE("lines are kept for their time, also while the log is open, and then no byte is left",
           "[chat]") {
   LogBench bench;

@@ -55,6 +55,16 @@ TEST_CASE("a wall clock behind a file of the world makes a warning that names th
   CHECK_FALSE(check_clock(evidence(0, kNow + 1'000'000, true)).warning.has_value());
 }
 
+TEST_CASE("a wall clock behind the log is doubted unless a time service has set it",
+          "[server][clock]") {
+  const TimeUs last = kNow + 400 * kDay;
+  CHECK_FALSE(doubt_of_clock_behind(evidence(last, kNow + kDay, true)).has_value());
+  CHECK(doubt_of_clock_behind(evidence(last, kNow - kDay, false)) == "no time service has set it");
+  CHECK_FALSE(doubt_of_clock_behind(evidence(last, kNow - kDay, std::nullopt)).has_value());
+  CHECK(doubt_of_clock_behind(evidence(last, kNow + kDay, std::nullopt)) ==
+        "it is behind the time at which w/world.sqlite was written, 2024-10-05T00:00:00Z");
+}
+
 TEST_CASE("the times of a world's files are read", "[server][clock]") {
   const TempFolder folder;
   REQUIRE(create_world(folder / "w", sample_meta()).has_value());

@@ -63,14 +63,14 @@ TEST_CASE("a start takes the time of the newest record, not the latest time", "[
   correction.version = {1, kRecords + 1};
   correction.op = {0, 1, 1};
   correction.cause = Cause::rights;
-  correction.edit = rights_edit(CorrectTime{1000});
+  correction.edit = rights_edit(CorrectTime{-1000, 1});
   correction.time_us = records.back().time_us - 1000;
   REQUIRE((*store)->append({}, std::span(&correction, 1)).has_value());
   const auto start = read_world_start(**store);
   REQUIRE(start.has_value());
   CHECK(start->log.last_time_us == correction.time_us);
   REQUIRE(start->rights.size() == 1);
-  CHECK(start->rights[0].change == RightsChange(CorrectTime{1000}));
+  CHECK(start->rights[0].change == RightsChange(CorrectTime{-1000, 1}));
 }
 
 TEST_CASE("the replay begins above the checkpoint", "[server]") {

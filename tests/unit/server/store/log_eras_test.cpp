@@ -1,9 +1,12 @@
 // A log whose time was corrected: what a time means where times fall.
+#include <array>
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <limits>
 #include <span>
 
 #include "server/store/copy_stored_world.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -18,7 +21,7 @@ constexpr TimeUs kAhead = 2 * 365 * 24 * 60 * kMinute;
 void make_correction(EditRecord& record) {
   record.cause = Cause::rights;
   record.subject = 0;
-  record.edit = rights_edit(CorrectTime{kAhead});
+  record.edit = rights_edit(CorrectTime{-kAhead, record.version.seq});
 }
 
 /// Returns 40 edits, one each minute: 1 to 10 by a right clock, 11 to 20 by one that is ahead, 21 the
@@ -38,14 +41,17 @@ std::vector<EditRecord> corrected_records() {
 
 TimeUs minute(TimeUs count) { return kStart + count * kMinute; }
 
-void make_corrected_world(const std::string& place, const std::vector<EditRecord>& records) {
+/// Makes a world of these records, with a keyframe.
+void make_corrected_world(const std::string& place, const std::vector<EditRecord>& records,
+                          Sequence kept = 25) {
   auto store = create_world(place, sample_meta());
   REQUIRE(store.has_value());
   REQUIRE((*store)->raise_epoch().has_value());
   // In several commits, so that the list of eras grows.
   for (std::size_t at = 0; at < records.size(); at += 8)
     REQUIRE((*store)->append({}, std::span(records).subspan(at, 8)).has_value());
-  const Keyframe keyframe{{records[24].version, records[24].time_us}, 0, {}};
+  const EditRecord& at = records[static_cast<std::size_t>(kept - 1)];
+  const Keyframe keyframe{{at.version, at.time_us}, 0, {}};
   REQUIRE((*store)->save_keyframe({}, keyframe).has_value());
 }
 
@@ -111,16 +117,31 @@ TEST_CASE("a compaction keeps the meaning of times", "[store][clock]") {
   CHECK(store->log_range()->first == 26);
   for (const EditRecord& record : records) {
     CAPTURE(record.version.seq);
-    const auto at = store->sequence_at(record.time_us);
-    const Sequence expected = newest_at(records, record.time_us);
-    if (expected >= 25) {
-      CHECK(*at == expected);
-    } else {
-      REQUIRE_FALSE(at.has_value());
-      CHECK(at.error().kind == StoreError::Kind::bad_request);
-    }
+    // All times are within the last era or behind its beginning.
+    CHECK(*store->sequence_at(record.time_us) == newest_at(records, record.time_us));
   }
+  const auto before = store->sequence_at(kStart);
+  REQUIRE_FALSE(before.has_value());
+  CHECK(before.error().kind == StoreError::Kind::bad_request);
   CHECK(store->check().has_value());
+}
+
+TEST_CASE("a compaction behind the last correction leaves no eras", "[store][clock]") {
+  TempPlace place;
+  const auto records = corrected_records();
+  make_corrected_world(place / "w", records, 32);
+  {
+    auto store = *open_world(place / "w", StoreAccess::read_write);
+    REQUIRE(store->compact(32).has_value());
+  }
+  auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(*store->sequence_at(minute(2)) == 32);  // the head
+  CHECK(*store->sequence_at(minute(5)) == 35);
+  CHECK(store->sequence_at(minute(1)).error().kind == StoreError::Kind::bad_request);
+  CHECK(found_between(*store, minute(3), std::numeric_limits<TimeUs>::max()) == sequences(33, 40));
+  CHECK(store->check().has_value());
+  // Older programs cannot read the correction among the changes of rights.
+  if (!place.is_postgres()) CHECK(raw_sql(place / "w/world.sqlite", "PRAGMA user_version") == "6");
 }
 
 TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]") {
@@ -136,8 +157,9 @@ TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]"
   const auto copied = copy_stored_world(place / "w", copy, {});
   if (!copied) FAIL(copied.error().message());
   CHECK(format(place / "copy/world.sqlite") == "6");
-  CHECK(*(*open_world(copy, StoreAccess::read_only))->sequence_at(minute(22)) ==
-        newest_at(records, minute(22)));
+  auto store = *open_world(copy, StoreAccess::read_only);
+  for (const EditRecord& record : records)
+    CHECK(*store->sequence_at(record.time_us) == newest_at(records, record.time_us));
   records.resize(8);
   auto other = create_world(place / "plain", sample_meta());
   REQUIRE(other.has_value());
@@ -145,6 +167,24 @@ TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]"
   REQUIRE((*other)->append({}, records).has_value());
   other->reset();
   CHECK(format(place / "plain/world.sqlite") == "5");
+}
+
+TEST_CASE("the main file of a corrected world has the format although no program has closed it",
+          "[store][clock][sqlite]") {
+  const TempFolder folder;
+  auto store = *create_world(folder / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  const auto records = corrected_records();
+  const auto format = [&] {
+    std::ifstream file(folder / "w/world.sqlite", std::ios::binary);
+    std::array<char, 64> header{};
+    REQUIRE(file.read(header.data(), header.size()));
+    return int{header[63]};  // the last byte of user_version
+  };
+  REQUIRE(store->append({}, std::span(records).first(20)).has_value());
+  CHECK(format() == 5);
+  REQUIRE(store->append({}, std::span(records).subspan(20, 1)).has_value());
+  CHECK(format() == 6);
 }
 
 TEST_CASE("the check names a fallen time without a correction, and a list of eras that lacks one",

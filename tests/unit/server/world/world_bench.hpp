@@ -41,7 +41,7 @@ struct WorldBench {
       : server(std::move(c), start, environment,
                [random](std::span<std::uint8_t> out) { std::ranges::fill(out, random); }) {}
 
-  Clocks now() const { return {time_us, time_us + 1'000'000'000}; }
+  Clocks now() const { return {time_us, time_us + 1'000'000'000 + wall_error_us}; }
 
   Hello hello(std::uint8_t who, ClientInstance instance = 1) const {
     Hello h;
@@ -110,6 +110,7 @@ struct WorldBench {
 
   FakeEnvironment environment;
   TimeUs time_us = 1'000'000;
+  TimeUs wall_error_us = 0;                  // how far the wall clock is ahead of the right time
   std::map<SessionId, std::uint32_t> views;  // that each session has sent
   bool has_empty_base = false;  // loaded chunks are uniform; otherwise each is sent as a snapshot
   WorldServer server;

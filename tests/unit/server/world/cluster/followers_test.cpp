@@ -179,6 +179,96 @@ TEST_CASE("no correction of the time goes to a follower that cannot read it",
   CHECK_FALSE(refused());
 }
 
+TEST_CASE(
+    "a step of the time that would shorten a restriction waits for a follower that cannot read it",
+    "[world][servers][clock]") {
+  constexpr TimeUs kSecond = 1'000'000;
+  WorldBench bench;
+  handshake(bench, kLink, kWorldKey, kFeatureServers);
+  const PublicKey key = key_pair_of(seed_of(5)).public_key;
+  const TimeUs until_us = bench.now().utc_us + 10'000 * kSecond;
+  const Restrict ban{RestrictionKind::ban, key, until_us, ""};
+  REQUIRE(bench.server.changes().change_rights(ban, {}, 0, bench.now()).has_value());
+  bench.wall_error_us = 20'000 * kSecond;
+  const auto wait = [&](int seconds) {
+    for (int i = 0; i < seconds; ++i) {
+      bench.tick(kSecond);
+      if (bench.server.cluster().follower_count() > 0)
+        bench.server.received(kLink, Ping{7}, bench.now());
+    }
+  };
+  const auto refusals = [&] {
+    return std::ranges::count_if(bench.environment.lines, [](const std::string& line) {
+      return line.find("the time of the log cannot follow") != std::string::npos;
+    });
+  };
+  wait(3'590);
+  CHECK(refusals() == 0);
+  wait(20);
+  CHECK(refusals() == 1);
+  CHECK(bench.server.order().head() == 1);
+  CHECK(bench.server.rights().time() == bench.now().utc_us - bench.wall_error_us);
+  bench.server.disconnected(kLink);
+  wait(1);
+  CHECK(bench.server.order().head() == 2);
+  CHECK(bench.server.rights().time() == bench.now().utc_us);
+  const auto* moved = bench.server.rights().state().find_restriction(RestrictionKind::ban, key);
+  REQUIRE(moved != nullptr);
+  CHECK(moved->value.until_us == until_us + bench.wall_error_us);
+}
+
+TEST_CASE("a server that cannot read a correction does not follow a world whose time was corrected",
+          "[world][servers][clock]") {
+  WorldBench bench;
+  handshake(bench, kLink, kWorldKey, kFeatureServers);
+  bench.server.disconnected(kLink);
+  // This one has sent its hello when the time is corrected.
+  constexpr SessionId kWaiting = kLink + 1;
+  Hello hello = bench.hello(kWorldKey);
+  hello.features = kFeatureServers;
+  bench.server.connected(kWaiting, bench.now());
+  bench.server.received(kWaiting, hello, bench.now());
+  const Welcome welcome = bench.environment.messages<Welcome>(kWaiting, 0).at(0);
+  REQUIRE(bench.server.changes().change_rights(CorrectTime{-1, 1}, {}, 0, bench.now()).has_value());
+  bench.server.received(kWaiting, bench.client_auth(kWorldKey, hello, welcome), bench.now());
+  bench.server.connected(kLink, bench.now());
+  bench.server.received(kLink, hello, bench.now());
+  CHECK(bench.environment.messages<Welcome>(kLink, 0).size() == 1);  // that of the first time
+  REQUIRE(bench.environment.closed.size() == 2);
+  for (const auto& closed : bench.environment.closed) {
+    CHECK(closed.reason == GoodbyeReason::wrong_protocol);
+    CHECK(closed.text ==
+          "the time of this world was corrected: start a version that can read this");
+  }
+  CHECK(bench.server.cluster().follower_count() == 0);
+  handshake(bench, kLink + 2, kWorldKey, kFeaturesOfServers);
+  CHECK(bench.server.cluster().follower_count() == 1);
+}
+
+TEST_CASE("the features of servers are in force for no player", "[world][servers][clock]") {
+  WorldBench bench;
+  CHECK((handshake(bench, 1, 3, ~std::uint64_t{0}) & kFeaturesOfServers) == 0);
+  CHECK(bench.server.cluster().follower_count() == 0);
+}
+
+TEST_CASE("no player corrects the time with an edit", "[world][clock]") {
+  WorldBench bench;
+  bench.join(1, 3);
+  const bool is_relayed = GENERATE(false, true);
+  const EncodedMessage request = encode_message(EditRequest{1, 0, rights_edit(CorrectTime{-1, 1})});
+  if (is_relayed) {
+    handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+    bench.server.received(kLink, open_of(4), bench.now());
+    bench.server.received(kLink, Relay{{1}, request}, bench.now());
+  } else {
+    auto message = decode_message(Sender::client, request.kind, *request.bytes, kEdge);
+    if (message) bench.server.received(1, *std::move(message), bench.now());
+  }
+  bench.server.commit(bench.now());
+  CHECK(bench.server.order().head() == 0);
+  CHECK_FALSE(bench.server.rights().state().is_time_corrected());
+}
+
 TEST_CASE("a large commit goes to a follower in parts without gaps", "[world][servers]") {
   WorldBench bench;
   handshake(bench, kLink, kWorldKey, kFeatureServers);

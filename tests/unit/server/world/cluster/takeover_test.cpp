@@ -358,6 +358,28 @@ TEST_CASE("a server that takes over orders changes and edits of its own",
   CHECK(bench.environment(1).saves[0].chunks.size() == 1);
 }
 
+TEST_CASE("the next owner goes on from the time of the one before, although its clock is ahead",
+          "[world][servers][clock]") {
+  constexpr TimeUs kSecond = 1'000'000;
+  ClusterBench bench;
+  bench.at(1).wall_error_us = 2 * 365 * 86'400 * kSecond;
+  bench.join(1, 1, 2);
+  bench.edit(1, 1, 1, place(1));
+  bench.tick();
+  bench.tick();
+  bench.lose_owner();
+  REQUIRE(bench.take_over(1));
+  bench.edit(1, 1, 2, place(2));
+  bench.tick();
+  REQUIRE(bench.database.last() == 2);
+  const TimeUs apart_us = bench.database.records.back().time_us - bench.now().utc_us;
+  CHECK((apart_us <= kSecond && apart_us >= -kSecond));
+  const auto& lines = bench.environment(1).lines;
+  CHECK(std::ranges::count_if(lines, [](const std::string& line) {
+          return line.starts_with("the wall clock has jumped: ");
+        }) == 1);
+}
+
 TEST_CASE("the next owner does not keep the full disk of the one before", "[world][servers]") {
   ClusterBench bench;
   bench.join(1, 1, 2);

@@ -271,7 +271,8 @@ TEST_CASE("times fall at a record that corrects the time, and never elsewhere", 
   Authority authority(limits(), {1, 7, 1, kNow.utc_us + kAhead});
   (void)authority.enqueue(offer(1, box(0, 4), 1));
   std::vector<EditRecord> records = authority.commit(kNow)->records;
-  const EditOffer correction{{0, 9, 1}, Cause::rights, 0, rights_edit(CorrectTime{kAhead}), 0};
+  const EditOffer correction{{0, 9, 1}, Cause::rights, 0, rights_edit(CorrectTime{-kAhead, 9}), 0};
+  CHECK(authority.timed_from() == 8);
   REQUIRE(authority.enqueue(correction).has_value());
   (void)authority.enqueue(offer(2, box(0, 4), 1));
   while (const auto batch = authority.commit(kNow))
@@ -291,6 +292,11 @@ TEST_CASE("times fall at a record that corrects the time, and never elsewhere", 
   for (const EditRecord& record : records) parts.push_back({record, 0});
   (void)follower.follow(parts, kNow);
   CHECK(follower.log_clock().time() == kNow.utc_us);
+  for (const EditRecord& record : records) {
+    if (!corrects_time(record)) continue;
+    CHECK(authority.timed_from() == record.version.seq);
+    CHECK(follower.timed_from() == record.version.seq);
+  }
 }
 
 TEST_CASE("recovery puts records back on the stacks and skips those that a snapshot contains",

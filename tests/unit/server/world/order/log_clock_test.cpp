@@ -1,7 +1,9 @@
 #include "server/world/order/log_clock.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <limits>
 
 namespace runstone {
 namespace {
@@ -24,6 +26,7 @@ struct ClockPair {
     for (const TimeUs end_us = steady_us + us; steady_us < end_us;) {
       steady_us += step_us;
       log.advance(now());
+      if (log.is_step_due()) log.accept_wall_clock();
     }
   }
 };
@@ -201,6 +204,77 @@ TEST_CASE("a server that follows takes a correction, also if its own clock is as
   clocks.log.follow(clocks.right() + kSecond);
   clocks.pass(kMinute);
   CHECK(std::abs(clocks.log.time() - clocks.right()) <= kSecond);
+}
+
+TEST_CASE("the time does not step ahead by itself, because restrictions would end at once",
+          "[world][clock]") {
+  ClockPair clocks;
+  clocks.wrong_us = kYear;
+  for (int minute = 0; minute < 90; ++minute) {
+    clocks.steady_us += kMinute;
+    clocks.log.advance(clocks.now());
+    CHECK(clocks.log.time() == clocks.right());
+    CHECK(clocks.log.is_step_due() == (minute >= 60));
+  }
+  CHECK(clocks.log.ahead_us() == -kYear);
+  clocks.log.accept_wall_clock();
+  CHECK_FALSE(clocks.log.is_step_due());
+  CHECK(clocks.log.time() == clocks.right() + kYear);
+}
+
+TEST_CASE("a server with a wrong clock goes on from the time of the former owner",
+          "[world][clock]") {
+  ClockPair clocks;
+  clocks.wrong_us = 2 * kYear;
+  clocks.log = LogClock(kStart);
+  clocks.log.advance(clocks.now());
+  clocks.pass(kMinute);
+  SECTION("that it has heard") {
+    clocks.log.follow(clocks.right());
+    clocks.log.hear_owner(clocks.right(), clocks.now());
+    clocks.pass(2 * kMinute);
+    static_cast<void>(clocks.log.take_warning());
+    clocks.log.take_over(clocks.now());
+    CHECK(clocks.log.has_jumped());
+    CHECK(clocks.log.take_warning().value_or("").starts_with("the wall clock has jumped"));
+    CHECK(clocks.log.stamp() == clocks.right());
+    CHECK(clocks.log.time() == clocks.right());
+    clocks.pass(LogClock::kAcceptUs / 2, kSecond);
+    CHECK(clocks.log.time() == clocks.right());
+    clocks.wrong_us = 0;
+    clocks.pass(kSecond);
+    CHECK_FALSE(clocks.log.has_jumped());
+  }
+  SECTION("but not from records that it has read, which may be old") {
+    clocks.log.follow(clocks.right() - kYear);
+    clocks.log.take_over(clocks.now());
+    CHECK(clocks.log.stamp() == clocks.right() + 2 * kYear);
+  }
+  SECTION("and says so if it is behind") {
+    clocks.log.follow(clocks.right() + 3 * kYear);
+    clocks.log.hear_owner(clocks.right() + 3 * kYear, clocks.now());
+    clocks.log.take_over(clocks.now());
+    CHECK(clocks.log.take_warning().value_or("").starts_with("the log ends at "));
+  }
+}
+
+TEST_CASE("records may have any time", "[world][clock]") {
+  constexpr TimeUs kFirst = std::numeric_limits<TimeUs>::min();
+  constexpr TimeUs kLast = std::numeric_limits<TimeUs>::max();
+  const TimeUs end_us = GENERATE_COPY(kFirst, kFirst + 1, kLast - 1, kLast);
+  ClockPair clocks(end_us);
+  clocks.pass(kMinute);
+  CHECK(clocks.log.stamp() == std::max(end_us, clocks.right()));
+  CHECK(clocks.log.time() >= clocks.right());
+  clocks.log.follow(kLast);
+  clocks.log.hear_owner(kLast, clocks.now());
+  clocks.log.follow(kFirst, true);
+  clocks.pass(kMinute);
+  clocks.log.hear_owner(kFirst, clocks.now());
+  clocks.log.take_over(clocks.now());
+  clocks.pass(kMinute);
+  clocks.log.accept_wall_clock();
+  CHECK(clocks.log.stamp() == clocks.right());
 }
 
 TEST_CASE("a log whose start doubts the wall clock goes on from its own time for an hour",
