@@ -19,6 +19,7 @@
 #include "bench/meshing/mesh_bench.hpp"
 #include "bench/meshing/mesh_once.hpp"
 #include "bench/network/net_bench.hpp"
+#include "bench/servers/fan_out_bench.hpp"
 #include "bench/servers/relay_bench.hpp"
 #include "bench/storage/storage_bench.hpp"
 #include "bench/thesis/scenario_bench.hpp"
@@ -115,6 +116,13 @@ int relay(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_relay_bench(options, err), options, err, [&](const auto& rows) {
     write_machine(this_machine(), out);
     write_table(rows, out);
+  });
+}
+
+int fan_out(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_fan_out_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
   });
 }
 
@@ -238,6 +246,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return stores(options.bench, out, err);
     case Command::relay:
       return relay(options.bench, out, err);
+    case Command::fan_out:
+      return fan_out(options.bench, out, err);
     case Command::edits:
       return edits(options.bench, out, err);
     case Command::net:

@@ -7,6 +7,7 @@
 #include "bench/edits/edit_options.hpp"
 #include "bench/map/map_options.hpp"
 #include "bench/meshing/mesh_options.hpp"
+#include "bench/servers/fan_out_options.hpp"
 #include "bench/servers/relay_options.hpp"
 #include "bench/storage/storage_options.hpp"
 #include "bench/thesis/scenario_bench.hpp"
@@ -32,13 +33,14 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 16> kSubcommands = {
+constexpr std::array<Subcommand, 17> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
      {Command::log, add_log_command},
      {Command::stores, add_stores_command},
      {Command::relay, add_relay_command},
+     {Command::fan_out, add_fan_out_command},
      {Command::bytes, add_bytes_command},
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},

@@ -20,6 +20,7 @@ enum class Command {
   log,
   stores,
   relay,
+  fan_out,
   bytes,
   bytes_to_quads,
   storage,

@@ -17,6 +17,7 @@ struct BenchOptions {
   std::string csv, json;                                // files to write; empty: none
   unsigned repetitions = 30;
   std::size_t edits = 200'000;  // length of the log
+  std::size_t clients = 1'000;  // receivers of a commit
   std::string postgres;         // address of a PostgreSQL database
 };
 

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "common/core/address_block.hpp"
 #include "common/core/bytes.hpp"
@@ -29,8 +29,8 @@ struct IoResult {
   asio::error_code error;
   std::size_t bytes = 0;
   std::size_t received =
-      0;  // of a read: bytes of the connection, which TLS makes more than `bytes`
-  std::int64_t call_ns = 0;  // of a write: processor time of encryption and system calls
+      0;                  // of a read: bytes of the connection, which TLS makes more than `bytes`
+  bool has_rest = false;  // of write_now(): write_rest() must follow
 };
 
 /// How ByteStream::open() ended.
@@ -58,10 +58,13 @@ class ByteStream {
   /// Reads what has come. The result may be empty after bytes that are none of the text. Fails at
   /// the end of the stream.
   virtual asio::awaitable<IoResult> read_some(asio::mutable_buffer into) = 0;
-  /// Writes all bytes of all buffers. The vector must live until the call ends. The last
+  /// Writes what the connection takes at once. If that is not all, `has_rest` of the result is
+  /// true, and write_rest() must follow; until it has ended, the bytes must stay in place. The last
   /// `terrain_bytes` of them are terrain: the peer need not have them to read those before.
-  virtual asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
-                                          std::size_t terrain_bytes) = 0;
+  virtual IoResult write_now(std::span<const asio::const_buffer> buffers,
+                             std::size_t terrain_bytes) = 0;
+  /// Writes the rest of the last write_now(), and waits for the peer where it must.
+  virtual asio::awaitable<IoResult> write_rest() = 0;
   /// Returns the room for terrain. An edit cannot overtake bytes that wait in the kernel. Cost:
   /// about 1 us.
   virtual StreamRoom room() = 0;

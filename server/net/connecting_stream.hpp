@@ -10,8 +10,8 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "common/os/host_port.hpp"
 #include "server/net/byte_stream.hpp"
@@ -32,10 +32,11 @@ class ConnectingStream final : public ByteStream {
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
     return stream_->read_some(into);
   }
-  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
-                                  std::size_t terrain_bytes) override {
-    return stream_->write(buffers, terrain_bytes);
+  IoResult write_now(std::span<const asio::const_buffer> buffers,
+                     std::size_t terrain_bytes) override {
+    return stream_->write_now(buffers, terrain_bytes);
   }
+  asio::awaitable<IoResult> write_rest() override { return stream_->write_rest(); }
   StreamRoom room() override { return stream_->room(); }
   void shutdown_send() override { stream_->shutdown_send(); }
   void close() override;

@@ -9,6 +9,7 @@
 
 #include "common/os/host_port.hpp"
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "protocol/default_port.hpp"
 #include "server/net/address_block_of.hpp"
 #include "server/net/await_tuple.hpp"
@@ -253,6 +254,10 @@ void Listener::forget(SessionId session) {
     self->connections_.charge(from, self->limits_.connections_per_second, steady_now_us());
   };
   asio::post(strand_, charge);
+}
+
+SendRound Listener::begin_round(const EncodedMessage& message) {
+  return {io_, counters_, message.kind == kKindOf<Commit>};
 }
 
 void Listener::close_stalled(TimeUs now_us, TimeUs us_max) {

@@ -19,6 +19,7 @@
 #include "common/core/result.hpp"
 #include "server/limits/address_ledger.hpp"
 #include "server/net/net_session.hpp"
+#include "server/net/send_round.hpp"
 
 namespace runstone {
 
@@ -62,6 +63,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// Closes all sessions and adds no more.
   void close_all(GoodbyeReason reason, const std::string& text);
   const NetCounters& counters() const { return counters_; }
+  /// Returns the round that sends this message. The listener must outlive its tasks.
+  SendRound begin_round(const EncodedMessage& message);
 
  private:
   // A closed session keeps its memory while a thread still works for it. While there are so many,

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "common/os/steady_clock.hpp"
+#include "common/os/thread_cpu_ns.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "server/net/await_tuple.hpp"
 #include "server/net/net_log.hpp"
+#include "server/net/send_round.hpp"
 
 namespace runstone {
 namespace {
@@ -53,6 +55,14 @@ SendLimits trusted(SendLimits limits) {
   limits.edit_count = TrustedLimits::kEditCount;
   limits.control_count = TrustedLimits::kControlCount;
   return limits;
+}
+
+void buffers_of(const SendQueue::Batch& batch, std::vector<asio::const_buffer>& buffers) {
+  buffers.clear();
+  for (const auto& piece : batch.pieces) {
+    buffers.push_back(asio::buffer(piece.header));
+    buffers.push_back(asio::buffer(piece.body.data(), piece.body.size()));
+  }
 }
 
 }  // namespace
@@ -121,20 +131,30 @@ asio::awaitable<void> NetSession::run(std::shared_ptr<NetSession> self) {
   asio::co_spawn(self->strand_, write_loop(self), asio::detached);
 }
 
+bool NetSession::queue(const EncodedMessage& message, bool& wakes) {
+  const std::lock_guard lock(mutex_);
+  if (closing_) return true;
+  if (!queue_.push(message)) return false;
+  wakes = take_wake();
+  // The cost of sending this message is not in commit_send_ns before the writer has run.
+  if (message.kind == kKindOf<Commit> && is_woken_ && !std::exchange(is_due_, true)) {
+    counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
+  }
+  return true;
+}
+
 bool NetSession::send(const EncodedMessage& message) {
   bool wakes = false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (closing_) return true;
-    if (!queue_.push(message)) return false;
-    wakes = take_wake();
-    // The cost of sending this message is not in commit_send_ns before the writer has run.
-    if (message.kind == kKindOf<Commit> && is_woken_ && !std::exchange(is_due_, true)) {
-      counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
-    }
-  }
+  const bool is_queued = queue(message, wakes);
   if (wakes) post_wake();
-  return true;
+  return is_queued;
+}
+
+bool NetSession::send(const EncodedMessage& message, SendRound& round) {
+  bool wakes = false;
+  const bool is_queued = queue(message, wakes);
+  if (wakes) round.add(shared_from_this());
+  return is_queued;
 }
 
 std::optional<ChunkPlace> NetSession::reserve_chunk(const ChunkKey& key, std::uint32_t view) {
@@ -249,8 +269,73 @@ bool NetSession::take_wake() {
 }
 
 void NetSession::post_wake() {
-  const auto wake = [self = shared_from_this()] { self->write_wake_.cancel(); };
+  const auto wake = [self = shared_from_this()] {
+    const std::int64_t began_ns = thread_cpu_ns();
+    if (self->write_at_once()) self->counters_.count_commit_send(thread_cpu_ns() - began_ns);
+  };
   asio::post(strand_, wake);
+}
+
+void NetSession::resume_writer() {
+  is_writer_waiting_ = false;
+  write_wake_.cancel();
+}
+
+void NetSession::count_write(const SendQueue::Batch& batch, std::size_t bytes) {
+  counters_.bytes_out.fetch_add(bytes, std::memory_order_relaxed);
+  if (batch.chunk_bytes != 0)
+    counters_.chunk_bytes_out.fetch_add(batch.chunk_bytes, std::memory_order_relaxed);
+  counters_.edit_bytes_out.fetch_add(batch.edit_bytes, std::memory_order_relaxed);
+}
+
+void NetSession::prefetch() const {
+  constexpr std::size_t kLine = 64;
+  const auto* const bytes = reinterpret_cast<const char*>(this);
+  for (std::size_t at = 0; at < sizeof *this; at += kLine) __builtin_prefetch(bytes + at, 1);
+}
+
+bool NetSession::write_at_once() {
+  // The writer runs already, and takes what is queued.
+  if (!is_writer_waiting_) return false;
+  // The sessions of a thread share them: they stay in its cache.
+  thread_local SendQueue::Batch batch;
+  thread_local std::vector<asio::const_buffer> buffers;
+  const TimeUs now_us = steady_now_us();
+  bool is_drained = false, is_all = true;
+  {
+    const std::lock_guard lock(mutex_);
+    is_woken_ = false;
+    if (std::exchange(is_due_, false))
+      counters_.commits_due.fetch_sub(1, std::memory_order_relaxed);
+    if (closing_ || queue_.has_chunk()) {
+      resume_writer();
+      return false;
+    }
+    if (queue_.take(batch, 0)) gate_.sent(0, batch.bytes, now_us);
+    gate_.mark_app_limited();
+    is_drained = queue_.take_drained();
+    is_all = !queue_.can_take();
+    writer_idle_ = is_all;
+  }
+  if (is_drained) events_.on_drained(id_);
+  bool has_commits = false;
+  if (!batch.pieces.empty()) {
+    buffers_of(batch, buffers);
+    write_began_us_.store(now_us, std::memory_order_relaxed);
+    const IoResult wrote = stream_->write_now(buffers, 0);
+    has_commits = batch.has_commits;
+    has_write_failed_ = static_cast<bool>(wrote.error);
+    is_all = is_all && !wrote.has_rest && !wrote.error;
+    if (!wrote.error) count_write(batch, wrote.bytes);
+    if (wrote.has_rest) {
+      unfinished_ = std::exchange(batch, {});
+    } else {
+      batch.messages.clear();
+      write_began_us_.store(0, std::memory_order_relaxed);
+    }
+  }
+  if (!is_all) resume_writer();
+  return has_commits;
 }
 
 asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> self) {
@@ -404,6 +489,14 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
   std::vector<asio::const_buffer> buffers;
   TimeUs room_pause_us = 0;
   for (;;) {
+    if (self->has_write_failed_) break;
+    if (!self->unfinished_.pieces.empty()) {
+      const IoResult rest = co_await self->stream_->write_rest();
+      self->write_began_us_.store(0);
+      self->unfinished_ = {};
+      if (rest.error) break;
+      self->counters_.bytes_out.fetch_add(rest.bytes, std::memory_order_relaxed);
+    }
     bool has_batch = false;
     bool is_drained = false;
     bool is_last = false;
@@ -441,29 +534,27 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     if (is_drained) self->events_.on_drained(self->id_);
     if (is_last) break;
     if (!has_batch) {
-      // A wake cancels this wait. It is posted to this strand, so it cannot run before the wait has
-      // begun. Terrain that must wait sets the time.
+      // A wake runs write_at_once(), which cancels this wait if the loop must go on. It is posted to
+      // this strand, so it cannot run before the wait has begun. Terrain that must wait sets the
+      // time.
       self->write_wake_.expires_at(wake);
+      self->is_writer_waiting_ = true;
       const auto [error] = co_await self->write_wake_.async_wait(kTuple);
       (void)error;
+      self->is_writer_waiting_ = false;
       continue;
     }
-    buffers.clear();
-    for (const auto& piece : batch.pieces) {
-      buffers.push_back(asio::buffer(piece.header));
-      buffers.push_back(asio::buffer(piece.body.data(), piece.body.size()));
-    }
+    const std::int64_t began_ns = thread_cpu_ns();
     self->write_began_us_.store(steady_now_us());
-    const IoResult wrote = co_await self->stream_->write(buffers, batch.chunk_bytes);
-    self->write_began_us_.store(0);
+    buffers_of(batch, buffers);
+    const IoResult wrote = self->stream_->write_now(buffers, batch.chunk_bytes);
     if (wrote.error) break;
-    self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
-    self->counters_.chunk_bytes_out.fetch_add(batch.chunk_bytes, std::memory_order_relaxed);
-    self->counters_.edit_bytes_out.fetch_add(batch.edit_bytes, std::memory_order_relaxed);
-    if (batch.has_commits) {
-      self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
-      self->counters_.commit_sends.fetch_add(1, std::memory_order_relaxed);
-    }
+    self->count_write(batch, wrote.bytes);
+    if (batch.has_commits) self->counters_.count_commit_send(thread_cpu_ns() - began_ns);
+    if (wrote.has_rest)
+      self->unfinished_ = std::exchange(batch, {});
+    else
+      self->write_began_us_.store(0);
   }
   self->stream_->shutdown_send();
   // The linger timer ends a reader that still waits.

@@ -96,6 +96,11 @@ struct NetCounters {
   std::atomic<std::uint64_t> commit_sends{0};
   // Sessions with a queued commit whose writer was woken and has not run yet.
   std::atomic<std::uint64_t> commits_due{0};
+
+  void count_commit_send(std::int64_t ns) {
+    commit_send_ns.fetch_add(ns, std::memory_order_relaxed);
+    commit_sends.fetch_add(1, std::memory_order_relaxed);
+  }
 };
 
 /// Why a session ended: the first reason that either side had.
@@ -110,6 +115,8 @@ constexpr bool is_broken_rule(GoodbyeReason reason) {
          reason == GoodbyeReason::unexpected_message ||
          reason == GoodbyeReason::not_authenticated || reason == GoodbyeReason::flooding;
 }
+
+class SendRound;
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
@@ -141,6 +148,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Queues a message. Returns false if its class is full. After close() the message is dropped,
   /// and the call returns true.
   bool send(const EncodedMessage& message);
+  /// Queues a message as send() does, and wakes the writer as a part of `round`.
+  bool send(const EncodedMessage& message, SendRound& round);
   /// Reserves a place for a chunk that answers the view of this number. Returns nullopt if the
   /// class is full.
   std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key, std::uint32_t view);
@@ -206,12 +215,25 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Wakes a paused reader if it need not pause any more.
   void wake_reader();
   bool has_chunk();
+  /// Queues a message. Returns false if its class is full. `wakes`: see take_wake().
+  bool queue(const EncodedMessage& message, bool& wakes);
   void wake_writer();
   /// Returns true if the caller must call post_wake() because the writer is idle. Requires the
   /// mutex.
   bool take_wake();
   void post_wake();
+  /// Writes what is queued as far as the socket takes it at once. The write loop does the rest: what
+  /// does not fit, terrain, and the end of the session. Nearly all commits are written here, without
+  /// a coroutine or a timer. Returns true if commits were among it. Call it on the strand after
+  /// take_wake().
+  bool write_at_once();
+  /// Fetches the memory that write_at_once() needs first.
+  void prefetch() const;
+  /// Makes the write loop go on. Call it on the strand.
+  void resume_writer();
+  void count_write(const SendQueue::Batch& batch, std::size_t bytes);
   void loop_ended();
+  friend class SendRound;
 
   const SessionId id_;
   const Sender sender_;  // the peer
@@ -245,6 +267,10 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   // On the strand from here on. A decoder uses reader_, messages_, decoded_ and broken_rule_ while
   // the read loop waits for it.
   asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;
+  bool is_writer_waiting_ =
+      false;  // the write loop waits for write_wake_, and nothing was written since
+  bool has_write_failed_ = false;  // in write_at_once()
+  SendQueue::Batch unfinished_;    // what write_at_once() could not write; no pieces: nothing
   ByteBudget read_budget_;
   const std::shared_ptr<ByteBudget> address_reads_;
   FrameReader reader_;

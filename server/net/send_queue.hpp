@@ -76,6 +76,9 @@ class SendQueue {
   /// Returns true if the next chunk is filled, so that a fragment of it can be taken.
   bool has_chunk() const { return can_cut(FrameClass::chunks); }
 
+  /// Returns true if take() without chunks would take something.
+  bool can_take() const { return can_cut(FrameClass::edits) || can_cut(FrameClass::control); }
+
   /// Drops chunks outside of the view of which nothing was sent.
   void forget_outside(const View& view);
   /// Sets how many bytes of chunks may wait, within the limits. On a slow link this is less, so

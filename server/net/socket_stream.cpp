@@ -1,10 +1,10 @@
 #include "server/net/socket_stream.hpp"
 
 #include <algorithm>
+#include <asio/write.hpp>
 #include <span>
 #include <utility>
 
-#include "common/os/thread_cpu_ns.hpp"
 #include "server/net/address_block_of.hpp"
 #include "server/net/await_tuple.hpp"
 #include "server/net/peer_text.hpp"
@@ -29,32 +29,30 @@ asio::awaitable<IoResult> SocketStream::read_some(asio::mutable_buffer into) {
   co_return IoResult{error, bytes, bytes};
 }
 
-asio::awaitable<IoResult> SocketStream::write(const std::vector<asio::const_buffer>& buffers,
-                                              std::size_t /*terrain_bytes*/) {
-  // This is not asio::async_write, because the cost of each call is measured, and most calls need
-  // not wait.
+IoResult SocketStream::write_now(std::span<const asio::const_buffer> buffers,
+                                 std::size_t /*terrain_bytes*/) {
+  // asio::async_write would allocate and start a coroutine, and nearly all writes need not wait.
   IoResult result;
-  rest_ = buffers;
-  std::size_t first = 0;  // the first buffer of rest_ that is not written completely
-  while (first < rest_.size()) {
-    const std::int64_t began_ns = thread_cpu_ns();
-    const std::size_t written =
-        socket_.write_some(std::span<const asio::const_buffer>(rest_).subspan(first), result.error);
-    result.call_ns += thread_cpu_ns() - began_ns;
-    result.bytes += written;
-    for (std::size_t left = written; first < rest_.size();) {
-      const std::size_t taken = std::min(left, rest_[first].size());
-      rest_[first] += taken;
-      left -= taken;
-      if (rest_[first].size() != 0) break;
-      ++first;
-    }
-    if (result.error == asio::error::would_block) {
-      const auto [error] = co_await socket_.async_wait(asio::socket_base::wait_write, kTuple);
-      result.error = error;
-    }
-    if (result.error) break;
+  result.bytes = socket_.write_some(buffers, result.error);
+  if (result.error == asio::error::would_block) result.error = {};
+  if (result.error) return result;
+  std::size_t left = result.bytes;
+  rest_.clear();
+  for (const asio::const_buffer& buffer : buffers) {
+    const std::size_t taken = std::min(left, buffer.size());
+    left -= taken;
+    if (taken < buffer.size()) rest_.push_back(buffer + taken);
   }
+  result.has_rest = !rest_.empty();
+  return result;
+}
+
+asio::awaitable<IoResult> SocketStream::write_rest() {
+  IoResult result;
+  const std::span<const asio::const_buffer> rest(rest_);
+  const auto [error, bytes] = co_await asio::async_write(socket_, rest, kTuple);
+  result.error = error;
+  result.bytes = bytes;
   co_return result;
 }
 

@@ -1,6 +1,7 @@
 // SocketStream: the part of a ByteStream that TCP and Unix sockets share.
 #pragma once
 #include <asio/generic/stream_protocol.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ class SocketStream : public ByteStream {
 
   asio::awaitable<StreamStart> open() override;
   asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override;
-  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
-                                  std::size_t terrain_bytes) override;
+  IoResult write_now(std::span<const asio::const_buffer> buffers,
+                     std::size_t terrain_bytes) override;
+  asio::awaitable<IoResult> write_rest() override;
   void shutdown_send() override;
   void close() override;
   std::string peer() const override { return peer_; }

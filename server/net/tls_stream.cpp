@@ -2,10 +2,10 @@
 #include <asio/error.hpp>
 #include <asio/post.hpp>
 #include <asio/this_coro.hpp>
+#include <asio/write.hpp>
 #include <atomic>
 #include <utility>
 
-#include "common/os/thread_cpu_ns.hpp"
 #include "common/tls/socket_source.hpp"
 #include "common/tls/tls_channel.hpp"
 #include "server/net/await_tuple.hpp"
@@ -96,32 +96,28 @@ class TlsStream : public ByteStream {
     co_return result;
   }
 
-  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
-                                  std::size_t terrain_bytes) override {
+  IoResult write_now(std::span<const asio::const_buffer> buffers,
+                     std::size_t terrain_bytes) override {
     IoResult result;
-    const std::int64_t began_ns = thread_cpu_ns();
     Bytes& records = channel_->output();
     if (records.empty()) records.swap(scratch.records);
     if (!encrypt(buffers, asio::buffer_size(buffers) - terrain_bytes)) {
       result.error = asio::error::connection_aborted;
-      co_return result;
+      return result;
     }
-    // Most writes end here.
     result.bytes = tcp_.socket().write_some(asio::buffer(records), result.error);
-    result.call_ns = thread_cpu_ns() - began_ns;
     if (result.bytes == records.size()) {
       records.clear();
       records.swap(scratch.records);
-      co_return result;
+      return result;
     }
-    if (result.error && result.error != asio::error::would_block) co_return result;
+    if (result.error == asio::error::would_block) result.error = {};
+    if (result.error) return result;
     records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(result.bytes));
-    const IoResult rest = co_await flush();
-    result.error = rest.error;
-    result.bytes += rest.bytes;
-    result.call_ns += rest.call_ns;
-    co_return result;
+    result.has_rest = true;
+    return result;
   }
+  asio::awaitable<IoResult> write_rest() override { return flush(); }
 
   StreamRoom room() override {
     StreamRoom room = tcp_.room();
@@ -210,7 +206,6 @@ class TlsStream : public ByteStream {
   SocketSource source_;
   const TlsContext context_;
   std::optional<TlsChannel> channel_;
-  std::vector<asio::const_buffer> buffers_;  // of the write under way
 
  private:
   asio::error_code source_broke() const {
@@ -219,7 +214,7 @@ class TlsStream : public ByteStream {
   }
   /// Terrain begins a record of its own, so that the peer can read an edit before the terrain
   /// behind it has arrived.
-  bool encrypt(const std::vector<asio::const_buffer>& buffers, std::size_t before_terrain) {
+  bool encrypt(std::span<const asio::const_buffer> buffers, std::size_t before_terrain) {
     RecordText record(*channel_);
     std::size_t at = 0;
     for (const asio::const_buffer& buffer : buffers) {
@@ -234,9 +229,12 @@ class TlsStream : public ByteStream {
   asio::awaitable<IoResult> flush() {
     // While the socket takes the bytes, a read may add to the output.
     sending_.swap(channel_->output());
-    buffers_.assign(1, asio::buffer(sending_));
-    const IoResult result = co_await tcp_.write(buffers_, 0);
+    const auto [error, bytes] =
+        co_await asio::async_write(tcp_.socket(), asio::buffer(sending_), kTuple);
     sending_ = {};
+    IoResult result;
+    result.error = error;
+    result.bytes = bytes;
     co_return result;
   }
 
@@ -270,8 +268,9 @@ class TlsServerStream final : public TlsStream {
 
  private:
   asio::awaitable<void> answer_plain() {
-    buffers_.assign(1, asio::buffer(plain_answer_));
-    co_await tcp_.write(buffers_, 0);
+    const auto [unsent, sent] =
+        co_await asio::async_write(tcp_.socket(), asio::buffer(plain_answer_), kTuple);
+    if (unsent || sent < plain_answer_.size()) co_return;
     tcp_.shutdown_send();
     Bytes buffer(1024);
     for (std::size_t got = 0; got < kPlainBytes;) {

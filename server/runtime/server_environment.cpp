@@ -17,7 +17,14 @@ bool ServerEnvironment::send(SessionId session, const EncodedMessage& message) {
 std::vector<SessionId> ServerEnvironment::send_to_all(std::span<const SessionId> sessions,
                                                       const EncodedMessage& message) {
   const std::int64_t began_ns = thread_cpu_ns();
-  std::vector<SessionId> full = WorldEnvironment::send_to_all(sessions, message);
+  std::vector<SessionId> full;
+  {
+    SendRound round = listener_.begin_round(message);
+    for (const SessionId session : sessions) {
+      const auto& net = sessions_.find(session);
+      if (net != nullptr && !net->send(message, round)) full.push_back(session);
+    }
+  }
   enqueue_ns_ += thread_cpu_ns() - began_ns;
   return full;
 }

@@ -258,6 +258,24 @@ TEST_CASE("the costs of an edit at two servers are measured, and the table has t
   CHECK(output.out.find("| 10 edits | ") != std::string::npos);
 }
 
+TEST_CASE("runstone-bench fan-out compares the server's sessions with a loop of system calls",
+          "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "fan_out.json";
+  const BenchOutput output =
+      run_bench({"fan-out", "--clients", "70", "--min-runs", "1", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const auto result = nlohmann::json::parse(text_of(json));
+  CHECK(result["receivers"] == 70);
+  REQUIRE(result["rows"].size() == 12);
+  for (const auto& row : result["rows"]) {
+    CHECK(row["floor_us"] > 0);
+    CHECK(row["sessions_us"] > 0);
+  }
+  CHECK(output.out.find("| 2500 | yes | 20 | ") != std::string::npos);
+}
+
 TEST_CASE("runstone-bench edits has a row for every case and judges every target", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edits.csv", json = folder / "edits.json";

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/message_table.hpp"
+#include "server/net/send_round.hpp"
 #include "tests/support/edits/hostile_edits.hpp"
 
 using namespace runstone;
@@ -43,18 +46,38 @@ class FedStream final : public ByteStream {
     at_ += count;
     co_return IoResult{{}, count, count};
   }
-  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers,
-                                  std::size_t /*terrain_bytes*/) override {
+  IoResult write_now(std::span<const asio::const_buffer> buffers,
+                     std::size_t /*terrain_bytes*/) override {
+    IoResult result;
+    result.error = write_error;
+    result.has_rest = reads_nothing;
+    if (reads_nothing || write_error) return result;
+    result.bytes = std::min(taken_at_once, asio::buffer_size(buffers));
+    result.has_rest = result.bytes < asio::buffer_size(buffers);
+    std::size_t left = result.bytes;
+    rest_.clear();
+    for (const asio::const_buffer& buffer : buffers) {
+      const std::size_t taken = std::min(left, buffer.size());
+      take(asio::buffer(buffer, taken));
+      rest_.push_back(buffer + taken);
+      left -= taken;
+    }
+    return result;
+  }
+  asio::awaitable<IoResult> write_rest() override {
     if (reads_nothing) {
       const auto [error] = co_await closed_.async_wait(kTuple);
       (void)error;  // cancelled when the stream is closed
       co_return IoResult{asio::error::operation_aborted};
     }
-    for (const asio::const_buffer& buffer : buffers) {
-      const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
-      written.insert(written.end(), bytes, bytes + buffer.size());
+    // The peer reads later.
+    co_await asio::post(asio::use_awaitable);
+    IoResult result;
+    for (const asio::const_buffer& buffer : rest_) {
+      take(buffer);
+      result.bytes += buffer.size();
     }
-    co_return IoResult{{}, asio::buffer_size(buffers)};
+    co_return result;
   }
   StreamRoom room() override {
     ++asked;
@@ -77,8 +100,16 @@ class FedStream final : public ByteStream {
   StreamRoom room_now;
   std::size_t asked = 0;
   Bytes written;
+  std::size_t taken_at_once = SIZE_MAX;  // of each write, the rest later
+  asio::error_code write_error;
 
  private:
+  void take(asio::const_buffer buffer) {
+    const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
+    written.insert(written.end(), bytes, bytes + buffer.size());
+  }
+
+  std::vector<asio::const_buffer> rest_;
   Bytes bytes_;
   std::size_t at_ = 0;
   bool is_closed_ = false;
@@ -330,6 +361,68 @@ TEST_CASE("a session says for how long its client has read nothing", "[net]") {
   const TimeUs waited = bench.session->write_us(steady_now_us() + kLater);
   CHECK(waited >= kLater);
   CHECK(waited < 2 * kLater);
+}
+
+TEST_CASE("what a socket does not take at once follows in order", "[net]") {
+  Bench bench;
+  for (const std::size_t at_once : {std::size_t{0}, std::size_t{1}, std::size_t{10}, SIZE_MAX}) {
+    bench.stream->written.clear();
+    bench.stream->taken_at_once = at_once;
+    for (int i = 0; i < 50; ++i) {
+      REQUIRE(bench.session->send({kKindOf<Commit>, std::make_shared<const Bytes>(100 + i)}));
+      if (i % 5 == 0) bench.io.poll();
+    }
+    bench.io.poll();
+    const Bytes& written = bench.stream->written;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < 50; ++i) {
+      REQUIRE(at + kFrameHeaderBytes + 100 + i <= written.size());
+      CHECK(written[at] == 100 + i);  // length, little-endian
+      at += kFrameHeaderBytes + 100 + i;
+    }
+    CHECK(at == written.size());
+    CHECK(bench.counters.bytes_out >= written.size());
+    CHECK(bench.counters.commits_due == 0);
+    CHECK(bench.session->write_us(steady_now_us()) == 0);
+  }
+}
+
+TEST_CASE("a write that fails at once ends the session", "[net]") {
+  Bench bench;
+  bench.stream->write_error = asio::error::connection_reset;
+  bench.edit(100);
+  CHECK(bench.session->end().text == "write failed");
+  CHECK(bench.stream->written.empty());
+}
+
+TEST_CASE("a goodbye stands behind what was queued before it", "[net]") {
+  Bench bench;
+  REQUIRE(bench.session->send({kKindOf<Commit>, std::make_shared<const Bytes>(100)}));
+  bench.session->close(GoodbyeReason::closing, "bye");
+  bench.io.poll();
+  REQUIRE(bench.stream->written.size() > 2 * kFrameHeaderBytes + 100);
+  CHECK(bench.stream->written[2] == wire_number(kKindOf<Commit>));
+  CHECK(bench.stream->written[kFrameHeaderBytes + 100 + 2] == wire_number(kKindOf<Goodbye>));
+}
+
+TEST_CASE("a round writes for all of its sessions, each message once", "[net]") {
+  constexpr std::size_t kSessions = 70;  // more than two groups
+  constexpr int kRounds = 3;
+  std::vector<std::unique_ptr<Bench>> benches;
+  asio::io_context io;
+  NetCounters counters;
+  for (std::size_t i = 0; i < kSessions; ++i) benches.push_back(std::make_unique<Bench>());
+  for (int r = 0; r < kRounds; ++r) {
+    SendRound round(io, counters, true);
+    for (const auto& bench : benches)
+      CHECK(bench->session->send({kKindOf<Commit>, std::make_shared<const Bytes>(100)}, round));
+  }
+  io.poll();
+  for (const auto& bench : benches) {
+    bench->io.poll();
+    CHECK(bench->sent() == std::pair<std::size_t, std::size_t>{0, kRounds * 100});
+  }
+  CHECK(counters.commit_sends <= kSessions * kRounds);
 }
 
 TEST_CASE("a session that is trusted reads at any rate, also behind a goodbye", "[net]") {
