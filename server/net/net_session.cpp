@@ -57,6 +57,13 @@ SendLimits trusted(SendLimits limits) {
   return limits;
 }
 
+/// Fetches memory that is written soon, without waiting for it.
+void prefetch_lines(const void* begin, std::size_t bytes) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < bytes; at += kLine)
+    __builtin_prefetch(static_cast<const char*>(begin) + at, 1);
+}
+
 void buffers_of(const SendQueue::Batch& batch, std::vector<asio::const_buffer>& buffers) {
   buffers.clear();
   for (const auto& piece : batch.pieces) {
@@ -288,10 +295,11 @@ void NetSession::count_write(const SendQueue::Batch& batch, std::size_t bytes) {
   counters_.edit_bytes_out.fetch_add(batch.edit_bytes, std::memory_order_relaxed);
 }
 
-void NetSession::prefetch() const {
-  constexpr std::size_t kLine = 64;
-  const auto* const bytes = reinterpret_cast<const char*>(this);
-  for (std::size_t at = 0; at < sizeof *this; at += kLine) __builtin_prefetch(bytes + at, 1);
+void NetSession::prefetch() const { prefetch_lines(this, sizeof *this); }
+
+void NetSession::prefetch_stream() const {
+  constexpr std::size_t kStreamBytes = 512;
+  prefetch_lines(stream_.get(), kStreamBytes);
 }
 
 bool NetSession::write_at_once() {

@@ -227,8 +227,10 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// a coroutine or a timer. Returns true if commits were among it. Call it on the strand after
   /// take_wake().
   bool write_at_once();
-  /// Fetches the memory that write_at_once() needs first.
+  /// Fetch the memory that write_at_once() needs: that of the session, and, when that has come, the
+  /// stream's.
   void prefetch() const;
+  void prefetch_stream() const;
   /// Makes the write loop go on. Call it on the strand.
   void resume_writer();
   void count_write(const SendQueue::Batch& batch, std::size_t bytes);

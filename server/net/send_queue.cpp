@@ -140,7 +140,7 @@ void SendQueue::forget_outside(const View& view) {
   for (const Item& item : mine.items) {
     if (goes(item) && item.is_ready()) mine.bytes -= item.chunk.bytes->size();
   }
-  std::erase_if(mine.items, goes);
+  mine.items.remove_if(goes);
 }
 
 void SendQueue::drop_chunks() {

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/net/flat_queue.hpp"
 
 namespace runstone {
 
@@ -103,7 +103,7 @@ class SendQueue {
     bool is_ready() const { return !is_place() || chunk.bytes != nullptr; }
   };
   struct Lane {
-    std::deque<Item> items;
+    FlatQueue<Item> items;
     std::size_t sent = 0;   // bytes of the first item that were taken
     std::size_t bytes = 0;  // queued bytes, without those that were taken
     std::size_t passed =

@@ -17,7 +17,8 @@ void SendRound::start_group() {
 void SendRound::write(const Group& group, NetCounters& counters, bool is_of_commit) {
   const std::int64_t began_ns = thread_cpu_ns();
   for (std::size_t i = 0; i < group.size(); ++i) {
-    if (i + 1 < group.size()) group[i + 1]->prefetch();
+    if (i + 2 < group.size()) group[i + 2]->prefetch();
+    if (i + 1 < group.size()) group[i + 1]->prefetch_stream();
     // It runs here, unless another thread runs the session's strand now.
     asio::dispatch(group[i]->strand_, [session = group[i], &counters] {
       if (session->write_at_once()) counters.commit_sends.fetch_add(1, std::memory_order_relaxed);

@@ -1,6 +1,6 @@
 // SendRound: wakes the writers of the sessions that a message was queued for. A task of their own for
 // each would cost more than most writes. So a task writes for a group of sessions, one after another,
-// and fetches the memory of the next session while it writes for one.
+// and fetches the memory of the next ones while it writes for one.
 // Threads: one. The tasks run on the I/O threads.
 #pragma once
 #include <asio/io_context.hpp>
