@@ -106,7 +106,8 @@ TEST_CASE("a world made from the exported log of a corrected world gives each ti
     REQUIRE(store->append({}, records).has_value());
   }
   export_small_blocks(world, file);
-  const auto imported = import_rlog(copy, file);
+  std::ostringstream out;
+  const auto imported = import_rlog({copy, file}, out);
   if (!imported) FAIL(imported.error());
   CHECK(imported->stopped.empty());
   CHECK(log_of(copy) == records);
