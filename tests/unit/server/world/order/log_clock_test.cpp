@@ -261,7 +261,7 @@ TEST_CASE("a server with a wrong clock goes on from the time of the former owner
 TEST_CASE("records may have any time", "[world][clock]") {
   constexpr TimeUs kFirst = std::numeric_limits<TimeUs>::min();
   constexpr TimeUs kLast = std::numeric_limits<TimeUs>::max();
-  const TimeUs end_us = GENERATE_COPY(kFirst, kFirst + 1, kLast - 1, kLast);
+  const TimeUs end_us = GENERATE_COPY(TimeUs{kFirst}, kFirst + 1, kLast - 1, TimeUs{kLast});
   ClockPair clocks(end_us);
   clocks.pass(kMinute);
   CHECK(clocks.log.stamp() == std::max(end_us, clocks.right()));
