@@ -4,7 +4,7 @@
 # The cases are read from the file PROGRAM_tests.cmake. The program is run to write that file if it is
 # newer than the file, or if CMake has changed the properties since. A program that is not built
 # gets one entry, which fails.
-# With RUNSTONE_UNIT_PROGRAMS=whole in the environment, a program of unit tests gets one entry, too: with
+# With RUNSTONE_TEST_UNITS=whole in the environment, a program of unit tests gets one entry, too: with
 # sanitizers the start of a process takes longer than most cases.
 function(runstone_list_tests name prefix)
   set(program ${CMAKE_CURRENT_LIST_DIR}/${name})
@@ -13,7 +13,9 @@ function(runstone_list_tests name prefix)
     add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)
     return()
   endif()
-  if("$ENV{RUNSTONE_UNIT_PROGRAMS}" STREQUAL whole AND "unit" IN_LIST ARGN)
+  set(properties ${ARGN})
+  list(FIND properties unit label)
+  if("$ENV{RUNSTONE_TEST_UNITS}" STREQUAL whole AND label GREATER -1)
     string(REGEX REPLACE "[.]$" "" entry ${prefix})
     add_test(${entry} ${program})
     set_tests_properties(${entry} PROPERTIES WORKING_DIRECTORY ${CMAKE_CURRENT_LIST_DIR} ${ARGN})
