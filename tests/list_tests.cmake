@@ -18,7 +18,7 @@ function(runstone_list_tests name prefix)
   if("$ENV{RUNSTONE_TEST_UNITS}" STREQUAL whole AND label GREATER -1)
     string(REGEX REPLACE "[.]$" "" entry ${prefix})
     add_test(${entry} ${program})
-    set_tests_properties(${entry} PROPERTIES WORKING_DIRECTORY ${CMAKE_CURRENT_LIST_DIR} ${ARGN})
+    set_tests_properties(${entry} PROPERTIES WORKING_DIRECTORY ${CMAKE_CURRENT_LIST_DIR} ${ARGN} COST 20)  # the longest ones
     return()
   endif()
   if(${program} IS_NEWER_THAN ${list} OR ${CMAKE_CURRENT_LIST_FILE} IS_NEWER_THAN ${list})

@@ -22,6 +22,7 @@ constexpr std::uint8_t kHandshakeRecord = 22, kAlertRecord = 21;
 /// What a step of the handshake reads at most. An honest peer's has two or three steps.
 constexpr std::size_t kHandshakeBytes = 4 * 1024;
 constexpr unsigned kHandshakeStepsMax = 32;
+constexpr const char* kClosedText = "it was closed or took too long";
 /// What is read of a client that does not speak TLS. Unread input would make the kernel reset the
 /// connection, and the answer would be lost.
 constexpr std::size_t kPlainBytes = 16 * 1024;
@@ -151,7 +152,7 @@ class TlsStream : public ByteStream {
   asio::awaitable<bool> wait_input() {
     const auto [error] = co_await tcp_.socket().async_wait(kCanRead, kTuple);
     if (!error && tcp_.socket().is_open()) co_return true;
-    fail_open("it was closed or took too long");
+    fail_open(kClosedText);
     co_return false;
   }
   /// Waits for the first byte of the connection, returns it and leaves it where it is. Returns nullopt
@@ -185,7 +186,8 @@ class TlsStream : public ByteStream {
       binding_ = channel_->binding();
       co_return StreamStart::open;
     }
-    const asio::error_code broken = is_closed_ ? asio::error::operation_aborted : source_broke();
+    if (is_closed_) co_return fail_open(kClosedText);
+    const asio::error_code broken = source_broke();
     if (status == TlsChannel::Status::wants_input && !broken) co_return std::nullopt;
     co_return fail_open(broken ? broken.message() : channel_->error());
   }

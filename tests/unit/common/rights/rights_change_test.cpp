@@ -144,10 +144,12 @@ TEST_CASE("bytes that are no change are rejected with a reason", "[rights]") {
   CHECK(unreadable({1, 1, 'a', 0, 0, 0x80, 0x80, 0x80, 0x80, 0x10, 0}) == ErrorCode::bad_value);
   CHECK(unreadable({6, 0, 2}) == ErrorCode::unknown_kind);
   CHECK(unreadable({15}) == ErrorCode::truncated);
-  CHECK(unreadable({15, 0}) == ErrorCode::bad_value);
-  CHECK(unreadable({15, 1, 0}) == ErrorCode::trailing_bytes);
-  CHECK(unreadable({15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1}) ==
-        ErrorCode::bad_value);  // above 63 bits
+  CHECK(unreadable({15, 2}) == ErrorCode::truncated);
+  CHECK(unreadable({15, 0, 1}) == ErrorCode::bad_value);  // no step
+  CHECK(unreadable({15, 2, 0}) == ErrorCode::bad_value);  // since no record
+  CHECK(unreadable({15, 2, 1, 0}) == ErrorCode::trailing_bytes);
+  CHECK(unreadable({15, 2, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1}) ==
+        ErrorCode::bad_value);  // since a record above 63 bits
 
   // A box of one voxel without owner, members and roles, then with each field damaged.
   const Bytes box = {7, 1, 'a', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};

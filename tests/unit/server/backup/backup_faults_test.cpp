@@ -13,9 +13,9 @@ TEST_CASE_METHOD(BackupBench, "an error of the disk leaves a whole backup or non
                  "[backup][faults]") {
   store.reset();  // so that the world has no files that are open
   // All calls of a backup take minutes, because each run waits for the real disk.
-  constexpr std::uint64_t kEveryEleventh = 11;
+  constexpr std::uint64_t kStride = 61;
   const std::uint64_t runs =
-      meet_disk_faults(kEveryEleventh, [&](FaultVfs& vfs, const DiskFault& fault) {
+      meet_disk_faults(kStride, [&](FaultVfs& vfs, const DiskFault& fault) {
         const std::string error = back_up_to(copy);
         vfs.heal();
         INFO(error);
