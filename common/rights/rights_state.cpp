@@ -175,9 +175,9 @@ bool RightsState::has_ends_given_since(Sequence since, TimeUs now_us) const {
     const Decided<Restrict>& restriction = entry.second;
     return restriction.value.until_us != 0 && is_meant(restriction.by, restriction.value.until_us);
   };
-  return std::ranges::any_of(by_key_, is_meant_restriction) ||
-         std::ranges::any_of(address_bans_, is_meant_restriction) ||
-         std::ranges::any_of(invites_, [&](const auto& entry) {
+  return std::any_of(by_key_.begin(), by_key_.end(), is_meant_restriction) ||
+         std::any_of(address_bans_.begin(), address_bans_.end(), is_meant_restriction) ||
+         std::any_of(invites_.begin(), invites_.end(), [&](const auto& entry) {
            return is_meant(entry.second.by, entry.second.value.invite.until_us);
          });
 }
