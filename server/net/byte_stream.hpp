@@ -58,9 +58,9 @@ class ByteStream {
   /// Reads what has come. The result may be empty after bytes that are none of the text. Fails at
   /// the end of the stream.
   virtual asio::awaitable<IoResult> read_some(asio::mutable_buffer into) = 0;
-  /// Writes what the connection takes at once. If that is not all, `has_rest` of the result is
-  /// true, and write_rest() must follow; until it has ended, the bytes must stay in place. The last
-  /// `terrain_bytes` of them are terrain: the peer need not have them to read those before.
+  /// Writes what the connection takes at once. If that is not all, `has_rest` of the result is true,
+  /// and write_rest() must follow. The bytes must stay in place until it has ended. The last
+  /// `terrain_bytes` bytes are terrain: the peer can read the bytes before them without them.
   virtual IoResult write_now(std::span<const asio::const_buffer> buffers,
                              std::size_t terrain_bytes) = 0;
   /// Writes the rest of the last write_now(), and waits for the peer where it must.

@@ -57,7 +57,7 @@ SendLimits trusted(SendLimits limits) {
   return limits;
 }
 
-/// Fetches memory that is written soon, without waiting for it.
+/// Starts to load memory into the cache that is written soon, and does not wait for it.
 void prefetch_lines(const void* begin, std::size_t bytes) {
   constexpr std::size_t kLine = 64;
   for (std::size_t at = 0; at < bytes; at += kLine)

@@ -91,7 +91,8 @@ struct NetCounters {
       malformed{0};
   // The parts of bytes_out that are frames of the classes chunks and edits, before encryption.
   std::atomic<std::uint64_t> chunk_bytes_out{0}, edit_bytes_out{0};
-  // Processor time of writes that sent bytes of commits, and the number of these writes.
+  // Processor time of writes that sent bytes of commits, with the cutting into frames and encryption,
+  // and the number of these writes.
   std::atomic<std::int64_t> commit_send_ns{0};
   std::atomic<std::uint64_t> commit_sends{0};
   // Sessions with a queued commit whose writer was woken and has not run yet.
@@ -227,9 +228,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// a coroutine or a timer. Returns true if commits were among it. Call it on the strand after
   /// take_wake().
   bool write_at_once();
-  /// Fetch the memory that write_at_once() needs: that of the session, and, when that has come, the
-  /// stream's.
+  /// Starts to load the session's memory into the cache, for write_at_once().
   void prefetch() const;
+  /// Does so for the stream's memory. Call it when that of the session is in the cache.
   void prefetch_stream() const;
   /// Makes the write loop go on. Call it on the strand.
   void resume_writer();

@@ -1,7 +1,7 @@
-// SendRound: wakes the writers of the sessions that a message was queued for. A task of their own for
-// each would cost more than most writes. So a task writes for a group of sessions, one after another,
-// and fetches the memory of the next ones while it writes for one.
-// Threads: one. The tasks run on the I/O threads.
+// SendRound: wakes the writers of all sessions for which one message was queued. A task for each session
+// would cost more than most writes. So one task writes for a group of sessions, one after another, and
+// fetches the memory of the next sessions while it writes for one.
+// Threads: one; a session adds itself in NetSession::send(). The tasks run on the I/O threads.
 #pragma once
 #include <asio/io_context.hpp>
 #include <memory>
@@ -23,12 +23,13 @@ class SendRound {
 
   /// Adds a session whose writer is idle: NetSession::take_wake() was true.
   void add(std::shared_ptr<NetSession> session) {
+    if (group_.empty()) group_.reserve(kGroupSessions);
     group_.push_back(std::move(session));
     if (group_.size() == kGroupSessions) start_group();
   }
 
  private:
-  // 32 writes take about 0.2 ms. Other tasks of the thread wait for that long.
+  // 32 writes with encryption take about 0.4 ms. Other tasks of the thread wait for that long.
   static constexpr std::size_t kGroupSessions = 32;
   using Group = std::vector<std::shared_ptr<NetSession>>;
 
