@@ -251,35 +251,41 @@ test("the timeline shows the past, in which nothing can be built, and leads back
   await player.page.close();
 });
 
-test("each click is meshed, and its latency is measured", async () => {
-  const player = await Player.open(await somebody(), world.address);
-  await player.joined("click");
-  await player.complete();
-  await player.capture();
-  await player.lookDown();
-  await player.complete(); // the player has moved, so chunks may have come
-  const CLICKS = 20;
-  const before = await player.report();
-  for (let i = 0; i < CLICKS; ++i) {
-    await player.click(i % 2 === 0 ? "right" : "left");
-    await new Promise((resolve) => setTimeout(resolve, 150));
-  }
-  const report = await until("the edits are counted", async () => {
-    const now = await player.report();
-    return now.latency_us.local_predicted.since_submit.meshed?.count >= CLICKS ? now : null;
-  });
-  // Times depend on the machine: they are measured and printed, not checked.
-  measured.latency_us = report.latency_us.local_predicted;
-  measured.mesh = report.mesh;
-  measured.join = report.join;
-  console.log(`measured  from a click to the new mesh: ${measured.latency_us.since_submit.meshed.p50 / 1000} ms (median)`);
-  assert.equal(report.latency_us.local_rejected, 0);
-  assert.equal(report.latency_us.local_predicted.since_submit.meshed.infinite, 0);
-  const made = (kind) => report.mesh[kind].count - before.mesh[kind].count;
+test("a click in hills is meshed without meshing whole chunks, and its latency is measured", async () => {
   // A flat chunk has so few runs that meshing all of it costs less than meshing layers.
-  const meshes = made("layers_ns") + made("whole_ns");
-  assert(meshes >= CLICKS, `${meshes} meshes`);
-  await player.page.close();
+  const hills = await World.open(bin, files, ["--generator", "terrain", "--seed", "7"]);
+  try {
+    const player = await Player.open(await somebody(), hills.address);
+    await player.joined("click");
+    await player.complete();
+    await player.capture();
+    await player.lookDown();
+    await player.complete(); // the player has moved, so chunks may have come
+    const CLICKS = 20;
+    const before = await player.report();
+    for (let i = 0; i < CLICKS; ++i) {
+      await player.click(i % 2 === 0 ? "right" : "left");
+      await new Promise((resolve) => setTimeout(resolve, 150));
+    }
+    const report = await until("the edits are counted", async () => {
+      const now = await player.report();
+      return now.latency_us.local_predicted.since_submit.meshed?.count >= CLICKS ? now : null;
+    });
+    // Times depend on the machine: they are measured and printed, not checked.
+    measured.latency_us = report.latency_us.local_predicted;
+    measured.mesh = report.mesh;
+    measured.join = report.join;
+    console.log(`measured  from a click to the new mesh: ${measured.latency_us.since_submit.meshed.p50 / 1000} ms (median)`);
+    assert.equal(report.latency_us.local_rejected, 0);
+    assert.equal(report.latency_us.local_predicted.since_submit.meshed.infinite, 0);
+    const made = (kind) => report.mesh[kind].count - before.mesh[kind].count;
+    // Two clicks may share a mesh on a slow machine.
+    assert(made("layers_ns") > CLICKS / 2, `${made("layers_ns")} meshes of layers`);
+    assert(made("whole_ns") === 0, `${made("whole_ns")} meshes of whole chunks`);
+    await player.page.close();
+  } finally {
+    await hills.close();
+  }
 });
 
 test("the connection is made again after the server has restarted", async () => {
