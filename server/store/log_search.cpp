@@ -10,15 +10,6 @@ namespace {
 // The edits that a statement finds at most. PostgreSQL returns all of them at once.
 constexpr std::size_t kPortion = 65'536;
 
-/// Returns the bounding box of a row of matching(), which follows its sequence.
-VoxelBox box_in(sql::Statement& row) {
-  const auto coordinate = [&](int column) {
-    return static_cast<std::int32_t>(row.integer(column));
-  };
-  return {{coordinate(1), coordinate(2), coordinate(3)},
-          {coordinate(4), coordinate(5), coordinate(6)}};
-}
-
 }  // namespace
 
 StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
@@ -118,7 +109,7 @@ StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query,
       const auto more = rows->step();
       if (!more) return failed(more.error());
       if (!*more) break;
-      if (query.wants && !query.wants(box_in(*rows))) continue;
+      if (query.wants && !query.wants(box_in(*rows, 1))) continue;
       found.push_back(static_cast<Sequence>(rows->integer(0)));
     }
   }

@@ -91,9 +91,6 @@ StoreResult<void> SqlStore::make_segments_again() {
   if (!rows) return failed(rows.error());
   std::vector<LogSegment> part;
   std::int64_t before = 0;
-  const auto coordinate = [&](int column) {
-    return static_cast<std::int32_t>(rows->integer(column));
-  };
   do {
     part.clear();
     {
@@ -105,11 +102,7 @@ StoreResult<void> SqlStore::make_segments_again() {
         if (!*more) break;
         before = rows->integer(0);
         const auto seq = static_cast<Sequence>(before);
-        part.push_back({seq,
-                        seq,
-                        static_cast<AuthorId>(rows->integer(1)),
-                        {{coordinate(2), coordinate(3), coordinate(4)},
-                         {coordinate(5), coordinate(6), coordinate(7)}}});
+        part.push_back({seq, seq, static_cast<AuthorId>(rows->integer(1)), box_in(*rows, 2)});
       }
     }
     for (const LogSegment& edit : part) {
