@@ -1,13 +1,13 @@
-// ClockCheck decides if the wall clock may be wrong when a server starts. It compares the wall clock with
-// all times that the world has: that of the last record of the log, and those at which the files of the
-// world were written. The rule:
-//   - The wall clock is more than kJumpUs behind one of them: it is wrong now, or was wrong then. The
-//     operator is warned.
-//   - The wall clock is more than kRestUs ahead of all of them, and the kernel does not report that a
-//     time service has set it: the world has rested for long, or the clock is wrong. The operator is
-//     warned. If the kernel reports that no time service has set the clock, it is doubtful: the log's
-//     time goes on from the newest of these times, and treats the wall clock as one that has jumped
-//     (LogClock).
+// ClockCheck decides whether the wall clock may be wrong when a server starts. It compares the wall
+// clock with all times that the world has: the time of the last record of the log, and the times at
+// which the files of the world were written. The rule:
+//   - The wall clock may be more than kJumpUs behind one of these times. Then it is wrong now, or it
+//     was wrong then. The operator is warned.
+//   - The wall clock may be more than kRestUs ahead of all of these times, while the kernel does not
+//     report that a time service has set it. Then the world has rested for long, or the clock is
+//     wrong. The operator is warned. If the kernel reports that no time service has set the clock, the
+//     log's time goes on from the newest of these times, and LogClock treats the wall clock as one that
+//     has jumped.
 // A clock that is wrong by less than kRestUs cannot be told from a right one.
 #pragma once
 #include <optional>

@@ -45,7 +45,7 @@ StoreResult<Sequence> LogSearch::first_behind(TimeUs time, Sequence first, Seque
 
 StoreResult<std::optional<Sequence>> LogSearch::newest_at(TimeUs time) {
   Sequence last = range_.last.version.seq;
-  // The first time of an era is its earliest. So if that is later, all of the era is.
+  // The first time of an era is its earliest one. If it is later, all edits of the era are later.
   for (auto era = eras_.rbegin(); era != eras_.rend() && era->first >= range_.first; ++era) {
     if (era->time_us <= time) {
       const auto behind = first_behind(time, era->first, last);

@@ -83,8 +83,8 @@ StoreResult<void> SqlStore::flush_segments() {
 StoreResult<void> SqlStore::make_segments_again() {
   segments_.forget();
   if (auto gone = database().run("DELETE FROM log_box"); !gone) return failed(gone.error());
-  // Rows that are read in parts: no statement reads while another one writes. A gap in the log does
-  // no harm.
+  // The rows are read in parts, so that no statement reads while another one writes. A gap in the
+  // log does no harm.
   auto rows = database().prepare(
       "SELECT seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM edit_log "
       "WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 4096");
