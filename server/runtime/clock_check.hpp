@@ -29,10 +29,11 @@ struct ClockEvidence {
 };
 
 struct ClockCheck {
-  std::optional<std::string> warning;
-  std::optional<TimeUs> begin_us;  // LogPosition::begin_us
+  std::optional<std::string> warning;  // for the operator, as a sentence
+  std::optional<TimeUs> begin_us;      // LogPosition::begin_us
 };
 
+/// Applies the rule above. Reads no clock.
 ClockCheck check_clock(const ClockEvidence& evidence);
 
 /// Returns why a wall clock that is behind the time of the log may be wrong, as a part of a sentence,
@@ -40,8 +41,8 @@ ClockCheck check_clock(const ClockEvidence& evidence);
 /// kernel reports nothing, and the clock is more than kJumpUs behind a file of the world.
 std::optional<std::string> doubt_of_clock_behind(const ClockEvidence& evidence);
 
-/// Reads the clocks and the times of the files of a world, at a place. Call it before the world is
-/// changed.
+/// Reads the wall clock, and when the files of the world at `place` were written. A file that cannot
+/// be read counts as missing. Call it before the world is changed. Blocks on the file system.
 ClockEvidence read_clock_evidence(const std::string& place, TimeUs last_us);
 
 }  // namespace runstone
