@@ -34,7 +34,7 @@ constexpr AddressBlock address_range_of(AddressBlock block) {
 }
 
 /// Returns the first block of the wide network of an address: the /16 of an IPv4 address, the /32 of
-/// an IPv6 address. A provider has so much at least, and hands ranges of it to its customers.
+/// an IPv6 address. Most providers have at least one such network, and give ranges of it to customers.
 constexpr AddressBlock wide_network_of(AddressBlock block) {
   const auto bits = static_cast<std::uint64_t>(block);
   const bool is_v4 = bits >> 32 == 0xffff;

@@ -58,6 +58,14 @@ constexpr VoxelBox intersect(const VoxelBox& a, const VoxelBox& b) {
           {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y), std::min(a.max.z, b.max.z)}};
 }
 
+/// Returns the smallest box that holds both. An empty box adds nothing.
+constexpr VoxelBox bounding_box(const VoxelBox& a, const VoxelBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
+}
+
 /// Returns the chunk that holds a voxel. World chunks are cubes of `edge` voxels a side.
 constexpr ChunkCoord chunk_of(VoxelPos p, std::int32_t edge) {
   return {floor_div(p.x, edge), floor_div(p.y, edge), floor_div(p.z, edge)};

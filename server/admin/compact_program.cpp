@@ -42,7 +42,7 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
   if (!range) return compaction_failure(range.error());
   const TimeUs cut_us = now_us - static_cast<TimeUs>(request.keep_days) * kDayUs;
   const auto found = store.sequence_at(cut_us);
-  // What is older was compacted away.
+  // An earlier compaction has removed all edits that are older.
   const bool is_none_older = !found && found.error().kind == StoreError::Kind::bad_request;
   if (!found && !is_none_older) return compaction_failure(found.error());
   const Sequence at = is_none_older ? range->first - 1 : *found;

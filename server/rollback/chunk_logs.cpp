@@ -18,11 +18,6 @@ std::size_t bytes_of(const EditRecord& record) {
   return bytes;
 }
 
-VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
 /// Returns true if one of the chunks, the keys of a map, overlaps a box that is not empty. Cost:
 /// O(log chunks) for each chunk of a box with few of them; of larger boxes O(1), and the answer may
 /// then be true for a box between the chunks.
@@ -106,7 +101,7 @@ StoreResult<bool> ChunkLogs::read_ahead(const std::vector<Need>& needs, Sequence
   for (const Need& need : needs) {
     ahead_.chunks[need.key].first = need.first;
     const VoxelBox box = box_of(need.key.at, edge);
-    query.box = query.box ? join(*query.box, box) : box;
+    query.box = query.box ? bounding_box(*query.box, box) : box;
     query.first = std::min(query.first, need.first);
   }
   ahead_.last = last;

@@ -1,7 +1,7 @@
 // ChunkLogs: reads the edits of the log that touch a chunk, one chunk at a time. It can keep the
-// records of a chunk, for a caller that reads the same chunk several times, and read those of many
-// chunks in one pass: edits that lie scattered share their entries in the index by place, so that
-// each chunk alone would read all of them. It blocks on the disk.
+// records of a chunk, for a caller that reads the same chunk several times. It can also read the
+// records of many chunks in one pass: scattered edits share an entry of the index by place, and a
+// pass for each chunk would read all edits of the entry each time. It blocks on the disk.
 // Threads: one, which alone uses the reader.
 #pragma once
 #include <cstddef>
@@ -45,7 +45,8 @@ class ChunkLogs {
 
  private:
   static constexpr std::size_t kAheadBytesMax = std::size_t{64} << 20;
-  /// The records of read_ahead(). An edit may touch many chunks, so each has the places of its own.
+  /// The records of read_ahead(). An edit may touch many chunks, so each chunk lists the places of its
+  /// records.
   struct Ahead {
     struct Of {
       Sequence first = 1;

@@ -19,7 +19,7 @@ StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, c
                               Sequence at, ReplayScratch& scratch);
 
 /// The two steps of chunk_past(), for callers that read the log of many chunks at once.
-/// Returns the newest stored form of a chunk that is not younger than `at`.
+/// Returns the newest stored form of a chunk that is not newer than `at`.
 StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                                Sequence at);
 /// Returns that form with the edits up to `at`, which are read through `logs`. `edge` is that of the

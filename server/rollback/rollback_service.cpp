@@ -363,7 +363,7 @@ void RollbackService::step(Job& job, const Clocks& now) {
 void RollbackService::report_previews(const Clocks& now) {
   for (Computing& c : computing_) {
     if (c.report_us == 0) c.report_us = now.steady_us + kFirstReportUs;
-    if (now.steady_us < c.report_us) continue;
+    if (now.steady_us < c.report_us || !c.preview->is_wanted->load()) continue;
     c.report_us = now.steady_us + kReportIntervalUs;
     c.reply(CommandAnswer::progress("preview " + c.preview->id() +
                                     " is being computed: " + c.preview->progress_text() +

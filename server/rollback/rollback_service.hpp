@@ -82,12 +82,11 @@ class RollbackService {
     std::function<void()> begin;
     CommandReply reply;
   };
-  /// A preview that a worker computes, and who waits for it.
+  /// A preview that a worker computes, and the caller who waits for it.
   struct Computing {
     std::shared_ptr<RollbackPreview> preview;
     CommandReply reply;
-    TimeUs report_us =
-        0;  // when the next answer about its progress is due, steady clock; 0: none yet
+    TimeUs report_us = 0;  // steady clock, of the next answer about its progress; 0: not known yet
   };
   using SearchResult = StoreResult<PlayerActionSearch>;
 
@@ -103,7 +102,7 @@ class RollbackService {
   void when_durable(const Clocks& now, const CommandReply& reply, std::function<void()> begin);
   Job& start_job(RestoreOrder order, std::string name, CommandReply reply);
   void step(Job& job, const Clocks& now);
-  /// Answers how far the previews are that take long.
+  /// Answers the callers of previews that take long with the progress.
   void report_previews(const Clocks& now);
   /// Answers once that an undo or redo waits.
   void report_wait(Job& job) const;

@@ -80,7 +80,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.snapshots.stack_bytes_max = world.memory.stack_bytes_max;
   world.snapshots.edits_max = config.snapshot_edits;
   world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * kUsPerSecond;
-  // What follows the snapshots needs time, too: the snapshots under way, and to free the memory.
+  // A stop begins no snapshot in the last quarter of stop_s. In that time it completes the snapshots
+  // that it has begun, and frees the memory.
   world.stop_us_max = static_cast<TimeUs>(config.stop_s) * kUsPerSecond * 3 / 4;
   return world;
 }

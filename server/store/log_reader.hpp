@@ -27,7 +27,7 @@ struct LogRange {
   friend bool operator==(const LogRange&, const LogRange&) = default;
 };
 
-/// The begin of an era: a record that corrects_time().
+/// The start of an era: a record that corrects_time().
 struct LogEra {
   Sequence first = 0;
   TimeUs time_us = 0;  // UTC, of that record
@@ -35,17 +35,18 @@ struct LogEra {
 };
 
 /// Conditions on edits of the log: author, time, place and cause. A condition that is not set holds
-/// for every edit. The times mean places in the log (LogReader::sequence_at()): where a record
-/// corrects the time, edits between them may have other times.
+/// for every edit. The times stand for places in the log (LogReader::sequence_at()). If a record
+/// corrects the time, an edit between these places may have a time that is not between them.
 struct LogQuery {
   std::optional<AuthorId> author;
-  // UTC. Edits behind the newest one whose time is earlier.
+  // UTC. Holds for the edits behind the newest edit whose time is earlier.
   TimeUs from_us = std::numeric_limits<TimeUs>::min();
-  // Edits up to the newest one whose time is not later.
+  // UTC. Holds for the edits up to the newest edit whose time is not later.
   TimeUs until_us = std::numeric_limits<TimeUs>::max();
   std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
-  /// Of a query with a box: is asked with the bounding box of an edit, or with a box around those of
-  /// many edits. What it refuses is left out unread. Empty: refuses nothing.
+  /// Called only if `box` is set. Its argument is the bounding box of one edit, or a box that holds
+  /// the bounding boxes of several edits. If it returns false, the query leaves out these edits and
+  /// does not read them. An empty function leaves out no edit.
   std::function<bool(const VoxelBox&)> wants;
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
@@ -65,7 +66,7 @@ class LogReader : public virtual WorldInfo {
   /// Returns sequence, epoch and time of an edit, or nullopt if the log does not have it. The edit
   /// 0 is the state before the first one; an empty log has it.
   StoreResult<std::optional<LogEnd>> edit_at(Sequence seq);
-  /// Returns the newest edit whose time (UTC) is not later than this one. If all edits are later,
+  /// Returns the newest edit whose time is not later than `time_us` (UTC). If all edits are later,
   /// returns the sequence before the first edit of the log. Fails (bad_request) if all are later and
   /// one of them was compacted away. Cost: O(eras + log edits).
   virtual StoreResult<Sequence> sequence_at(TimeUs time_us) = 0;

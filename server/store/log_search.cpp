@@ -10,15 +10,6 @@ namespace {
 // The edits that a statement finds at most. PostgreSQL returns all of them at once.
 constexpr std::size_t kPortion = 65'536;
 
-/// Returns the bounding box of a row of matching(), which follows its sequence.
-VoxelBox box_in(sql::Statement& row) {
-  const auto coordinate = [&](int column) {
-    return static_cast<std::int32_t>(row.integer(column));
-  };
-  return {{coordinate(1), coordinate(2), coordinate(3)},
-          {coordinate(4), coordinate(5), coordinate(6)}};
-}
-
 }  // namespace
 
 StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
@@ -54,7 +45,7 @@ StoreResult<Sequence> LogSearch::first_behind(TimeUs time, Sequence first, Seque
 
 StoreResult<std::optional<Sequence>> LogSearch::newest_at(TimeUs time) {
   Sequence last = range_.last.version.seq;
-  // The first time of an era is its earliest. So if that is later, all of the era is.
+  // The first time of an era is its earliest one. If it is later, all edits of the era are later.
   for (auto era = eras_.rbegin(); era != eras_.rend() && era->first >= range_.first; ++era) {
     if (era->time_us <= time) {
       const auto behind = first_behind(time, era->first, last);
@@ -118,7 +109,7 @@ StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query,
       const auto more = rows->step();
       if (!more) return failed(more.error());
       if (!*more) break;
-      if (query.wants && !query.wants(box_in(*rows))) continue;
+      if (query.wants && !query.wants(box_in(*rows, 1))) continue;
       found.push_back(static_cast<Sequence>(rows->integer(0)));
     }
   }

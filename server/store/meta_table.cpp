@@ -291,7 +291,7 @@ StoreResult<std::optional<RowCounts>> MetaTable::row_counts() {
   if (!value) return failed(value.error());
   if (!*value) return std::optional<RowCounts>();
   const auto* bytes = std::get_if<Bytes>(&**value);
-  // Without the number of segments: the row was written before these were counted.
+  // A row of kBytesBefore is from a program that did not count segments.
   constexpr std::size_t kBytes = 44, kBytesBefore = 36;
   if (bytes != nullptr && bytes->size() == kBytesBefore) return std::optional<RowCounts>();
   if (bytes == nullptr || bytes->size() != kBytes)

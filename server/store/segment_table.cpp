@@ -17,14 +17,6 @@ constexpr const char* kPostgresInBox =
     " AND int8range(min_y, max_y, '[]') && int8range(?7, ?6, '[]')"
     " AND int8range(min_z, max_z, '[]') && int8range(?9, ?8, '[]')";
 
-VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
-  // An edit without a place belongs to every box.
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
 bool is_small(const VoxelBox& box) {
   return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) <=
          kSegmentSide;
@@ -56,7 +48,7 @@ StoreResult<void> SegmentTable::add(Sequence seq, AuthorId author, const VoxelBo
   }
   Open& open = open_[author];
   if (open.edits > 0) {
-    const VoxelBox joined = join(open.segment.box, box);
+    const VoxelBox joined = bounding_box(open.segment.box, box);
     if (open.edits < kSegmentEditsMin || (open.edits < kSegmentEditsMax && is_small(joined))) {
       open.segment.box = joined;
       open.segment.last = seq;
@@ -116,16 +108,12 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const LogQuery& query, S
     rows->bind(6, std::int64_t{box->max.y}).bind(7, std::int64_t{box->min.y});
     rows->bind(8, std::int64_t{box->max.z}).bind(9, std::int64_t{box->min.z});
   }
-  const auto coordinate = [&](int column) {
-    return static_cast<std::int32_t>(rows->integer(column));
-  };
   std::vector<LogSegment> segments;
   for (;;) {
     const auto more = rows->step();
     if (!more) return failed(more.error());
     if (!*more) break;
-    const VoxelBox around{{coordinate(3), coordinate(4), coordinate(5)},
-                          {coordinate(6), coordinate(7), coordinate(8)}};
+    const VoxelBox around = box_in(*rows, 3);
     if (query.wants && !query.wants(around)) continue;
     segments.push_back({static_cast<Sequence>(rows->integer(0)),
                         static_cast<Sequence>(rows->integer(1)),

@@ -30,6 +30,14 @@ struct LogSegment {
   VoxelBox box;  // around the bounding boxes of its edits
 };
 
+/// Returns the box in the columns min_x, min_y, min_z, max_x, max_y, max_z of a row. `column` is the
+/// first of them.
+inline VoxelBox box_in(sql::Statement& row, int column) {
+  const auto coordinate = [&](int i) { return static_cast<std::int32_t>(row.integer(column + i)); };
+  return {{coordinate(0), coordinate(1), coordinate(2)},
+          {coordinate(3), coordinate(4), coordinate(5)}};
+}
+
 class SegmentTable {
  public:
   /// The database must outlive the table.

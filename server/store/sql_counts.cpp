@@ -83,17 +83,14 @@ StoreResult<void> SqlStore::flush_segments() {
 StoreResult<void> SqlStore::make_segments_again() {
   segments_.forget();
   if (auto gone = database().run("DELETE FROM log_box"); !gone) return failed(gone.error());
-  // Rows that are read in parts: no statement reads while another one writes. A gap in the log does
-  // no harm.
+  // The rows are read in parts, so that no statement reads while another one writes. A gap in the
+  // log does no harm.
   auto rows = database().prepare(
       "SELECT seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM edit_log "
       "WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 4096");
   if (!rows) return failed(rows.error());
   std::vector<LogSegment> part;
   std::int64_t before = 0;
-  const auto coordinate = [&](int column) {
-    return static_cast<std::int32_t>(rows->integer(column));
-  };
   do {
     part.clear();
     {
@@ -105,11 +102,7 @@ StoreResult<void> SqlStore::make_segments_again() {
         if (!*more) break;
         before = rows->integer(0);
         const auto seq = static_cast<Sequence>(before);
-        part.push_back({seq,
-                        seq,
-                        static_cast<AuthorId>(rows->integer(1)),
-                        {{coordinate(2), coordinate(3), coordinate(4)},
-                         {coordinate(5), coordinate(6), coordinate(7)}}});
+        part.push_back({seq, seq, static_cast<AuthorId>(rows->integer(1)), box_in(*rows, 2)});
       }
     }
     for (const LogSegment& edit : part) {

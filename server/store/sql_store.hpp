@@ -239,8 +239,8 @@ class SqlStore final : public Store {
   std::optional<RightsTable> rights_;
   LogTable log_;
   SegmentTable segments_;
-  // The row counts as they were written last; nullopt: they must be read. A commit with new segments
-  // then costs one write more and no read.
+  // The row counts as they were written last; nullopt: they must be read. They are kept so that a
+  // commit with new segments costs one more write and no read.
   std::optional<RowCounts> counts_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
@@ -254,11 +254,13 @@ class SqlStore final : public Store {
   std::optional<StoreError> loss_;
   bool is_mark_unknown_ = false;  // it is damaged, or missing although the world needs it
   bool has_mark_file_ = false;
-  bool is_open_ = false;               // `meta` says that the database is being written
-  bool is_open_in_file_ = false;       // this program has written that into the main file
-  bool is_reader_in_the_way_ = false;  // that or the format lies in the WAL still
-  bool is_format_raised_ = false;      // by the present transaction
-  bool is_whole_ = false;              // this program may say so when it closes the world
+  bool is_open_ = false;          // `meta` says that the database is being written
+  bool is_open_in_file_ = false;  // this program has written that into the main file
+  // Because of a reader, the statement that the database is being written, or the number of the
+  // format, is in the WAL alone still.
+  bool is_reader_in_the_way_ = false;
+  bool is_format_raised_ = false;  // by the present transaction
+  bool is_whole_ = false;          // this program may say so when it closes the world
   bool broken_ = false;
 };
 

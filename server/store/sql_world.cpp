@@ -116,7 +116,7 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   if (!store->tiles_ && access != StoreAccess::read_only) {
     if (const auto converted = store->convert(); !converted) return failed(converted.error());
   }
-  // A copy is made with format 5; its row `log_eras` shows that it needs format 6.
+  // A copy of a world is created with format 5. Its row `log_eras` shows that it needs format 6.
   if (rows->contains(kLogErasKey) && access != StoreAccess::read_only && !store->loss_) {
     const auto format = store->backend_->format();
     if (!format) return failed(format.error());

@@ -16,9 +16,9 @@ inline constexpr std::uint32_t kApplicationId = 0x52756e53;
 /// PRAGMA user_version of a new world: the version of the schema and of the contents of its
 /// columns.
 inline constexpr std::uint32_t kWorldFormat = 5;
-/// The format of a world whose time was corrected (kLogErasKey). It has the schema of kWorldFormat. Older
-/// programs refuse this number. If a later program changes the schema, its format is a greater number,
-/// because this program opens every world of format 6.
+/// The format of a world whose time was corrected (kLogErasKey). It has the schema of kWorldFormat.
+/// Older programs refuse this number. If a later program changes the schema, its format is a greater
+/// number, because this program opens every world of format 6.
 inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;

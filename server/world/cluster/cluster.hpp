@@ -43,6 +43,7 @@ class Cluster {
   std::optional<TimeUs> owner_heard_us() const { return link_.heard_us(); }
   /// Returns the number of servers that follow this one.
   std::size_t follower_count() const { return followers_.count(); }
+  /// Returns why no CorrectTime may be ordered, as a sentence, or nullopt.
   std::optional<std::string> correction_refusal() const { return followers_.correction_refusal(); }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }

@@ -37,8 +37,8 @@ struct WorldConfig {
   std::size_t sessions_per_key = 0;      // beyond it: server_full; 0: no limit
   std::size_t sessions_per_address = 0;  // beyond it: server_full; 0: no limit
   // Percent of the seats that others leave, which the addresses of one range may take. The last
-  // seats are for those who have none (joining.cpp). Beyond it: server_full. It holds if
-  // sessions_per_address is not 0.
+  // seats are for ranges and networks without a session (joining.cpp). Beyond it: server_full. The
+  // limit holds if sessions_per_address is not 0.
   std::uint64_t range_seats_percent = 100;
   std::size_t names_per_key = 3;              // that a key may own; owned names stay owned
   std::uint64_t names_per_address = 0;        // claimed within an hour; 0: no limit

@@ -1,6 +1,6 @@
-// LogClock: the time of the edit log. The wall clock may be set to a wrong time and back, but a time in
-// the log stays. The times of edits decrease only at a record that corrects the time (CorrectTime). So
-// the log's time does not follow a jump of the wall clock at once:
+// LogClock: the time of the edit log. The wall clock may be set to a wrong time and back, but a time
+// in the log stays. The times of edits decrease only at a record that corrects the time
+// (CorrectTime). So the log's time does not follow a jump of the wall clock at once:
 //   - It begins with the wall clock, or with another time if the wall clock is doubtful then: that
 //     is a jump, too (server/runtime/clock_check.hpp). From then on it advances with the steady
 //     clock, and is slewed towards the wall clock by at most kSlewPpm.
@@ -9,11 +9,12 @@
 //     service may set a clock long after the start, and a suspended computer stops its steady
 //     clock.
 //   - time(), by which restrictions end, advances with the steady clock. It steps only if the caller
-//     calls accept_wall_clock(): at a record that moves the ends of restrictions by the same step, or
-//     if there are no such ends. So a jump ahead waits for the caller (is_step_due()).
-//   - While the last edit of the log is ahead of the log's time, edits get the time of that edit again.
-//     Their order is that of their sequences. time() goes on from there nevertheless: a clock that was
-//     ahead once must not make a mute of five seconds last for years.
+//     calls accept_wall_clock(). The caller does so at a record that moves the ends of restrictions by
+//     the same step, or if there are no such ends. So a jump ahead waits for the caller
+//     (is_step_due()).
+//   - While the last edit of the log is ahead of the log's time, edits get the time of that edit
+//     again. Their order is that of their sequences. time() advances from there nevertheless: a clock
+//     that was ahead once must not make a mute of five seconds last for years.
 //   - A server that takes the world over goes on from the time of the former owner. If its own wall
 //     clock is ahead of that time, it has jumped.
 // Each jump makes a warning for the operator, and so does a log that ends ahead of the wall clock.
@@ -61,7 +62,7 @@ class LogClock {
   /// caller makes the log's time the wall clock's.
   bool is_step_due() const;
   /// Returns true if the wall clock has jumped, and has not kept the jump for kAcceptUs.
-  bool has_jumped() const { return jump_.has_value(); }
+  bool has_jumped() const { return jump_.has_value() && !is_jump_kept(); }
   /// Makes the log's time that of the wall clock at the last advance(). If it was ahead, the
   /// next stamp() is for a record that corrects the time.
   void accept_wall_clock();

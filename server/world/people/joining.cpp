@@ -29,7 +29,8 @@ ChunkEncoding choose_tile_encoding(ChunkEncoding of_chunks, std::uint8_t offered
   return is_coded ? ChunkEncoding::coded : of_chunks;
 }
 
-/// A household has so many seats, until the last ones are reached (LastSeats).
+/// The number of seats that a range of addresses, for example of a household, has at least. It does
+/// not hold for the last seats (LastSeats).
 constexpr std::uint64_t kSeatsOfRangeMin = 8;
 
 /// Returns how many seats the addresses of one range may take while sessions from elsewhere take
@@ -39,10 +40,11 @@ std::uint64_t seats_of_range(const WorldConfig& config, std::size_t elsewhere) {
   return std::max(kSeatsOfRangeMin, (left * config.range_seats_percent + 99) / 100);
 }
 
-/// The last seats of a server. Shares of what others leave halve the free seats with each range, so
-/// a few ranges would take all of them. The last eighth is therefore for ranges without a session,
-/// and half of it for wide networks without one, because the ranges of one provider cost little. Of
-/// 256 seats three ranges take 224, 16 further ranges one each, and 16 further networks one each.
+/// The last seats of a server. If each range may take half of the free seats, a few ranges take nearly
+/// all of them. Therefore the last eighth of the seats is for ranges without a session. Half of this
+/// eighth is for wide networks without a session, because the ranges of one provider cost little.
+/// Example: of 256 seats, three ranges take 224, then 16 further ranges take one each, then 16 further
+/// networks take one each.
 struct LastSeats {
   std::uint64_t for_new_ranges = 0, for_new_networks = 0;
 };

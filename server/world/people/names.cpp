@@ -22,8 +22,8 @@ LookalikeNames lookalikes_of(const std::set<std::string>& reserved) {
 }
 
 /// Returns true for the name that clients give their player until the player chooses another one,
-/// while the role of that name has no rights over others. It says nothing about the role of its
-/// player, and a client that is started for the first time must be able to join.
+/// while the role of that name has no rights over others. This name does not suggest that its player
+/// has the role, and a client that is started for the first time must be able to join.
 bool is_first_name(const std::string& folded, const RightsState& rights) {
   if (folded != kBuilderRole) return false;
   const Decided<Role>* role = rights.find_role(folded);

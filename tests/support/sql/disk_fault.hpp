@@ -1,8 +1,9 @@
-// DiskFault: an error of the system that SQLite meets (FaultVfs), the words that must name it, and runs
-// that meet it.
+// DiskFault: an error of the system that SQLite meets (FaultVfs), the words that must name it, and
+// runs that meet it.
 #pragma once
 #include <catch2/catch.hpp>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -41,16 +42,20 @@ inline bool says_why(const std::string& what, const DiskFault& fault) {
          has("cannot be made, but another one can be made there now: try again");
 }
 
-/// Calls `run(vfs, fault)` with each fault at every `stride`-th call of the system, until a run ends
-/// before its fault. The first calls differ from fault to fault, so that all faults together meet each
-/// call that writes. `run` ends the fault with FaultVfs::heal(). Returns the number of runs.
+/// Calls `run(vfs, fault)` with each fault at every `stride`-th call that can have its error
+/// (FaultVfs::fail()), until a run ends before its fault. The numbers of the first calls are spread
+/// evenly over the stride. So all faults together meet every number of a call if the stride is at most
+/// the number of faults, and otherwise about every (stride / number of faults)-th one. `run` ends the
+/// fault with FaultVfs::heal(). Returns the number of runs.
 template <class Run>
 std::uint64_t meet_disk_faults(std::uint64_t stride, const Run& run) {
   constexpr std::uint64_t kCallsMax = 20'000;
   FaultVfs vfs;
-  std::uint64_t runs = 0, first = 0;
-  for (const DiskFault& fault : all_disk_faults()) {
-    std::uint64_t call = 1 + first++ % stride;
+  const std::vector<DiskFault> faults = all_disk_faults();
+  std::uint64_t runs = 0;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    const DiskFault& fault = faults[i];
+    std::uint64_t call = 1 + i * stride / faults.size();
     do {
       REQUIRE(call < kCallsMax);
       INFO("call " << call << ", " << fault.text());

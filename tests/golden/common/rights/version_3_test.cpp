@@ -3,7 +3,7 @@
 
 #include "common/rights/rights_change.hpp"
 
-// What version 3 adds to changes of rights. It may change until the release.
+// The changes of rights that version 3 adds. Their bytes may change until version 3 is released.
 namespace runstone::test {
 
 TEST_CASE("the bytes of a correction of the time are pinned", "[rights][golden]") {

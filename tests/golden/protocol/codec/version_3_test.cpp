@@ -2,7 +2,7 @@
 
 #include "protocol/limits.hpp"
 
-// What version 3 of the protocol adds. It may change until the release.
+// The additions of version 3 of the protocol. They may change until version 3 is released.
 namespace runstone::test {
 
 TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") {

@@ -92,6 +92,14 @@ TEST_CASE("an intersection holds the voxels that both boxes hold", "[core][coord
   }
 }
 
+TEST_CASE("the bounding box of two boxes is the smallest that holds both", "[core][coords]") {
+  const VoxelBox a{{-5, 2, 0}, {1, 3, 4}}, b{{0, -7, 1}, {9, 0, 2}}, none{{1, 1, 1}, {1, 5, 5}};
+  CHECK(bounding_box(a, b) == VoxelBox{{-5, -7, 0}, {9, 3, 4}});
+  CHECK(bounding_box(b, a) == bounding_box(a, b));
+  CHECK(bounding_box(a, none) == a);
+  CHECK(bounding_box(none, a) == a);
+}
+
 TEST_CASE("directions name axis, sign, opposite and neighbour", "[core][coords]") {
   const ChunkCoord c{1, -2, 3};
   CHECK(neighbour(c, Direction::neg_x) == ChunkCoord{0, -2, 3});

@@ -1,4 +1,4 @@
-// What a correction of the time changes in the rights of a world.
+// The effect of a correction of the time on the rights of a world.
 #include <catch2/catch.hpp>
 #include <limits>
 

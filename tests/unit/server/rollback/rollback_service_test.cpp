@@ -177,6 +177,7 @@ TEST_CASE("a preview that takes long says how far it is, and can be cancelled", 
         "preview p1 is being computed: looking for the edits; `rollback cancel p1` ends it");
   SECTION("cancelled") {
     night.service.cancel("p1", night.reply());
+    for (int i = 0; i < 100; ++i) night.tick();
     CHECK(night.answers.back().text == "preview p1 is forgotten");
     night.run_all();
     CHECK_FALSE(night.answer().is_ok);

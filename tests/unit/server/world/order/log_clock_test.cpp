@@ -215,6 +215,7 @@ TEST_CASE("the time does not step ahead by itself, because restrictions would en
     clocks.log.advance(clocks.now());
     CHECK(clocks.log.time() == clocks.right());
     CHECK(clocks.log.is_step_due() == (minute >= 60));
+    CHECK(clocks.log.has_jumped() == (minute < 60));
   }
   CHECK(clocks.log.ahead_us() == -kYear);
   clocks.log.accept_wall_clock();
