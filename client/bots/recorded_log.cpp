@@ -11,8 +11,8 @@
 namespace runstone {
 namespace {
 
-/// Returns the time between two times of a file, whose difference may overflow. It is 0 if the time
-/// falls, because the log corrects it there.
+/// Returns how much later the second of two times of a file is, in microseconds, at most the largest
+/// TimeUs. Returns 0 if it is earlier: there the log corrects its time.
 TimeUs between(TimeUs first, TimeUs later) {
   if (later < first) return 0;
   const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(first);

@@ -63,7 +63,7 @@ struct FrameDone {
   std::size_t uploads = 0;  // since the frame before
   std::size_t carried = 0;  // uploads that were left for later frames
   RenderStats stats;
-  /// Why screenshots could not be written. Each text begins with the name of the file.
+  /// The errors of screenshots that could not be written. Each begins with the name of the file.
   std::vector<std::string> unwritten;
 };
 using DrawDone = std::variant<UploadDone, FrameDone>;

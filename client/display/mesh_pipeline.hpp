@@ -108,8 +108,8 @@ class MeshPipeline {
   /// Fails if one of the newest completed screenshots could not be written. The error begins with
   /// the name of the file.
   const Result<void, std::string>& screenshots_written() const { return screenshots_written_; }
-  /// Returns why screenshots since the last call could not be written. Each text begins with the name
-  /// of the file.
+  /// Returns the errors of the screenshots that could not be written since the last call. Each begins
+  /// with the name of the file.
   std::vector<std::string> take_unwritten() { return std::exchange(unwritten_, {}); }
 
   /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.

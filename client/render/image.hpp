@@ -16,7 +16,7 @@ struct Image {
 /// smooth picture of a frame that was drawn twice as large. An odd last row or column is dropped.
 Image halved(const Image& image);
 
-/// Returns the bytes of a PNG file, or none if there is no memory for them.
+/// Returns the bytes of a PNG file, or no bytes if there is no memory for them. Cost: O(pixels).
 Bytes encode_png(const Image& image);
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// The browser's half of png_file.hpp.
+// write_png() of the client for browsers, where png_file.cpp is left out.
 #include "client/render/png_file.hpp"
 
 namespace runstone {

@@ -7,9 +7,9 @@
 
 namespace runstone {
 
-/// Writes a PNG file as write_output_file() does: a world or a key is never replaced, and a file that
-/// cannot be written completely is not there. The error begins with the name of the file. Waits for
-/// the disk.
+/// Writes a PNG file as write_output_file() does: a world or a key is never replaced, and after an
+/// error no part of the new file is left. The error begins with the name of the file. Blocks on the
+/// disk. In a browser it always fails.
 Result<void, std::string> write_png(const std::string& file, const Image& image);
 
 }  // namespace runstone

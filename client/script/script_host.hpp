@@ -132,8 +132,8 @@ class ScriptHost {
 
   /// Requests a screenshot; poll screenshot_written(). Returns false if this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;
-  /// Returns nullopt while the screenshot is in progress. Then it fails if the file was not written;
-  /// the error begins with the name of the file.
+  /// Returns nullopt while the screenshot is in progress, and then its result. The error begins with
+  /// the name of the file.
   virtual std::optional<Result<void, std::string>> screenshot_written() const = 0;
   /// Writes the digests of all confirmed chunks. The error begins with the name of the file.
   virtual Result<void, std::string> digests(const std::string& file) = 0;

@@ -33,7 +33,10 @@ std::optional<int> own_descriptor(const std::string& file) {
   return std::nullopt;
 }
 
-/// Puts the name of a renamed file on disk. A file system that cannot do this is no error.
+}  // namespace
+
+bool is_own_descriptor(const std::string& file) { return own_descriptor(file).has_value(); }
+
 void sync_folder_of(const std::string& file) {
   const std::string folder = std::filesystem::absolute(file).parent_path().string();
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -41,10 +44,6 @@ void sync_folder_of(const std::string& file) {
   static_cast<void>(::fsync(descriptor));
   ::close(descriptor);
 }
-
-}  // namespace
-
-bool is_own_descriptor(const std::string& file) { return own_descriptor(file).has_value(); }
 
 std::string without_links(const std::string& path) {
   std::filesystem::path at = path;

@@ -52,6 +52,9 @@ class FileWriter {
 
 /// Returns true for /dev/stdout and the other names of a descriptor of this process.
 bool is_own_descriptor(const std::string& file);
+/// Puts the name of a renamed file on disk. Does nothing on a file system that cannot do this. Blocks
+/// on the disk.
+void sync_folder_of(const std::string& file);
 /// Returns the path to which the symbolic links at the end of `path` lead. The path need not exist.
 std::string without_links(const std::string& path);
 

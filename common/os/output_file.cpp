@@ -20,14 +20,6 @@ bool is_database(const std::string& file) {
          std::string_view(begin.data(), begin.size()) == kDatabaseBegins;
 }
 
-/// Returns true for what cannot be replaced: a device, a pipe, a descriptor of this process.
-bool is_written_in_place(const std::string& file) {
-  if (is_own_descriptor(file)) return true;
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-}
-
 std::string with_name(const std::string& file, const std::string& why) {
   return file + ": cannot be written: " + why;
 }
@@ -47,6 +39,13 @@ std::string output_refusal(const std::string& file) {
   if (std::filesystem::is_regular_file(target, ignored) && is_database(target))
     return "is not overwritten: it is a database";
   return "";
+}
+
+bool is_written_in_place(const std::string& file) {
+  if (is_own_descriptor(file)) return true;
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
 Result<FileWriter, std::string> open_output_file(const std::string& file, mode_t mode) {

@@ -17,6 +17,10 @@ namespace runstone {
 /// The text does not repeat the name of the file.
 std::string output_refusal(const std::string& file);
 
+/// Returns true if `file` is a device, a pipe or a descriptor of this process, which no new file can
+/// replace.
+bool is_written_in_place(const std::string& file);
+
 /// Begins to write a file: FileWriter::in_place() for a device, a pipe or a descriptor,
 /// FileWriter::replace() otherwise. Fails as output_refusal() says, or if it cannot be written; the
 /// error begins with the name of the file.

@@ -48,8 +48,8 @@ class MapService final : MapThreads::Map {
   static constexpr TimeUs kAnswerUsMax = 8'000'000;
 
   using Reply = std::function<void(MapAnswer)>;
-  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds. That the
-  /// world lacks edits is reported once, until it lacks others.
+  /// Reports a fault of the stored world, for the host alone, at most once in ten seconds. A loss of
+  /// edits is reported once, and again when it changes.
   using Warn = std::function<void(const std::string&)>;
 
   /// `threads` must outlive the service. `place`: of the world, which need not exist yet.

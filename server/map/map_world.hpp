@@ -23,7 +23,8 @@ class MapWorld {
  public:
   /// The log is not looked at again within this time.
   static constexpr TimeUs kAgeUsMax = 200'000;
-  /// A world that lacks edits is opened anew after this time, because its host may have put it right.
+  /// A world that lacks edits is opened anew after this time, because its host may have repaired it.
+  /// This empties the caches, so its tiles are drawn again.
   static constexpr TimeUs kLossAgeUsMax = 60'000'000;
   /// Moments of the past that are kept.
   static constexpr std::size_t kMomentsMax = 4;
@@ -51,8 +52,9 @@ class MapWorld {
   StoreResult<ColumnTop> top(const MapMoment& moment, std::int32_t x, std::int32_t z,
                              const MapVoxels::ShouldContinue& should_continue);
   const MapRights& rights() const { return world_->rights; }
-  /// Returns which edits the world lacks although they were durable, or nullopt. Such a world is shown
-  /// as far as it is there. The text names files of this machine, so it is for the host alone.
+  /// Returns the error that names the durable edits that the world lacks, or nullopt if it lacks none.
+  /// The edits that are left are shown. The text names files of this machine, so it is for the host
+  /// alone.
   const std::optional<StoreError>& loss() const { return world_->reader->loss(); }
   const RecentChanges& changes() const { return world_->changes; }
   const MaterialTable& materials() const { return world_->materials; }
@@ -79,7 +81,7 @@ class MapWorld {
     Sequence reopen_at = 0;  // a present that has so many edits is opened anew
   };
   StoreResult<FileId> file_id() const;
-  /// Returns true if the world lacked edits when it was opened, and that was kLossAgeUsMax ago.
+  /// Returns true if the world lacked edits when it was opened, at least kLossAgeUsMax ago.
   bool has_old_loss(TimeUs steady_us) const;
   StoreResult<void> open(const FileId& file, TimeUs utc_us, const WorldAt::Progress& progress);
   StoreResult<void> follow(TimeUs utc_us, const WorldAt::Progress& progress);

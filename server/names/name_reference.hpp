@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-/// Begins a word that means a role where a player may stand, too: "role:mason".
+/// The beginning of a word that names a role where a command takes a role or a player: "role:mason".
 inline constexpr std::string_view kRolePrefix = "role:";
 
 /// Returns the fingerprint in the form of key_fingerprint(), or an empty text if the word has not

@@ -37,8 +37,8 @@ void print_loss(std::ostream& out, const Store& store);
 /// Writes the row "world": id and file. Then print_loss().
 void print_world(std::ostream& out, const Store& store);
 
-/// Returns the exit code of a subcommand that has written what a world holds: kReplayDifferent if the
-/// world lacks edits that were durable, so that they are missing in the output too, or kReplayEqual.
+/// Returns the exit code of a subcommand that has written out a world: kReplayDifferent if the world
+/// lacks edits that were durable, because the output lacks them too, and kReplayEqual otherwise.
 int code_of_output(const Store& store);
 
 /// Writes a report, given as JSON text, to `file`, or does nothing if `file` is empty. The error is

@@ -26,7 +26,11 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
   row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
   row(out, "written") << options.file << ", " << done->bytes << " bytes\n";
   const nlohmann::ordered_json json = {
-      {"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}};
+      {"edits", done->edits},
+      {"first", done->first},
+      {"last", done->last},
+      {"lost", (*store)->loss() ? (*store)->loss()->message() : ""},
+      {"bytes", done->bytes}};
   const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return failure(written.error());
   return code_of_output(**store);

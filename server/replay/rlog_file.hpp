@@ -47,9 +47,10 @@ struct RlogImportRequest {
 /// sequence number. An interrupted import can be repeated. What was imported into a world before an
 /// error stays.
 /// If the place holds no world and the file begins at edit 1, the world is made: same id, base of its
-/// generator, a new server key. In a folder it is made as a NewFolder: after an error, and without
-/// `until_damage` also if the file is damaged, there is no world. `out` gets a line about an
-/// interrupted import that is removed. The error is one line.
+/// generator, a new server key. A folder gets its world only when the import is complete (NewFolder).
+/// After an error it has no world. If the file is damaged, it gets a world with `until_damage` only.
+/// In a database, the edits that were imported before an error or the damage stay. Prints a line about
+/// an interrupted import that it removes to `out`. The error is one line.
 Result<RlogImport, std::string> import_rlog(const RlogImportRequest& request, std::ostream& out);
 
 }  // namespace runstone

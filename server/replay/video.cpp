@@ -34,9 +34,10 @@ class RemovedAtEnd {
   const std::string file_;
 };
 
-std::vector<std::string> words_of_command(std::uint32_t fps, const char* video) {
-  // Without -xerror some versions of ffmpeg succeed although the end of the video finds no room. Video
-  // players expect yuv420p, which has half the resolution for colours and needs even sides.
+std::vector<std::string> words_of_command(std::uint32_t fps, const std::string& video) {
+  // Without -xerror some versions of ffmpeg exit with 0 although the disk had no space for the end of
+  // the video. Video players expect yuv420p, which has half the resolution for colours and needs even
+  // sides.
   return {"ffmpeg",     "-y",
           "-loglevel",  "error",
           "-framerate", std::to_string(fps),
@@ -46,10 +47,11 @@ std::vector<std::string> words_of_command(std::uint32_t fps, const char* video) 
           "-xerror",    video};
 }
 
-/// Runs ffmpeg in the folder. Fails with the reason.
-Result<void, std::string> run_ffmpeg(const std::string& folder, std::uint32_t fps) {
+/// Joins the frames of the folder into `video`, an absolute path. Fails with the reason.
+Result<void, std::string> run_ffmpeg(const std::string& folder, std::uint32_t fps,
+                                     const std::string& video) {
   const auto ffmpeg_failure = [](std::string why) { return failure("ffmpeg " + std::move(why)); };
-  const auto pid = start_program({words_of_command(fps, kPartialVideo), -1, -1, folder});
+  const auto pid = start_program({words_of_command(fps, video), -1, -1, folder});
   if (!pid) {
     return ffmpeg_failure(pid.error() == ENOENT
                               ? "is not installed"
@@ -63,7 +65,7 @@ Result<void, std::string> run_ffmpeg(const std::string& folder, std::uint32_t fp
   return {};
 }
 
-/// Puts a file on disk. Fails with the reason, also if it is empty.
+/// Puts the bytes of a file on disk. Fails with the reason. An empty file is an error, too.
 Result<void, std::string> sync_video(const std::string& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return failure(std::string(std::strerror(errno)));
@@ -85,15 +87,15 @@ Result<void, std::string> make_video(const std::string& folder, std::uint32_t fp
   const std::string video = without_links(folder + "/" + kVideo);
   if (const std::string refusal = output_refusal(video); !refusal.empty())
     return failure(std::string(kVideo) + ": " + refusal);
-  std::error_code ignored;
-  const auto old = std::filesystem::status(video, ignored);
-  if (std::filesystem::exists(old) && !std::filesystem::is_regular_file(old))
-    return cannot("it is a device or a pipe");
-  const std::string partial = folder + "/" + kPartialVideo;
+  if (is_written_in_place(video)) return cannot("it is a device or a pipe");
+  // Only a file on the same file system can replace the video, to which a link may lead.
+  const std::string partial =
+      (std::filesystem::absolute(video).parent_path() / kPartialVideo).string();
   const RemovedAtEnd removed(partial);
-  if (const auto ran = run_ffmpeg(folder, fps); !ran) return ran;
+  if (const auto ran = run_ffmpeg(folder, fps, partial); !ran) return ran;
   if (const auto synced = sync_video(partial); !synced) return cannot(synced.error());
   if (std::rename(partial.c_str(), video.c_str()) != 0) return cannot(std::strerror(errno));
+  sync_folder_of(video);
   return {};
 }
 

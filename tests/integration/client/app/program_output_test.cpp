@@ -5,16 +5,14 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <chrono>
-#include <fstream>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "common/os/child_program.hpp"
 #include "tests/support/core/shell_run.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/core/text_contains.hpp"
+#include "tests/support/net/port_file.hpp"
 #include "tests/support/net/raw_client.hpp"
 
 namespace runstone::test {
@@ -23,16 +21,6 @@ namespace {
 const std::string kPrograms[] = {RUNSTONE_SERVER_PROGRAM, RUNSTONE_CLIENT_PROGRAM,
                                  RUNSTONE_BOT_PROGRAM, RUNSTONE_REPLAY_PROGRAM,
                                  RUNSTONE_WEB_PROGRAM};
-
-/// Reads the port that the server writes, for at most a minute. Returns 0 if it wrote none.
-std::uint16_t port_in(const std::string& file) {
-  for (int i = 0; i < 6'000; ++i) {
-    int port = 0;
-    if (std::ifstream(file) >> port) return static_cast<std::uint16_t>(port);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return 0;
-}
 
 /// Returns the end of a pipe that nobody reads.
 int unread_pipe() {

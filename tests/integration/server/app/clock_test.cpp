@@ -84,7 +84,8 @@ TEST_CASE("a clock that was ahead at one start is corrected by a command", "[int
     CHECK((left > kHour - 600 * kSecond && left <= kHour));
     RawClient mole(server->port());
     CHECK_FALSE(mole.join(2).has_value());
-    // What was ordered since the correction is found, and the edit of three hours ago is not.
+    // `log since 1h` lists all records but the edit of three hours ago: the three records of the
+    // wrong clock, the correction, and an edit that is ordered after it.
     RawClient ana(server->port());
     ana.features = kFeatureCommands;
     REQUIRE(ana.join(1).has_value());

@@ -1,8 +1,8 @@
-// A server dies again and again, by kill -9 or by a power loss, while a builder builds, hostile clients
-// attack, and the host changes rights, materials and names, rolls edits back and backs the world up. After
-// each death a compaction is cut, too. All connections use TLS. The next server starts, the log has
-// every edit that was reported as durable exactly once, and everything is there that was answered with
-// exit code 0.
+// A server dies again and again, by kill -9 or by a power loss, while a builder builds, hostile
+// clients attack, and the host changes rights, materials and names, rolls edits back and makes backups.
+// After each death the world is compacted, and most compactions are cut. All connections use TLS. The
+// tests check that the next server starts, that the log has every edit that was reported as durable
+// exactly once, and that every change is there that was answered with exit code 0.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -27,12 +27,12 @@ constexpr int kShortCycles = 3;
 constexpr int kShortCycles = 6;
 #endif
 constexpr int kKills = 500, kPowerLosses = 250;
-// So many worlds on a disk that ignores syncs live so many cycles, until a loss is found.
+// The worlds on a disk that ignores syncs, and the cycles of each. A loss that is found ends the test.
 constexpr int kLyingDisks = 6, kLyingDiskCycles = 6;
 // Another world is made after so many cycles, because each cycle adds about a megabyte.
 constexpr int kCyclesPerWorld = 25;
 constexpr int kCyclesPerLongOne = 4;
-// So many cycles have something of each kind, on a slow machine as well.
+// In so many cycles something of each kind happens, on a slow machine as well.
 constexpr int kManyCycles = 100;
 
 struct CrashTally {
@@ -175,8 +175,8 @@ TEST_CASE("a server that loses power again and again under attack loses no durab
   crash_cycles<PowerLossWorld>("power loss", kShortCycles);
 }
 
-// Up to an hour: docs/testing.md gives the command. The killed servers come first, because their process
-// must have no second thread.
+// These take up to an hour: docs/testing.md gives the command. The killed servers come first, because
+// their process must have no second thread.
 TEST_CASE("hundreds of killed servers lose no durable edit", "[.long]") {
   crash_cycles<KilledWorld>("kill -9", cycles_or(kKills));
 }

@@ -1,5 +1,5 @@
-// Dying worlds: worlds whose servers die at random moments, and whose compactions are cut: by kill -9,
-// or by a loss of power on a disk in memory.
+// Dying worlds: worlds whose servers die, and whose compactions are cut, at random moments. The cause
+// is a kill -9, or a loss of power of a disk in memory.
 #pragma once
 #include <signal.h>
 #include <sys/wait.h>
@@ -48,7 +48,7 @@ inline CompactionEnd failed_compaction(const std::string& why) {
   std::fprintf(stderr, "%s\n", why.c_str());
   return CompactionEnd::failed;
 }
-/// One compaction of so many is not cut.
+/// On average, one compaction of so many is not cut.
 inline constexpr std::uint32_t kCompactionsPerWhole = 3;
 
 /// A world whose servers are killed.

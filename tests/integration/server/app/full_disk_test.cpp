@@ -7,17 +7,16 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "common/os/child_program.hpp"
 #include "server/admin/control_program.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/support/core/text_contains.hpp"
+#include "tests/support/net/port_file.hpp"
 #include "tests/support/net/raw_client.hpp"
 #include "tests/support/sql/full_disk_vfs.hpp"
 
@@ -93,11 +92,7 @@ class LimitedServer {
     ::close(errors);
     REQUIRE(started.has_value());
     child_ = *started;
-    for (int i = 0; i < 6'000 && port_ == 0; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      int port = 0;
-      if (std::ifstream(folder / "port") >> port) port_ = static_cast<std::uint16_t>(port);
-    }
+    port_ = port_in(folder / "port");
     REQUIRE(port_ != 0);
   }
   ~LimitedServer() {

@@ -50,8 +50,8 @@ class GrieferRollbacks {
       if (number != 0) unchecked_.insert(number);
     }
   }
-  /// Returns how many rollbacks, answered as done since the last call, the log of a world lacks that no
-  /// server runs. Thread: that of the test.
+  /// Returns the number of rollbacks that were answered as done since the last call and that the log
+  /// lacks. Requires that no server runs the world. Thread: that of the test.
   std::uint64_t audit() {
     const auto store = open_world(world_, StoreAccess::read_only);
     if (!store) return unchecked_.size();

@@ -105,7 +105,8 @@ class SteadyBuilder {
   std::thread thread_;
 };
 
-/// Waits until a server follows the owner, whose folder has this name. Returns what the owner lists then.
+/// Waits until a server follows the owner, whose folder has this name. Returns what the owner lists
+/// then.
 std::string wait_for_follower(const PostgresServers& cluster, const std::string& owner) {
   std::string servers;
   for (int i = 0; i < 100 && servers.find("\nserver ") == std::string::npos; ++i) {
@@ -273,7 +274,8 @@ TEST_CASE(
   client.features = kFeatureChat;
   const auto accepted = client.join(1, 7);
   REQUIRE(accepted.has_value());
-  // Most of these large edits wait for a second or more (LargeEditPace). The handover orders them at once.
+  // Most of these large edits wait for a second or more (LargeEditPace). The handover orders them at
+  // once.
   for (ClientSequence seq = 1; seq <= kEdits; ++seq)
     client.send(EditRequest{seq, 0, {FillBox{{{0, 0, 0}, {600, 15, 600}}}, {}, 1}});
   client.send(ChatRequest{"sent"});

@@ -62,8 +62,8 @@ class HonestBuilder {
     std::uint64_t others = 0;    // edits of other clients that did
     std::string error;           // why the log cannot be read; empty: it was read
   };
-  /// Compares the log of a world that no server runs with what was reported as durable. What a
-  /// compaction has moved into the base is not compared.
+  /// Compares the log of a world that no server runs with what was reported as durable. Edits that a
+  /// compaction has moved into the base are not compared.
   Audit audit(const std::string& folder) {
     Audit found;
     const auto store = open_world(folder, StoreAccess::read_only);

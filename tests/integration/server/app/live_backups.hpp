@@ -29,15 +29,13 @@ class LiveBackups {
         ++done_;
         if (last_of(copy) < before) ++incomplete_;
       } else {
-        ++failed_;
         error_ = done.error();
       }
       std::filesystem::remove_all(copy);
     }
   }
   std::uint64_t done() const { return done_; }
-  std::uint64_t failed() const { return failed_; }
-  /// Returns why the last failed backup failed.
+  /// Returns the error of the last backup that failed, or an empty text.
   const std::string& error() const { return error_; }
   /// Returns the number of backups that lack something.
   std::uint64_t incomplete() const { return incomplete_; }
@@ -55,7 +53,7 @@ class LiveBackups {
 
   const std::string world_;
   const TempFolder folder_;
-  std::uint64_t done_ = 0, failed_ = 0, incomplete_ = 0;
+  std::uint64_t done_ = 0, incomplete_ = 0;
   std::string error_;
 };
 

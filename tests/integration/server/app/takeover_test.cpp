@@ -145,8 +145,8 @@ TEST_CASE(
     "[.postgres-server]") {
   const int round = GENERATE(1, 2, 3);  // without this rule, either may be faster
   CAPTURE(round);
-  // A server that follows looks often for two seconds after it has lost the owner, and then as often as one
-  // that has just started.
+  // A server that follows looks often for two seconds after it has lost the owner, and then as often
+  // as one that has just started.
   const auto keep_lease = [](ServerConfig& config) { config.lease_s = 5; };
   const PostgresServers cluster;
   const auto first = cluster.start("first", Role::standby, keep_lease);

@@ -304,10 +304,12 @@ TEST_CASE("a world that lacks durable edits exits with 1 and says which", "[stor
   // "equal" means that everything agrees.
   CHECK(outcome.out.find("result      equal") == std::string::npos);
   CHECK(file_text(json).find("\"lost\":\"" + world) != std::string::npos);
-  const ReplayOutcome exported = run_replay({"export", "--world", world, folder / "rest.rlog"});
+  const ReplayOutcome exported = run_replay(
+      {"export", folder / "rest.rlog", "--world", world, "--json", folder / "rest.json"});
   CHECK(exported.code == 1);
   CHECK(exported.out.find("LOST        ") != std::string::npos);
   CHECK(std::filesystem::exists(folder / "rest.rlog"));
+  CHECK(file_text(folder / "rest.json").find("\"lost\": \"" + world) != std::string::npos);
   const ReplayOutcome copied =
       run_replay({"copy", folder / "copy", "--world", world, "--json", folder / "copy.json"});
   INFO(copied.out << copied.err);

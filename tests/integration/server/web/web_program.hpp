@@ -18,18 +18,9 @@
 
 #include "common/os/child_program.hpp"
 #include "tests/support/core/temp_folder.hpp"
+#include "tests/support/net/port_file.hpp"
 
 namespace runstone::test {
-
-/// Reads the port that a program writes, for at most a minute. Returns 0 if it wrote none.
-inline std::uint16_t port_in(const std::string& file) {
-  for (int i = 0; i < 6'000; ++i) {
-    int port = 0;
-    if (std::ifstream(file) >> port) return static_cast<std::uint16_t>(port);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return 0;
-}
 
 class WebProgram {
  public:

@@ -87,6 +87,13 @@ TEST_CASE_METHOD(VideoBench, "a link stays where a video is written, and no worl
   CHECK(fs::is_symlink(video()));
   CHECK(fs::is_regular_file(frames() + "/far.mp4"));
   fs::remove(video());
+  // The unfinished video lies beside the file to which the link leads, so both are on one file system.
+  fs::create_directory(frames() + "/far");
+  fs::create_symlink("far/far.mp4", video());
+  CHECK(make("echo \"$last\" > \"$last\"") == "");
+  CHECK(contains(text(), "/frames/far/timelapse.partial.mp4\n"));
+  CHECK(fs::is_symlink(video()));
+  fs::remove(video());
   std::ofstream(frames() + "/world.sqlite") << "a world";
   fs::create_symlink("world.sqlite", video());
   CHECK(contains(make("echo video > \"$last\""), "timelapse.mp4: is not overwritten"));
