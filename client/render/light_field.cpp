@@ -17,14 +17,6 @@ std::int64_t volume_of(const VoxelBox& box) {
   return std::int64_t{box.max.x - box.min.x} * (box.max.y - box.min.y) * (box.max.z - box.min.z);
 }
 
-/// Returns the smallest box that holds both.
-VoxelBox hull(const VoxelBox& a, const VoxelBox& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
 VoxelBox grown(const VoxelBox& box, std::int32_t by) {
   return {{box.min.x - by, box.min.y - by, box.min.z - by},
           {box.max.x + by, box.max.y + by, box.max.z + by}};
@@ -100,7 +92,7 @@ void LightField::mark(VoxelBox dirty) {
   if (dirty.empty()) return;
   // Boxes that overlap are computed together if that costs no more.
   for (std::size_t i = 0; i < dirty_.size();) {
-    const VoxelBox both = hull(dirty_[i], dirty);
+    const VoxelBox both = bounding_box(dirty_[i], dirty);
     const auto cost = [](const VoxelBox& box) { return volume_of(grown(box, kLightReach)); };
     if (cost(both) <= cost(dirty_[i]) + cost(dirty)) {
       dirty = both;
@@ -116,9 +108,9 @@ void LightField::mark(VoxelBox dirty) {
   // The box joins the one with which it makes the smallest hull.
   const auto joined = std::min_element(
       dirty_.begin(), dirty_.end() - 1, [&dirty](const VoxelBox& a, const VoxelBox& b) {
-        return volume_of(hull(a, dirty)) < volume_of(hull(b, dirty));
+        return volume_of(bounding_box(a, dirty)) < volume_of(bounding_box(b, dirty));
       });
-  *joined = hull(*joined, dirty);
+  *joined = bounding_box(*joined, dirty);
   dirty_.pop_back();
 }
 
@@ -140,7 +132,7 @@ VoxelBox LightField::fill(ChunkCoord at, const LightChunk* chunk, const VoxelBox
           first = std::min(first, x);
           last = x + 1;
         }
-        if (first < last) changed = hull(changed, {{first, y, z}, {last, y + 1, z + 1}});
+        if (first < last) changed = bounding_box(changed, {{first, y, z}, {last, y + 1, z + 1}});
       }
     }
   };
@@ -359,7 +351,7 @@ VoxelBox LightField::relight(const VoxelBox& part) {
         first = std::min(first, x);
         last = x + 1;
       }
-      if (first < last) changed = hull(changed, {{first, y, z}, {last, y + 1, z + 1}});
+      if (first < last) changed = bounding_box(changed, {{first, y, z}, {last, y + 1, z + 1}});
     }
   }
   return changed;

@@ -12,12 +12,6 @@ namespace {
 constexpr int kSurfaceDepth = 8;  // chunks below the surface of a column that are examined, at most
 constexpr int kSamples = 5;       // points a side of a column where its surface is sampled
 
-VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
-  if (a.empty()) return b;
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
 }  // namespace
 
 StoreResult<TimelapseWorld> TimelapseWorld::open(WorldReader& reader, const Generator& generator,
@@ -37,7 +31,7 @@ StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
   const auto take = [this](const EditRecord& record) {
     // Protected ground is no edited place; it may reach through the whole world.
     if (!has_voxels(record.edit)) return true;
-    edited_ = joined(edited_, bounding_box(record.edit));
+    edited_ = bounding_box(edited_, bounding_box(record.edit));
     for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) edited_chunks_.insert({0, at});
     return true;
   };
@@ -46,7 +40,7 @@ StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
   // Without edits the timelapse shows what was edited before.
   for (const ChunkKey& key : start_.edited()) {
     edited_chunks_.insert(key);
-    edited_ = joined(edited_, box_of(key.at, edge_));
+    edited_ = bounding_box(edited_, box_of(key.at, edge_));
   }
   return {};
 }
@@ -129,7 +123,7 @@ Unexpected<StoreError> TimelapseWorld::too_large() const {
 
 VoxelBox TimelapseWorld::stage() const {
   VoxelBox box;
-  for (const ChunkKey& key : stage_) box = joined(box, box_of(key.at, edge_));
+  for (const ChunkKey& key : stage_) box = bounding_box(box, box_of(key.at, edge_));
   return box;
 }
 
