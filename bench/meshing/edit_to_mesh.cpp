@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/harness/statistics.hpp"
+#include "bench/harness/target_json.hpp"
 #include "bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
@@ -139,7 +140,7 @@ void write_json(const EditToMeshResult& result, std::ostream& out) {
                                  {"cpu", result.machine.cpu},
                                  {"compiler", result.machine.compiler},
                                  {"rows", nlohmann::ordered_json::array()},
-                                 {"bars", nlohmann::ordered_json::array()}};
+                                 {"bars", json_of(result.targets)}};
   for (const EditToMeshRow& row : result.rows) {
     const BrushTiming& t = row.timing;
     json["rows"].push_back({{"world", row.world},
@@ -154,12 +155,6 @@ void write_json(const EditToMeshResult& result, std::ostream& out) {
                             {"sweep_ns", t.sweep_ns},
                             {"emit_ns", t.emit_ns},
                             {"by_layers", t.layers_share}});
-  }
-  for (const Target& target : result.targets) {
-    json["bars"].push_back({{"case", target.what},
-                            {"bar", target.wanted},
-                            {"measured", target.measured},
-                            {"verdict", name_of(target.verdict)}});
   }
   out << json.dump(1) << '\n';
 }
