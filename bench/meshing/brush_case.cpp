@@ -60,7 +60,7 @@ class BrushedChunk {
     return material_at(before_, local_of(at, static_cast<std::int32_t>(edge)));
   }
 
-  /// Applies an edit to the chunk as it was. Returns the ns of the splice, or 0 if nothing changed.
+  /// Applies an edit to the unedited chunk. Returns the ns of the splice, or 0 if nothing changed.
   double apply(const EditDescriptor& edit) {
     chunk_ = before_;
     Digest digest = digest_;

@@ -87,17 +87,17 @@ Result<EditToMeshResult, std::string> run_edit_to_mesh(const BenchOptions& optio
           result.rows.push_back(std::move(row));
       },
       skipped, progress);
-  judge(result, "layers against the whole mesh, worst median", 1.1,
+  judge(result, "layers / whole mesh, worst median of all rows", 1.1,
         [](const EditToMeshRow&) { return true; });
   const auto is_small_sphere = [](const EditToMeshRow& row) {
     return row.brush == "sphere r 1" || row.brush == "sphere r 2" || row.brush == "sphere r 3" ||
            row.brush == "sphere r 5";
   };
-  judge(result, "the same, hills of edge 32, spheres of radius 1 to 5", 0.8,
+  judge(result, "layers / whole mesh, hills of edge 32, spheres of radius 1 to 5", 0.8,
         [&](const EditToMeshRow& row) {
           return row.world == "hills" && row.edge == 32 && is_small_sphere(row);
         });
-  judge(result, "the same, caves of edge 64, spheres of radius 1 to 5", 0.8,
+  judge(result, "layers / whole mesh, caves of edge 64, spheres of radius 1 to 5", 0.8,
         [&](const EditToMeshRow& row) {
           return row.world == "caves" && row.edge == 64 && is_small_sphere(row);
         });
