@@ -1,5 +1,5 @@
-// Receivers: clients that connect, and then read and discard all input. They share one thread. They
-// decrypt nothing, so that a benchmark measures the sender.
+// Receivers: clients that connect, and then read and discard all input. They share one thread.
+// They decrypt nothing, so that a benchmark measures the sender.
 #pragma once
 #include <atomic>
 #include <cstddef>
