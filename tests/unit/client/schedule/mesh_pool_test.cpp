@@ -24,8 +24,8 @@ ShownPtr chunk_with(const std::vector<LocalPos>& stones) {
 
 constexpr std::size_t kScattered = 63;
 
-/// Returns these voxels and kScattered others in a corner. No two of the others touch. With them,
-/// meshing a few layers costs less than meshing the whole chunk.
+/// Returns these voxels and kScattered others in a corner, no two of which share a face. In such a
+/// chunk, meshing a few layers costs less than meshing the whole chunk.
 std::vector<LocalPos> among_others(std::vector<LocalPos> voxels) {
   constexpr std::uint8_t kFirst = 11, kEnd = 16;
   for (std::uint8_t x = kFirst; x < kEnd; ++x)
