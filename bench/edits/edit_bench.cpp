@@ -10,6 +10,7 @@
 #include "bench/edits/stack_case.hpp"
 #include "bench/edits/strand_case.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/harness/target_json.hpp"
 #include "tests/support/core/temp_folder.hpp"
 
 namespace runstone::bench {
@@ -178,19 +179,13 @@ void write_json(const EditBenchResult& result, std::ostream& out) {
                                  {"cpu", result.machine.cpu},
                                  {"compiler", result.machine.compiler},
                                  {"rows", nlohmann::ordered_json::array()},
-                                 {"bars", nlohmann::ordered_json::array()}};
+                                 {"bars", json_of(result.targets)}};
   for (const EditRow& row : result.rows) {
     json["rows"].push_back({{"case", row.what},
                             {"chunks", row.chunks},
                             {"edits", row.edits},
                             {"median_us", row.median_us},
                             {"p90_us", row.p90_us}});
-  }
-  for (const Target& target : result.targets) {
-    json["bars"].push_back({{"case", target.what},
-                            {"bar", target.wanted},
-                            {"measured", target.measured},
-                            {"verdict", name_of(target.verdict)}});
   }
   out << json.dump(1) << '\n';
 }

@@ -5,6 +5,7 @@
 
 #include "bench/harness/clocks.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/meshing/visible_voxel.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
@@ -137,24 +138,6 @@ class EditedChunk {
   std::array<std::unique_ptr<Neighbour>, kDirectionCount> neighbours_;
 };
 
-/// A voxel with a visible face, and the direction of the face. It is drawn from a random place of a
-/// random quad.
-struct VisibleVoxel {
-  VoxelPos at;
-  Direction direction;
-};
-VisibleVoxel pick(const ChunkMesh& mesh, SplitMix64& rng) {
-  const std::size_t opaque = mesh.opaque.quads.size();
-  const std::size_t i = rng.below(static_cast<std::uint32_t>(mesh.quad_count()));
-  const QuadFields q =
-      unpack(i < opaque ? mesh.opaque.quads[i] : mesh.transparent.quads[i - opaque]);
-  std::array<std::int32_t, 3> at = {q.x, q.y, q.z};
-  const Axis axis = axis_of(q.direction);
-  at[static_cast<std::size_t>(u_axis_of(axis))] += static_cast<std::int32_t>(rng.below(q.width));
-  at[static_cast<std::size_t>(v_axis_of(axis))] += static_cast<std::int32_t>(rng.below(q.height));
-  return {{at[0], at[1], at[2]}, q.direction};
-}
-
 }  // namespace
 
 EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes,
@@ -169,7 +152,7 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
     // whose branches the processor has learned.
     Samples left_out;
     for (unsigned i = 0; i <= per_volume; ++i) {
-      const VisibleVoxel visible = pick(edited.mesh(), rng);
+      const VisibleVoxel visible = draw_visible_voxel(edited.mesh(), rng);
       const auto local = [&](VoxelPos at) {
         return local_of(at, static_cast<std::int32_t>(volume.edge));
       };

@@ -30,8 +30,8 @@ struct LogMoments {
   double all_ms = 0, all_slowest_ms = 0;
 };
 
-/// The times of the preview of a rollback: all edits of one author in the last hour, planned with the
-/// present keyframes, without a picture.
+/// The times of the preview of a rollback: all edits of one author in the last hour, planned with
+/// the present keyframes, without a picture.
 struct LogPreview {
   std::string name;
   // Selected edits, touched chunks, voxels that would change.
@@ -49,7 +49,8 @@ struct LogBench {
   std::uint64_t keyframe_chunks = 0;
   std::vector<LogQuestion> questions;
   std::vector<LogMoments> moments;
-  // Of a builder, and of griefers who set single voxels all over a square of 1,600 voxels a side.
+  // The first preview is of a builder. The others are of griefers. Each griefer sets single voxels
+  // at random places of a square, which is 1,600 voxels long and wide.
   std::vector<LogPreview> previews;
 };
 

@@ -7,6 +7,7 @@
 
 #include "bench/harness/clocks.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/meshing/visible_voxel.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
@@ -17,19 +18,6 @@ namespace runstone::bench {
 namespace {
 
 constexpr unsigned kBlock = 10;  // edits of one sort between those of the other
-
-/// Draws a voxel with a visible face.
-VoxelPos visible_voxel(const ChunkMesh& mesh, SplitMix64& rng) {
-  const std::size_t opaque = mesh.opaque.quads.size();
-  const std::size_t i = rng.below(static_cast<std::uint32_t>(mesh.quad_count()));
-  const QuadFields q =
-      unpack(i < opaque ? mesh.opaque.quads[i] : mesh.transparent.quads[i - opaque]);
-  std::array<std::int32_t, 3> at = {q.x, q.y, q.z};
-  const Axis axis = axis_of(q.direction);
-  at[static_cast<std::size_t>(u_axis_of(axis))] += static_cast<std::int32_t>(rng.below(q.width));
-  at[static_cast<std::size_t>(v_axis_of(axis))] += static_cast<std::int32_t>(rng.below(q.height));
-  return {at[0], at[1], at[2]};
-}
 
 /// Times the steps of LayerMesher.
 class StepClock {
@@ -72,7 +60,7 @@ class BrushedChunk {
     return material_at(before_, local_of(at, static_cast<std::int32_t>(edge)));
   }
 
-  /// Applies an edit to the chunk as it was. Returns the ns of the splice, or 0 if nothing changed.
+  /// Applies an edit to the unedited chunk. Returns the ns of the splice, or 0 if nothing changed.
   double apply(const EditDescriptor& edit) {
     chunk_ = before_;
     Digest digest = digest_;
@@ -136,7 +124,7 @@ BrushTiming measure_brush(const Volume& volume, const VisibilityTable& visibilit
   enum Sort { by_layer, by_chunk, by_step };
   const unsigned block = std::min(kBlock, edits);
   for (unsigned i = 0; i < 20 * edits && emit.size() < edits; ++i) {
-    const VoxelPos at = visible_voxel(chunk.mesh_before(), rng);
+    const VoxelPos at = draw_visible_voxel(chunk.mesh_before(), rng).at;
     const Material material = i % 2 == 0 ? kEmpty : chunk.material(at, volume.edge);
     const double apply_ns = chunk.apply(brush_edit(brush, at, material));
     if (apply_ns == 0) continue;

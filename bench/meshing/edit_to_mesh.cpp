@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/harness/statistics.hpp"
+#include "bench/harness/target_json.hpp"
 #include "bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
@@ -86,17 +87,17 @@ Result<EditToMeshResult, std::string> run_edit_to_mesh(const BenchOptions& optio
           result.rows.push_back(std::move(row));
       },
       skipped, progress);
-  judge(result, "layers against the whole mesh, worst median", 1.1,
+  judge(result, "layers / whole mesh, worst median of all rows", 1.1,
         [](const EditToMeshRow&) { return true; });
   const auto is_small_sphere = [](const EditToMeshRow& row) {
     return row.brush == "sphere r 1" || row.brush == "sphere r 2" || row.brush == "sphere r 3" ||
            row.brush == "sphere r 5";
   };
-  judge(result, "the same, hills of edge 32, spheres of radius 1 to 5", 0.8,
+  judge(result, "layers / whole mesh, hills of edge 32, spheres of radius 1 to 5", 0.8,
         [&](const EditToMeshRow& row) {
           return row.world == "hills" && row.edge == 32 && is_small_sphere(row);
         });
-  judge(result, "the same, caves of edge 64, spheres of radius 1 to 5", 0.8,
+  judge(result, "layers / whole mesh, caves of edge 64, spheres of radius 1 to 5", 0.8,
         [&](const EditToMeshRow& row) {
           return row.world == "caves" && row.edge == 64 && is_small_sphere(row);
         });
@@ -139,7 +140,7 @@ void write_json(const EditToMeshResult& result, std::ostream& out) {
                                  {"cpu", result.machine.cpu},
                                  {"compiler", result.machine.compiler},
                                  {"rows", nlohmann::ordered_json::array()},
-                                 {"bars", nlohmann::ordered_json::array()}};
+                                 {"bars", json_of(result.targets)}};
   for (const EditToMeshRow& row : result.rows) {
     const BrushTiming& t = row.timing;
     json["rows"].push_back({{"world", row.world},
@@ -154,12 +155,6 @@ void write_json(const EditToMeshResult& result, std::ostream& out) {
                             {"sweep_ns", t.sweep_ns},
                             {"emit_ns", t.emit_ns},
                             {"by_layers", t.layers_share}});
-  }
-  for (const Target& target : result.targets) {
-    json["bars"].push_back({{"case", target.what},
-                            {"bar", target.wanted},
-                            {"measured", target.measured},
-                            {"verdict", name_of(target.verdict)}});
   }
   out << json.dump(1) << '\n';
 }

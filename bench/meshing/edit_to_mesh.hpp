@@ -1,5 +1,5 @@
-// `runstone-bench edit-to-mesh`: edits by brush, from the edit to the mesh of the chunk. The layers
-// that an edit touched are meshed again, and compared with a mesh of the whole chunk.
+// `runstone-bench edit-to-mesh`: edits by brush, from the edit to the mesh of the chunk. The time to
+// mesh the layers that an edit touched is compared with the time to mesh the whole chunk.
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -21,6 +21,7 @@ struct EditToMeshRow {
   bool alone = false;  // true: meshed without the neighbours
   std::size_t volumes = 0;
   BrushTiming timing;
+  /// Returns the time for layers divided by the time of mesh_rdm() in this build.
   double ratio() const { return timing.layers_ns / timing.whole_ns; }
 };
 

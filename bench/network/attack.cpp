@@ -51,8 +51,8 @@ constexpr std::array<Attack, 24> kAttacks = {{
      spread_views},
     {"seats", "as many sessions of one key as the server gives, which say nothing", take_seats},
     {kSeatsByRange,
-     "as many sessions as the server gives to one /24 in which each thread has an address: each of "
-     "another key, held with pings",
+     "each thread has an address in one /24, opens as many sessions as the server gives, each with "
+     "another key, and holds them with pings",
      take_seats_of_range},
     {"travel", "requests of the past, likewise", travel_too_often},
     {"commands", "command lines, likewise, half of them 1 KiB of nonsense", command_too_often},

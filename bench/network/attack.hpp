@@ -27,7 +27,7 @@ struct Attack {
 };
 /// The attack in which nobody attacks. The other rows are compared with it.
 inline constexpr const char* kQuiet = "quiet";
-/// The attack that takes seats from one range of addresses. Newcomers come from others.
+/// The attack that takes seats from one range of addresses. Newcomers connect from other ranges.
 inline constexpr const char* kSeatsByRange = "seats-by-range";
 /// Returns all attacks, by name.
 std::span<const Attack> all_attacks();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/harness/machine_json.hpp"
+#include "bench/harness/target_json.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -44,13 +45,7 @@ void write_json(const Machine& machine, std::span<const Figure> figures,
                                {"figure", figure.name},
                                {"value", json_of(figure.value)}});
   }
-  json["bars"] = nlohmann::ordered_json::array();
-  for (const Target& target : targets) {
-    json["bars"].push_back({{"case", target.what},
-                            {"bar", target.wanted},
-                            {"measured", target.measured},
-                            {"verdict", name_of(target.verdict)}});
-  }
+  json["bars"] = json_of(targets);
   fmt::print(out, "{}\n", json.dump(1));
 }
 

@@ -1,6 +1,6 @@
 // JoinProbe: an honest client that joins and leaves again and again during another measurement. It
-// counts how often a server accepts it, and measures the time until then. It has addresses of several
-// ranges, one after another, and a thread of its own.
+// counts how often a server accepts it, and measures the time until then. It has a thread of its own,
+// and connects from several /24 in turn.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -29,8 +29,8 @@ class TileStranger {
   TileStranger(AttackThread& thread, unsigned number)
       : thread_(thread), from_(AttackThread::address(number)) {}
 
-  /// Connects if there is no connection, and asks for a tile. Does nothing if the gateway lets
-  /// nobody in.
+  /// Connects if there is no connection, and requests a tile. Does nothing if the thread may not
+  /// connect now.
   void ask() {
     if (peer_ == nullptr || !peer_->is_open()) {
       if (!thread_.may_connect()) return;

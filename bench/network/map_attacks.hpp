@@ -1,4 +1,4 @@
-// Map attacks: strangers who ask the gateway for pictures of the world. Each function plays one
+// Map attacks: strangers who request tiles of the map from the gateway. Each function plays one
 // thread until its time is over.
 #pragma once
 
@@ -6,7 +6,7 @@ namespace runstone::bench {
 
 class AttackThread;
 
-/// Requires a gateway.
+/// Keeps eight requests for random tiles open, each from another /24. Requires a gateway.
 void request_random_tiles(AttackThread& thread);
 
 }  // namespace runstone::bench

@@ -1,5 +1,5 @@
-// PageProbe: an honest reader of one of the gateway's pages during another measurement. It asks again
-// and again, and measures the time of each answer. It has an address and a thread of its own.
+// PageProbe: an honest reader of one of the gateway's pages during another measurement. It requests
+// the page every 50 ms, and measures the time of each answer. It has its own address and thread.
 #pragma once
 #include <atomic>
 #include <cstddef>

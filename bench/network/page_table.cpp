@@ -7,8 +7,8 @@
 namespace runstone::bench {
 namespace {
 
-// The target. The state of the map waits for one short turn of drawing, and a thread that draws has a
-// low priority.
+// The target. A request for the map's state waits until one short step of drawing ends. The threads
+// that draw have a low priority.
 constexpr double kAddedPageMsMax = 100;
 
 std::string figure_of(const char* page) {
@@ -44,10 +44,14 @@ void add_page_targets(std::span<const AttackResult> results, std::vector<Target>
   for (const AttackResult& result : results) {
     if (!result.has_gateway) continue;
     const double added_ms = result.pages[during].p99_ms() - result.pages[before].p99_ms();
-    targets.push_back({fmt::format("{}: added to the p99 of an honest reader's pages", result.name),
-                       fmt::format("at most {} ms", number_text(kAddedPageMsMax)),
-                       number_text(added_ms) + " ms",
-                       added_ms <= kAddedPageMsMax ? Verdict::met : Verdict::missed});
+    // Only answers have a time. Without this condition a gateway that answers nothing would be fast.
+    const bool is_complete =
+        result.pages[before].is_complete() && result.pages[during].is_complete();
+    targets.push_back(
+        {fmt::format("{}: added to the p99 of an honest reader's pages", result.name),
+         fmt::format("at most {} ms", number_text(kAddedPageMsMax)),
+         number_text(added_ms) + (is_complete ? " ms" : " ms; some requests failed"),
+         is_complete && added_ms <= kAddedPageMsMax ? Verdict::met : Verdict::missed});
   }
 }
 

@@ -8,6 +8,11 @@ namespace runstone::bench {
 
 double PageTimes::p99_ms() const { return std::max(pages[0].p99_ms, pages[1].p99_ms); }
 
+bool PageTimes::is_complete() const {
+  return std::all_of(pages.begin(), pages.end(),
+                     [](const Page& page) { return page.answers > 0 && page.failed == 0; });
+}
+
 PageTimes::Page page_times(const PageProbe::Answers& answers) {
   PageTimes::Page out;
   out.answers = answers.ms.size();

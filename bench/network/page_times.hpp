@@ -18,6 +18,8 @@ struct PageTimes {
 
   /// Returns the p99 of the slower page in ms.
   double p99_ms() const;
+  /// Returns true if each page was requested, and every request was answered.
+  bool is_complete() const;
 };
 
 PageTimes::Page page_times(const PageProbe::Answers& answers);

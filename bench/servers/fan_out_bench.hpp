@@ -1,5 +1,6 @@
-// What it costs to send one commit to many clients, beside the floor: the same bytes, sent by a loop
-// that only calls OpenSSL or the kernel.
+// `runstone-bench fan-out`: measures the cost of sending one commit to many clients. The cost of the
+// server's sessions is compared with a floor. The floor is the cost of a loop that sends the same
+// bytes and only calls OpenSSL or the kernel.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -12,8 +13,8 @@
 
 namespace runstone::bench {
 
-/// Processor time of a receiver in microseconds: medians of the rounds. Both senders are measured in
-/// turn, a block of rounds each.
+/// The processor time of the sending thread, divided by the number of receivers: the median of the
+/// rounds, in microseconds. The two senders take turns: each runs a block of rounds.
 struct FanOutRow {
   std::size_t body_bytes = 0;
   bool is_encrypted = false;
@@ -28,8 +29,10 @@ struct FanOutResult {
   std::vector<FanOutRow> rows;
 };
 
-/// Connects `receivers` clients to each sender, without encryption and with it, and sends bodies of
-/// several sizes, with and without a pause between two rounds. A thread reads for all clients.
+/// Connects options.clients receivers to each sender, without encryption and with it. Sends bodies of
+/// several sizes, with and without a pause between two rounds. Each sender has one thread that reads
+/// for all of its receivers. Fails if the system allows too few open files, or if a receiver cannot
+/// connect.
 Result<FanOutResult, std::string> run_fan_out_bench(const BenchOptions& options,
                                                     std::ostream& progress);
 

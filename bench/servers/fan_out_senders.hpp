@@ -1,5 +1,5 @@
-// FanOutSender: sends the same bytes to many receivers. One sender does nothing but that, with OpenSSL
-// and the kernel: the floor. The other one sends commits as the server does.
+// FanOutSender: sends equal bytes to many receivers. There are two senders. The floor is a loop that
+// only calls OpenSSL or the kernel. The other sender uses the server's sessions.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,9 @@ namespace runstone::bench {
 class FanOutSender {
  public:
   virtual ~FanOutSender() = default;
-  /// Sends `body_bytes` bytes, with the header of a frame before them, to every receiver. Returns when
-  /// the kernel has all of it. The result is the processor time that this took, in nanoseconds.
+  /// Sends a frame header and `body_bytes` bytes to every receiver. Returns when each connection has
+  /// been written. The result is the processor time of the sending thread in nanoseconds. On
+  /// loopback it includes the kernel's delivery to the receivers.
   virtual std::int64_t send_to_all(std::size_t body_bytes) = 0;
 };
 

@@ -73,7 +73,6 @@ void Receivers::read_all() {
     for (int i = 0; i < count; ++i) {
       const int socket = events[static_cast<std::size_t>(i)].data.fd;
       const ssize_t got = ::recv(socket, buffer.data(), buffer.size(), MSG_DONTWAIT);
-      if (got > 0) bytes_ += static_cast<std::uint64_t>(got);
       if (got == 0) ::epoll_ctl(poll.get(), EPOLL_CTL_DEL, socket, nullptr);  // the sender ended
     }
   }

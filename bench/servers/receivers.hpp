@@ -1,5 +1,5 @@
-// Receivers: clients that connect, and then read and drop what comes, on a thread of their own. They
-// decrypt nothing, so that a benchmark measures the sender.
+// Receivers: clients that connect, and then read and discard all input. They share one thread.
+// They decrypt nothing, so that a benchmark measures the sender.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -15,16 +15,15 @@ namespace runstone::bench {
 
 class Receivers {
  public:
-  /// Starts the thread, which connects `count` clients to this port of the loopback, one after another.
+  /// Starts the thread, which connects `count` clients to this port of the loopback, one after
+  /// another.
   Receivers(std::uint16_t port, std::size_t count, bool is_encrypted);
   /// Ends the thread.
   ~Receivers();
   Receivers(const Receivers&) = delete;
   Receivers& operator=(const Receivers&) = delete;
 
-  /// Returns the number of bytes that were read after the handshakes. Thread: any.
-  std::uint64_t bytes() const { return bytes_; }
-  /// Waits for the connections. Fails if one cannot be made, with the reason.
+  /// Waits for the connections. Fails if one cannot be made, with the reason. Thread: any.
   Result<void, std::string> wait() const;
 
  private:
@@ -37,7 +36,6 @@ class Receivers {
   const std::size_t count_;
   const bool is_encrypted_;
   std::vector<Descriptor> sockets_;
-  std::atomic<std::uint64_t> bytes_{0};
   std::atomic<bool> is_connected_{false}, is_over_{false};
   std::string failure_;  // valid when is_connected_
   std::thread thread_;

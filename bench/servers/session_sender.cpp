@@ -5,6 +5,7 @@
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
 #include <asio/thread_pool.hpp>
+#include <asio/use_future.hpp>
 #include <atomic>
 #include <chrono>
 #include <ctime>
@@ -53,7 +54,7 @@ NetLimits limits_for(std::size_t receivers) {
   return limits;
 }
 
-/// The connections of a server, without a world. All of them use one thread, whose time is measured.
+/// The connections of a server without a world. All of them use one thread, whose time is measured.
 class SessionSender final : public FanOutSender {
  public:
   explicit SessionSender(const FanOutSize& size)
@@ -99,12 +100,13 @@ class SessionSender final : public FanOutSender {
     while (listener_->counters().commit_sends < sent + sessions_.size()) {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
-    // The thread ends its last task.
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    // The thread may still run the task that sent the last commit. It runs tasks one after another.
+    asio::post(io_, asio::use_future).get();
     return io_thread_ns() - began_ns;
   }
 
  private:
+  /// Returns the processor time of the connections' thread.
   std::int64_t io_thread_ns() {
     clockid_t clock{};
     ::pthread_getcpuclockid(thread_.native_handle(), &clock);

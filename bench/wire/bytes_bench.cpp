@@ -9,6 +9,7 @@
 
 #include "bench/harness/clocks.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/harness/target_json.hpp"
 #include "bench/wire/transfer_form.hpp"
 #include "bench/worlds/lit_chunk.hpp"
 
@@ -198,20 +199,11 @@ void write_json(const BytesBench& bench, std::ostream& out) {
                     {"encode_us", row.encode_us},
                     {"decode_us", row.decode_us}});
   }
-  auto targets = nlohmann::ordered_json::array();
-  for (const Target& target : bench.targets) {
-    targets.push_back({{"case", target.what},
-                       {"bar", target.wanted},
-                       {"measured", target.measured},
-                       {"verdict", name_of(target.verdict)}});
-  }
-  const nlohmann::ordered_json document = {{"cpu", bench.machine.cpu},
-                                           {"cores", bench.machine.cores},
-                                           {"compiler", bench.machine.compiler},
-                                           {"commit", bench.machine.commit},
-                                           {"repetitions", bench.repetitions},
-                                           {"rows", rows},
-                                           {"bars", targets}};
+  const nlohmann::ordered_json document = {
+      {"cpu", bench.machine.cpu},           {"cores", bench.machine.cores},
+      {"compiler", bench.machine.compiler}, {"commit", bench.machine.commit},
+      {"repetitions", bench.repetitions},   {"rows", rows},
+      {"bars", json_of(bench.targets)}};
   out << document.dump(1) << '\n';
 }
 

@@ -1,5 +1,5 @@
-// The border reader: reads the voxels beyond one side of a chunk into the form that the sweep needs,
-// from the neighbour's runs or from its kept borders. Internal to rdm.
+// The border reader: reads the voxels beyond one side of a chunk into the form that the sweep
+// needs, from the neighbour's runs or from its kept borders. Internal to rdm.
 #pragma once
 #include "common/core/coords.hpp"
 #include "common/mesh/rdm/chunk_borders.hpp"

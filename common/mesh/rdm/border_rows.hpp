@@ -169,8 +169,9 @@ class LayerReader {
   ToIndex to_index_;
 };
 
-/// Reads the rows `wanted` of a layer into the planes of LayerReader, and clears the others. Suits a
-/// few rows. Cost: O(rows * (length + log runs)), and less where lines of the chunk lie along them.
+/// Reads the rows `wanted` of a layer into the planes of LayerReader, and clears the others. It is
+/// for a few rows. Cost: O(rows * (length + log runs)), and less where the lines of the chunk lie
+/// along the rows.
 template <std::size_t kPlanes, class Runs, class Row, std::size_t kRows, class ToIndex>
 void read_few_rows(const Runs& runs, const RunChunk& chunk, const LayerPlace& place,
                    RowRange wanted, std::array<std::array<Row, kRows>, kPlanes>& planes,

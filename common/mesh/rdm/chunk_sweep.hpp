@@ -1,5 +1,5 @@
-// The chunk sweep: prepares the input of a layer sweep from a chunk and its neighbours, and runs it.
-// Internal to rdm.
+// The chunk sweep: prepares the input of a layer sweep from a chunk and its neighbours, and runs
+// the sweep. Internal to rdm.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -28,7 +28,7 @@ struct RunRange {
 };
 
 /// Assigns palette indices to the materials of some runs and lists the index of each run. The
-/// result is valid until the next call.
+/// result is valid until the next call with this scratch. Cost: O(runs of the range).
 IndexedRuns index_runs(const RunChunk& chunk, RunRange range, const VisibilityTable& visibility,
                        RdmScratch::State& scratch);
 

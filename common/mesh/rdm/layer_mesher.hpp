@@ -25,9 +25,10 @@ enum class LayerStep : std::uint8_t {
   splice  // new quads replace old ones
 };
 
+/// Returns a set of layers as a row of bits. Requires no member beyond the bits of Row.
 template <class Row>
 Row row_of(const LayerSet& set) {
-  static const LayerSet kLow(~0ULL);
+  constexpr LayerSet kLow(~0ULL);
   auto row = static_cast<Row>((set & kLow).to_ullong());
   if constexpr (sizeof(Row) > 8) row |= static_cast<Row>((set >> 64).to_ullong()) << 64;
   return row;
@@ -39,8 +40,8 @@ inline std::uint32_t next_member(const LayerSet& set, std::uint32_t from) {
   return lowest_bit(row_of<Row128>(set) & ~bits_below<Row128>(from));
 }
 
-/// Meshes the touched layers of a chunk again. Observer: called with the step that begins, so that a
-/// benchmark can time the steps. This code reads no clock.
+/// Meshes the touched layers of a chunk again. The observer is called with each step that begins,
+/// so that a benchmark can time the steps: this code reads no clock.
 template <class Observer>
 class LayerMesher {
  public:
@@ -55,11 +56,13 @@ class LayerMesher {
         observer_(observer),
         e_(ordered(chunk.extent, chunk.order)) {}
 
-  /// Calls visit(begin, end) for the parts of the slowest axis to sweep, ascending. Parts that are
-  /// close to each other are one.
+  /// Calls visit(begin, end) for the parts of the slowest axis to sweep, ascending. Changed layers
+  /// with fewer than kGap other layers between them are in one part.
   template <class F>
   static void for_each_part(const LayerSet& slow, F&& visit) {
-    constexpr std::uint32_t kGap = 3;  // layers that are read twice if the parts are apart
+    // Each of two parts reads one layer between them. So if one or two layers lie between them, two
+    // parts read as much as one part does.
+    constexpr std::uint32_t kGap = 3;
     for (std::uint32_t begin = next_member(slow, 0); begin < kSideMax;) {
       std::uint32_t end = begin + 1, next = next_member(slow, end);
       for (; next < kSideMax && next - end < kGap; next = next_member(slow, end)) end = next + 1;
@@ -68,14 +71,15 @@ class LayerMesher {
     }
   }
 
-  /// Returns true if sweeps over the touched parts cost less than a sweep over the whole chunk. Both
-  /// costs are estimated from counts, in units of a run or a quad of a whole mesh, about 6 ns where
-  /// they were fitted. A machine that is slower by a factor is slower in all of the terms.
+  /// Returns true if sweeps over the touched parts cost less than a sweep over the whole chunk.
+  /// Both costs are estimated from counts. The unit is the cost of a run or a quad in a whole mesh:
+  /// about 6 ns on the machine where the constants were fitted. On a slower machine all terms grow
+  /// alike.
   bool pays(const TouchedLayers& touched) const {
     constexpr std::uint64_t kOfPart = 150;  // to begin a sweep
     constexpr std::uint64_t kOfLayer = 3;   // the seams of a layer
-    constexpr std::uint64_t kBorderRuns =
-        8;  // runs of a neighbour that are read at the cost of one
+    // So many runs of a neighbour are read in one unit.
+    constexpr std::uint64_t kBorderRuns = 8;
     if (chunk_.is_uniform() && visibility_[chunk_.runs.material(0)] == Visibility::empty)
       return false;
     std::uint64_t around = 0, around_read = 0, layers = 0;
@@ -99,6 +103,8 @@ class LayerMesher {
     return cost < work + around / kBorderRuns;
   }
 
+  /// Replaces the quads of the touched layers in the mesh. Requires the mesh of the chunk before
+  /// the edit.
   void run(const TouchedLayers& touched) {
     with_rows(chunk_.extent, scratch_, [&]<class Row>(RowScratch<Row>& rows) {
       SweepPart<Row> part;

@@ -26,8 +26,8 @@ void sweep_layers(const SweepInput& input, const Borders<Row64>& borders,
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
                   const SweepPart<Row128>& part, SweepState<Row128>& state);
 
-/// Does the same, one row and one index at a time. This is the plain
-/// path, whose results the others must equal.
+/// The plain path of sweep_layers(): works on one row and one index at a time. The results of
+/// sweep_layers() must equal its results.
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
                         const SweepPart<Row64>& part, SweepState<Row64>& state);
 void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,

@@ -1,6 +1,6 @@
 // PartSeams: joins the quads of a swept part of a chunk with the quads before and behind it.
 //   before the sweep    quads that reach the part become open strips of the sweep
-//   after the sweep     strips that are still open are closed where the old quads behind the part end
+//   after the sweep     strips that are still open are closed where the old quads end
 // The quads of a layer stand in the order in which a sweep closes them. So in each layer the quads
 // that end before the part stay, and all from the first one on that ends in the part or behind it
 // are replaced. Internal to rdm.

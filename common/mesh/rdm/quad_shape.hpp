@@ -14,8 +14,8 @@ struct Strip {
   std::uint32_t layer, begin, length, row;
 };
 
-/// Marks a quad of the transparent pass while it is open. The bit is zero in a closed quad. Flipping
-/// the highest bit is an addition of 2^63 modulo 2^64, so it commutes with the addition in
+/// Marks a quad of the transparent pass while it is open. The bit is zero in a closed quad.
+/// Flipping the highest bit is an addition of 2^63 modulo 2^64, so it commutes with the addition in
 /// QuadShape::close(), whatever the open quad has borrowed: a marked quad that is closed is the
 /// closed quad with this bit set.
 inline constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;

@@ -24,9 +24,14 @@ void QuadSplice::apply(QuadLayers& out) {
     std::memmove(quads + static_cast<std::ptrdiff_t>(begin) + shift_[i], quads + begin,
                  (end - begin) * sizeof(Quad));
   };
-  // Quads that move down are moved in ascending order, and quads that move up in descending order.
-  // So none is overwritten before it is moved: a stretch that moves down ends up above all that
-  // stand below it, and those that move up there end up even lower.
+  // Call the quads between two stretches a gap. Gaps that move down are moved first, in ascending
+  // order. Then the gaps that move up are moved, in descending order. No gap is overwritten before
+  // it is moved:
+  //   - The targets of the gaps are as disjoint, and in the same order, as the gaps.
+  //   - Gap i moves down, to a target below its present end. Gaps after it are above that end. A gap
+  //     j before it that has not been moved will move up, or stays. So gap j is not above its own
+  //     target, and that is below the target of gap i.
+  //   - The argument for gaps that move up is this one with up and down exchanged.
   for (std::size_t i = 0; i < count; ++i) {
     if (shift_[i] < 0) move(i);
   }

@@ -71,11 +71,11 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
 ///   - `beyond` are the layers of each neighbour in which a voxel changed since. Only its layer
 ///     that touches the chunk matters.
 ///
-/// Sweeps over the layers of the slowest axis in which a voxel changed and the layers beside them,
-/// and joins their quads with those before and behind them. Calls mesh_rdm() where that costs less.
-/// Returns true if only layers were meshed. A steady state allocates nothing. Thread: any, with one
-/// scratch each. Cost: O(runs of these layers + quads of the touched layers + quads that move), and
-/// what mesh_rdm() takes for the borders of the touched sides.
+/// Sweeps over the layers of the slowest axis in which a voxel changed, and over the layers beside
+/// these. Joins the new quads with the quads before and behind. Calls mesh_rdm() where that costs
+/// less. Returns true if only layers were meshed. A steady state allocates nothing. Thread: any,
+/// with one scratch each. Cost: O(runs of these layers + quads of the touched layers + quads that
+/// move), and what mesh_rdm() takes for the borders of the touched sides.
 bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,

@@ -17,10 +17,11 @@ struct TouchedLayers {
   TouchedLayers(const RunChunk& chunk, const MeshNeighbours& neighbours, const DirtyLayers& dirty,
                 const std::array<DirtyLayers, kDirectionCount>& beyond);
 
-  /// The layers with faces to mesh again, by Direction: those with changed voxels, and those whose
-  /// faces point at them.
+  /// The layers with faces to mesh again, by Direction: the layers with changed voxels, and the
+  /// layers whose faces point at changed voxels.
   std::array<LayerSet, kDirectionCount> faces;
-  /// The layers of the slowest axis in which a voxel changed, or at which one beyond the chunk did.
+  /// The layers of the slowest axis in which a voxel changed, or beside which a voxel of a
+  /// neighbour changed.
   LayerSet slow;
 };
 

@@ -47,9 +47,8 @@ DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
 }
 
 // Returns the number of steps that meshed only layers.
-int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps, bool plain = false) {
+int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   RdmScratch scratch;
-  scratch.use_plain_path(plain);
   ChunkMesh mesh;
   ChunkMesh full;
   int by_layers = 0;
@@ -128,12 +127,7 @@ TEST_CASE("remeshed layers equal a full mesh in the largest extents", "[mesh][pr
   for (const Extent extent :
        {Extent{64, 64, 64}, Extent{128, 8, 33}, Extent{9, 128, 65}, Extent{33, 8, 128}}) {
     for (const AxisOrder order : kAxisOrders) {
-      MeshScene scene;
-      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
-      for (auto& neighbour : scene.neighbours) {
-        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
-      }
-      edit_and_compare(rng, scene, 8);
+      edit_and_compare(rng, scene_of_extent(rng, extent, order), 8);
     }
   }
 }

@@ -203,7 +203,8 @@ TEST_CASE_METHOD(Fixture,
     return std::array{meshes.whole_ns.count(), meshes.layers_ns.count(), meshes.kept_bytes};
   };
   CHECK(counts() == std::array<std::uint64_t, 3>{1, 0, 0});
-  // Voxels that stand alone. With many of them, meshing a few layers costs less than the whole chunk.
+  // Voxels that stand alone. With many of them, meshing a few layers costs less than meshing the
+  // whole chunk.
   for (std::int32_t i = 0; i < 64; ++i)
     edit({2 * (i % 4) + 8, 2 * (i / 4 % 4) + 8, 2 * (i / 16) + 8});
   const auto before = counts();

@@ -1,4 +1,4 @@
-// The command line of `runstone-bench relay`.
+// The command lines of `runstone-bench relay` and `fan-out`.
 #pragma once
 #include "bench/harness/bench_options.hpp"
 
@@ -8,7 +8,8 @@ class App;
 
 namespace runstone::bench {
 
-/// Adds the subcommand with its defaults. `options` must outlive the parse.
+/// Each adds its subcommand with its defaults. `options` must outlive the parse.
 CLI::App* add_relay_command(CLI::App& app, BenchOptions& options);
+CLI::App* add_fan_out_command(CLI::App& app, BenchOptions& options);
 
 }  // namespace runstone::bench
