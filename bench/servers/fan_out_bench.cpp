@@ -16,7 +16,7 @@ namespace runstone::bench {
 namespace {
 
 constexpr std::array<std::size_t, 3> kBodyBytes = {200, 1'000, 2'500};
-constexpr std::array<unsigned, 2> kPausesMs = {0, 20};
+constexpr std::array<unsigned, 2> kPausesMs = {1, 20};
 constexpr unsigned kBlocks = 5;        // of each sender
 constexpr unsigned kRoundsToWarm = 2;  // at the begin of each block, not counted
 

@@ -30,7 +30,7 @@ struct FanOutResult {
 };
 
 /// Connects options.clients receivers to each sender, without encryption and with it. Sends bodies of
-/// several sizes, with and without a pause between two rounds. Each sender has one thread that reads
+/// several sizes, with a short and a long pause between two rounds. Each sender has one thread that reads
 /// for all of its receivers. Fails if the system allows too few open files, or if a receiver cannot
 /// connect.
 Result<FanOutResult, std::string> run_fan_out_bench(const BenchOptions& options,
