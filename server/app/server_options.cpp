@@ -17,9 +17,8 @@ namespace runstone {
 namespace {
 
 void add_flags(CLI::App& app, ServerOptions& out) {
-  app.set_version_flag("--version", program_version("runstone-server") + ", world formats " +
-                                        std::to_string(kWorldFormat) + " and " +
-                                        std::to_string(kWorldFormatOfEras));
+  app.set_version_flag("--version",
+                       program_version("runstone-server") + ", " + world_formats_text());
   app.add_option("--config", out.config_file,
                  "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");

@@ -102,9 +102,8 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
       "2: cannot read.",
       "runstone-replay");
   program.require_subcommand(1);
-  program.set_version_flag("--version", "runstone-replay " + std::string(version()) +
-                                            ", world formats " + std::to_string(kWorldFormat) +
-                                            " and " + std::to_string(kWorldFormatOfEras));
+  program.set_version_flag(
+      "--version", "runstone-replay " + std::string(version()) + ", " + world_formats_text());
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   struct Entry {
     CLI::App* app;

@@ -2,6 +2,7 @@
 // docs/edit-log.md describes every column.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "common/core/bytes.hpp"
@@ -22,6 +23,12 @@ inline constexpr std::uint32_t kWorldFormat = 5;
 inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
+
+/// Returns "world formats 5 and 6": those that this program makes, for --version.
+inline std::string world_formats_text() {
+  return "world formats " + std::to_string(kWorldFormat) + " and " +
+         std::to_string(kWorldFormatOfEras);
+}
 
 /// Makes all tables in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);
