@@ -52,6 +52,9 @@ if(RUNSTONE_SANITIZE)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     add_compile_options(-mavx2 -mbmi -mbmi2 -mfma -mf16c -mlzcnt -maes -mpclmul)
   endif()
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    add_compile_options(-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/undefined_behaviour_ignored.txt)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # False positives of g++ 12 under AddressSanitizer: coroutine frames with a mismatched delete,
     # and vectors in the variant of an edit that count as uninitialised.

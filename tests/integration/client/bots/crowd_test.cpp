@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <future>
 #include <string>
 
@@ -17,19 +18,26 @@
 namespace runstone::test {
 namespace {
 
-/// Rolls back what a player has built so far. Returns the number of rollbacks, 0 or 1.
-int roll_back(const std::string& world, const std::string& author) {
-  const std::string text = control(world, {"rollback", "preview", "author", author}).text;
+constexpr std::uint32_t kBots = 24;
+
+/// Rolls back what the first bot that has built anything has built so far: on a busy machine some bots
+/// see the world only after all their edits were due. Returns the number of rollbacks, 0 or 1.
+int roll_back_a_bot(const std::string& world) {
   const std::string begin = "preview ";
-  if (!text.starts_with(begin)) return 0;  // nothing to do
-  const std::string id = text.substr(begin.size(), text.find(':') - begin.size());
-  return control(world, {"rollback", "apply", id}).is_ok ? 1 : 0;
+  for (std::uint32_t bot = 0; bot < kBots; ++bot) {
+    const std::string text =
+        control(world, {"rollback", "preview", "author", "bot-" + std::to_string(bot)}).text;
+    if (!text.starts_with(begin)) continue;  // nothing to roll back
+    const std::string id = text.substr(begin.size(), text.find(':') - begin.size());
+    return control(world, {"rollback", "apply", id}).is_ok ? 1 : 0;
+  }
+  return 0;
 }
 
 FleetReport run_crowd(std::uint16_t port) {
   BotOptions options;
   options.server.port = port;
-  options.count = options.sites = 24;
+  options.count = options.sites = kBots;
   options.replicas = 6;
   options.roles = {BotRole::build, BotRole::grief, BotRole::brush, BotRole::run_away};
   options.rate = 20;
@@ -66,7 +74,7 @@ TEST_CASE("bots build while others undo, view the past and roll back", "[bots][c
     viewer.travel({1, HistoryTarget::sequence, round, 0});
     CHECK(viewer.replica().past()->seq == round);
     viewer.travel({});
-    if (round % 8 == 0) rollbacks += roll_back(world, "bot-2");
+    if (round % 8 == 0) rollbacks += roll_back_a_bot(world);
   } while (fleet.wait_for(std::chrono::seconds(0)) != std::future_status::ready);
 
   const FleetReport report = fleet.get();
@@ -76,7 +84,7 @@ TEST_CASE("bots build while others undo, view the past and roll back", "[bots][c
   CHECK(report.counts.confirmed == report.counts.submitted);
   CHECK(undone > 0);
   CHECK(redone > 0);
-  CHECK(rollbacks + roll_back(world, "bot-2") > 0);
+  CHECK(rollbacks + roll_back_a_bot(world) > 0);
   viewer.catch_up();
   CHECK(viewer.replica().counters().drifted == 0);
   const StopReport stopped = server->stop();
