@@ -4,8 +4,8 @@
 # The cases are read from the file PROGRAM_tests.cmake. The program is run to write that file if it is
 # newer than the file, or if CMake has changed the properties since. A program that is not built
 # gets one entry, which fails.
-# With RUNSTONE_TEST_UNITS=whole in the environment, a program of unit tests gets one entry, too: with
-# sanitizers the start of a process takes longer than most cases.
+# With RUNSTONE_TEST_UNITS=whole in the environment, a program of unit tests gets one entry, too: the start
+# of a process takes longer than most cases, with sanitizers by far.
 function(runstone_list_tests name prefix)
   set(program ${CMAKE_CURRENT_LIST_DIR}/${name})
   set(list ${program}_tests.cmake)

@@ -62,7 +62,7 @@ def main(arguments=None, err=None):
         failures = {}
         if not options.page_only:
             if not options.bench.exists():
-                raise ResultError(f"{options.bench} is missing: build it with scripts/test")
+                raise ResultError(f"{options.bench} is missing: build it as docs/reproduce.md says")
             runner = Runner(options.bench, options.out, options.luanti, options.quick, options.again)
             if why := runner.objection(wanted):
                 raise ResultError(why)
