@@ -15,6 +15,8 @@ namespace {
 using rdm::LayerSet;
 using Parts = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
+constexpr MeshBorders kNoBorders{};
+
 struct NoSteps {
   void operator()(rdm::LayerStep) const {}
 };
@@ -39,7 +41,8 @@ void mesh_layers(const MeshScene& scene, const DirtyLayers& dirty,
   const MeshNeighbours around = scene.pointers();
   const rdm::TouchedLayers touched(scene.chunk, around, dirty, beyond);
   const NoSteps observer;
-  rdm::LayerMesher(scene.chunk, around, mesh_visibility(), scratch.state(), mesh, observer)
+  rdm::LayerMesher(scene.chunk, around, kNoBorders, mesh_visibility(), scratch.state(), mesh,
+                   observer)
       .run(touched);
 }
 
@@ -210,7 +213,8 @@ TEST_CASE("a part pays for one layer, and not for all layers or an empty chunk",
     const MeshNeighbours around = scene.pointers();
     const rdm::TouchedLayers touched(scene.chunk, around, dirty, {});
     const NoSteps observer;
-    return rdm::LayerMesher(scene.chunk, around, mesh_visibility(), scratch.state(), mesh, observer)
+    return rdm::LayerMesher(scene.chunk, around, kNoBorders, mesh_visibility(), scratch.state(),
+                            mesh, observer)
         .pays(touched);
   };
   CHECK(pays(0, 1));
