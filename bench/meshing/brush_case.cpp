@@ -84,8 +84,10 @@ class BrushedChunk {
   /// Meshes the layers with a clock between the steps.
   StepClock mesh_steps() {
     StepClock clock;
+    const MeshBorders borders{};
     const rdm::TouchedLayers touched(chunk_, neighbours_, applied_.dirty, {});
-    rdm::LayerMesher(chunk_, neighbours_, visibility_, scratch_.state(), mesh_, clock).run(touched);
+    rdm::LayerMesher(chunk_, neighbours_, borders, visibility_, scratch_.state(), mesh_, clock)
+        .run(touched);
     clock.stop();
     return clock;
   }

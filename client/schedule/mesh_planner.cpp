@@ -15,7 +15,8 @@ ChunkKey beside(const ChunkKey& key, Direction d) { return {key.lod, neighbour(k
 
 std::size_t mesh_bytes(const MeshPtr& mesh) {
   if (!mesh || mesh->empty()) return 0;
-  return sizeof(ChunkMesh) + mesh->quad_count() * sizeof(Quad);
+  return sizeof(ChunkMesh) +
+         (mesh->opaque.quads.capacity() + mesh->transparent.quads.capacity()) * sizeof(Quad);
 }
 
 template <class Act>

@@ -45,7 +45,8 @@ namespace runstone {
 
 /// The pointer is null if there is no mesh.
 using MeshPtr = std::shared_ptr<const ChunkMesh>;
-/// Returns the memory of a mesh. Chunks without quads share one, which counts as nothing.
+/// Returns the memory of a mesh, its unused capacity included. Chunks without quads share one, which
+/// counts as nothing.
 std::size_t mesh_bytes(const MeshPtr& mesh);
 
 struct MeshJob {

@@ -11,6 +11,20 @@ namespace {
 /// worst case.
 constexpr std::size_t kScratchQuadsMax = 65'536;
 
+/// The room of a pass for the quads that an edit adds. Few edits of a hand add more.
+constexpr std::size_t kQuadRoom = 64;
+
+/// Replaces `to` by a copy of `from`, with room for more quads if there are any.
+void copy_with_room(const QuadLayers& from, QuadLayers& to) {
+  if (!from.quads.empty()) to.quads.reserve(from.quads.size() + kQuadRoom);
+  to = from;
+}
+
+/// Returns true if little of the memory of a pass is unused.
+bool fits_memory(const QuadLayers& layers) {
+  return layers.quads.capacity() <= layers.quads.size() + 2 * kQuadRoom;
+}
+
 /// Returns the layers that a job meshes because a voxel in them or beside them changed.
 DirtyLayers layers_of(const MeshJob& job) {
   DirtyLayers out = job.changed.here;
@@ -169,18 +183,26 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
   }
   const std::int64_t start = clock_();
   if (job.before) {
-    scratch.mesh = *job.before;
-    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility, job.changed.here,
-                                         job.changed.beyond, scratch.rdm, scratch.mesh);
+    // The copy becomes the result, so the quads are not copied a second time.
+    const auto mesh = std::make_shared<ChunkMesh>();
+    copy_with_room(job.before->opaque, mesh->opaque);
+    copy_with_room(job.before->transparent, mesh->transparent);
+    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, borders, visibility,
+                                         job.changed.here, job.changed.beyond, scratch.rdm, *mesh);
+    const bool is_fitting =
+        result.layers_only && fits_memory(mesh->opaque) && fits_memory(mesh->transparent);
+    result.mesh = mesh->empty() ? empty_
+                  : is_fitting  ? mesh
+                                : std::make_shared<const ChunkMesh>(*mesh);
   } else {
     mesh_rdm(*job.chunk, neighbours, borders, visibility, scratch.rdm, scratch.mesh,
              &scratch.borders);
     if (!scratch.borders.empty())
       result.borders = std::make_shared<const ChunkBorders>(scratch.borders);
+    result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
+    if (scratch.mesh.quad_count() > kScratchQuadsMax) scratch.mesh = {};
   }
   result.layers = result.layers_only ? layers_of(job) : all_layers(job.chunk->extent);
-  result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
-  if (scratch.mesh.quad_count() > kScratchQuadsMax) scratch.mesh = {};
   const std::int64_t end = clock_();
   result.mesh_ns = end - start;
   result.meshed_us = end / 1000;

@@ -72,7 +72,7 @@ class MeshPool {
  private:
   struct Scratch {
     RdmScratch rdm;
-    // Their capacities grow; the results are copies of the right size.
+    // For meshes of whole chunks. Their capacities grow; the results are copies of the right size.
     ChunkMesh mesh;
     ChunkBorders borders;
   };

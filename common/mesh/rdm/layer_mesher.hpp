@@ -45,11 +45,12 @@ inline std::uint32_t next_member(const LayerSet& set, std::uint32_t from) {
 template <class Observer>
 class LayerMesher {
  public:
-  LayerMesher(const RunChunk& chunk, const MeshNeighbours& neighbours,
+  LayerMesher(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch::State& scratch, ChunkMesh& mesh,
               Observer& observer)
       : chunk_(chunk),
         neighbours_(neighbours),
+        borders_(borders),
         visibility_(visibility),
         scratch_(scratch),
         mesh_(mesh),
@@ -74,7 +75,7 @@ class LayerMesher {
   /// Returns true if sweeps over the touched parts cost less than a sweep over the whole chunk.
   /// Both costs are estimated from counts. The unit is the cost of a run or a quad in a whole mesh:
   /// about 6 ns on the machine where the constants were fitted. On a slower machine all terms grow
-  /// alike.
+  /// alike. Kept borders make both cheaper, and count as borders that are read.
   bool pays(const TouchedLayers& touched) const {
     constexpr std::uint64_t kOfPart = 150;  // to begin a sweep
     constexpr std::uint64_t kOfLayer = 3;   // the seams of a layer
@@ -150,7 +151,7 @@ class LayerMesher {
     if (any_transparent) transparent.open();
     observer_(LayerStep::sweep);
     if (palette.solid_count() != 0) {
-      const SweepRequest request{chunk_, neighbours_, {}, visibility_, nullptr};
+      const SweepRequest request{chunk_, neighbours_, borders_, visibility_, nullptr};
       sweep_chunk(request, runs, part, scratch_, rows);
     }
     const auto replace = [this](PartSeams<Row>& seams, QuadLayers& layers) {
@@ -166,6 +167,7 @@ class LayerMesher {
 
   const RunChunk& chunk_;
   const MeshNeighbours& neighbours_;
+  const MeshBorders& borders_;
   const VisibilityTable& visibility_;
   RdmScratch::State& scratch_;
   ChunkMesh& mesh_;

@@ -10,11 +10,20 @@ bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh) {
+  return mesh_rdm_layers(chunk, neighbours, MeshBorders{}, visibility, dirty, beyond, scratch,
+                         mesh);
+}
+
+bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
+                     const MeshBorders& borders, const VisibilityTable& visibility,
+                     const DirtyLayers& dirty,
+                     const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
+                     ChunkMesh& mesh) {
   const rdm::TouchedLayers touched(chunk, neighbours, dirty, beyond);
   const auto observer = [](rdm::LayerStep) {};
-  rdm::LayerMesher mesher(chunk, neighbours, visibility, scratch.state(), mesh, observer);
+  rdm::LayerMesher mesher(chunk, neighbours, borders, visibility, scratch.state(), mesh, observer);
   if (!mesher.pays(touched)) {
-    mesh_rdm(chunk, neighbours, visibility, scratch, mesh);
+    mesh_rdm(chunk, neighbours, borders, visibility, scratch, mesh);
     return false;
   }
   mesher.run(touched);

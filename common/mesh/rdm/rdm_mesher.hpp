@@ -81,4 +81,12 @@ bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh);
 
+/// Meshes layers with kept borders of neighbours. The runs of such a neighbour are not read, except
+/// the single run of a uniform one. Requires borders that match `neighbours` as they are now.
+bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
+                     const MeshBorders& borders, const VisibilityTable& visibility,
+                     const DirtyLayers& dirty,
+                     const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
+                     ChunkMesh& mesh);
+
 }  // namespace runstone

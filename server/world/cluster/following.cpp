@@ -184,12 +184,16 @@ void Following::on_relay(const Relay& relay, const Clocks& now) {
       return on_relayed_accept(*session, *accepted, now);
     return on_relayed_reject(*session, std::move(std::get<Reject>(*message)));
   }
+  std::vector<SessionId> open;
   for (const SessionId id : relay.sessions) {
-    Session* const session = world_.sessions.find(id);
-    if (session == nullptr || !session->is_open()) continue;
-    if (world_.sessions.send_or_skip(*session, relay.message)) continue;
-    // A change of the list of players makes sense only after the one before.
-    if (kind == kKindOf<PlayerList>) world_.sessions.close_slow(*session);
+    const Session* const session = world_.sessions.find(id);
+    if (session != nullptr && session->is_open()) open.push_back(id);
+  }
+  const std::vector<SessionId> full = world_.sessions.send_to_all(open, relay.message);
+  // A change of the list of players makes sense only after the one before.
+  if (kind != kKindOf<PlayerList>) return;
+  for (const SessionId id : full) {
+    if (Session* const session = world_.sessions.find(id)) world_.sessions.close_slow(*session);
   }
 }
 

@@ -47,8 +47,8 @@ void Receipts::send_pending(Session& session) {
     ++count;
   sent.rejects.erase(sent.rejects.begin(),
                      sent.rejects.begin() + static_cast<std::ptrdiff_t>(count));
-  if (sent.durable < order_.durable() && sent.durable < sent.awaits_durable)
-    send_durable(session, sent, encode_message(durable()));
+  const bool is_due = sent.durable < order_.durable() && sent.durable < sent.awaits_durable;
+  if (is_due && lacks_durable(session, sent)) send_durable({&session.id, 1});
 }
 
 bool Receipts::has_pending(const Session& session) const {
@@ -61,29 +61,40 @@ void Receipts::expect_durable(const Session& session, Sequence seq) {
   awaited = std::max(awaited, seq);
 }
 
-void Receipts::send_durable(const Session& session, Sent& sent, const EncodedMessage& encoded) {
-  if (session.is_closed || session.is_relayed || !sent.rejects.empty()) return;
-  const bool is_known =
-      sent.durable == order_.durable() && sent.is_read_only == order_.is_disk_full();
-  if (is_known || !sessions_.send_or_skip(session, encoded)) return;
-  sent.durable = order_.durable();
-  sent.is_read_only = order_.is_disk_full();
+bool Receipts::lacks_durable(const Session& session, const Sent& sent) const {
+  if (session.is_closed || session.is_relayed || !sent.rejects.empty()) return false;
+  return sent.durable != order_.durable() || sent.is_read_only != order_.is_disk_full();
+}
+
+void Receipts::send_durable(std::span<const SessionId> sessions) {
+  if (sessions.empty()) return;
+  const std::vector<SessionId> full = sessions_.send_to_all(sessions, encode_message(durable()));
+  for (const SessionId session : sessions) {
+    if (std::ranges::binary_search(full, session)) continue;
+    Sent& sent = sent_[session];
+    sent.durable = order_.durable();
+    sent.is_read_only = order_.is_disk_full();
+  }
 }
 
 void Receipts::send_durable_to_authors() {
-  const EncodedMessage encoded = encode_message(durable());
+  std::vector<SessionId> authors;
   for (const Session* session : sessions_.open()) {
-    Sent& sent = sent_[session->id];
-    if (sent.durable < sent.awaits_durable) send_durable(*session, sent, encoded);
+    const Sent& sent = sent_[session->id];
+    if (sent.durable < sent.awaits_durable && lacks_durable(*session, sent))
+      authors.push_back(session->id);
   }
+  send_durable(authors);
 }
 
 void Receipts::broadcast_durable(const Clocks& now) {
   if (now.steady_us < durable_due_us_) return;
   durable_due_us_ = now.steady_us + config_.durable_interval_us;
-  const EncodedMessage encoded = encode_message(durable());
-  for (const Session* session : sessions_.open())
-    send_durable(*session, sent_[session->id], encoded);
+  std::vector<SessionId> all;
+  for (const Session* session : sessions_.open()) {
+    if (lacks_durable(*session, sent_[session->id])) all.push_back(session->id);
+  }
+  send_durable(all);
 }
 
 void Receipts::send_epoch(Session& session) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstddef>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "server/world/order/order.hpp"
@@ -68,10 +69,12 @@ class Receipts {
     Sequence awaits_durable = 0;  // of its client's last edit
     std::vector<Reject> rejects;  // that did not fit the session's queue, in order
   };
-  /// Sends the watermark, which `encoded` holds, unless the session has it. Does nothing while
-  /// rejects are pending, because they precede it. If the session's queue is full, a later call
-  /// sends it.
-  void send_durable(const Session& session, Sent& sent, const EncodedMessage& encoded);
+  /// Returns true if the session lacks the watermark and may get it. While rejects are pending it
+  /// may not, because they precede it.
+  bool lacks_durable(const Session& session, const Sent& sent) const;
+  /// Sends the watermark to sessions, in one round. If the queue of a session is full, a later call
+  /// sends it. Requires ascending numbers.
+  void send_durable(std::span<const SessionId> sessions);
 
   const WorldConfig& config_;
   Sessions& sessions_;

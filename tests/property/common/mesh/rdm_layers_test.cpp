@@ -46,6 +46,20 @@ DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   return fill_and_mark(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
 }
 
+/// Borders of neighbours, as a holder of chunks keeps some of them.
+struct SomeBorders {
+  /// Reads the borders of about half of the neighbours.
+  SomeBorders(SplitMix64& rng, const MeshScene& scene) {
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (!scene.neighbours.at(d) || rng.below(2) == 0) continue;
+      kept.at(d).read(*scene.neighbours.at(d), mesh_visibility());
+      pointers.at(d) = &kept.at(d);
+    }
+  }
+  std::array<ChunkBorders, kDirectionCount> kept;
+  MeshBorders pointers{};
+};
+
 // Returns the number of steps that meshed only layers.
 int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   RdmScratch scratch;
@@ -62,8 +76,9 @@ int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
       auto& neighbour = scene.neighbours.at(d);
       if (neighbour) beyond.at(d) = change(rng, *neighbour);
     }
-    by_layers += mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond,
-                                 scratch, mesh)
+    const SomeBorders borders(rng, scene);
+    by_layers += mesh_rdm_layers(scene.chunk, scene.pointers(), borders.pointers, mesh_visibility(),
+                                 dirty, beyond, scratch, mesh)
                      ? 1
                      : 0;
     mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, full);
@@ -101,8 +116,10 @@ void edit_and_compare_layers(SplitMix64& rng, MeshScene scene, int steps, bool p
     }
     const rdm::TouchedLayers touched(scene.chunk, scene.pointers(), dirty, beyond);
     const MeshNeighbours around = scene.pointers();
+    const SomeBorders borders(rng, scene);
     const auto observer = [](rdm::LayerStep) {};
-    rdm::LayerMesher(scene.chunk, around, mesh_visibility(), scratch.state(), mesh, observer)
+    rdm::LayerMesher(scene.chunk, around, borders.pointers, mesh_visibility(), scratch.state(),
+                     mesh, observer)
         .run(touched);
     mesh_rdm(scene.chunk, around, mesh_visibility(), full_scratch, full);
     CAPTURE(Catch::rngSeed(), step, plain, scene.chunk.order);

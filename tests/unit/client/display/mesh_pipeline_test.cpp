@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "client/display/draw_thread.hpp"
 #include "client/net/wake_up.hpp"
 #include "common/os/steady_clock.hpp"
 #include "tests/support/codec/authority_model.hpp"
@@ -210,8 +211,12 @@ TEST_CASE_METHOD(Fixture,
   const auto before = counts();
   CHECK(before[0] + before[1] == 65);
   edit({5, 5, 5});
-  CHECK(counts() == std::array<std::uint64_t, 3>{before[0], before[1] + 1,
-                                                 sizeof(ChunkMesh) + 6 * 65 * sizeof(Quad)});
+  const auto after = counts();
+  CHECK(after[0] == before[0]);
+  CHECK(after[1] == before[1] + 1);
+  // A mesh of layers has room for some more quads.
+  CHECK(after[2] >= sizeof(ChunkMesh) + 6 * 65 * sizeof(Quad));
+  CHECK(after[2] <= sizeof(ChunkMesh) + (6 * 65 + 128) * sizeof(Quad));
 }
 
 TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are meshed again",

@@ -143,6 +143,65 @@ TEST_CASE("a result has no spare capacity from larger meshes before it", "[sched
   CHECK(bench.result_of(2).mesh->opaque.quads.capacity() == 6);
 }
 
+TEST_CASE("a mesh of layers has little spare capacity, however many quads come and go",
+          "[schedule]") {
+  Bench bench(0);
+  std::vector<LocalPos> voxels = among_others({});
+  ShownPtr chunk = chunk_with(voxels);
+  REQUIRE(bench.pool->push(job_of(1, chunk)));
+  MeshPtr mesh = bench.result_of(1).mesh;
+  std::uint64_t number = 1;
+  const auto change_to = [&](const std::vector<LocalPos>& stones) {
+    MeshJob job = job_of(++number, chunk_with(stones));
+    job.before = mesh;
+    job.changed.here = changed_layers(*chunk, *job.chunk);
+    chunk = job.chunk;
+    REQUIRE(bench.pool->push(std::move(job)));
+    MeshResult result = bench.result_of(number);
+    mesh = result.mesh;
+    const auto& quads = mesh->opaque.quads;
+    CHECK(quads.capacity() <= quads.size() + 128);
+    CHECK(mesh->transparent.quads.capacity() == 0);
+    return result.layers_only;
+  };
+  unsigned by_layers = 0;
+  for (std::uint8_t x = 0; x < 10; x = static_cast<std::uint8_t>(x + 2)) {
+    voxels.push_back({x, 1, 1});
+    by_layers += change_to(voxels) ? 1 : 0;
+  }
+  CHECK(by_layers == 5);
+  CHECK(mesh->quad_count() == 6 * (kScattered + 5));
+  // Many quads appear, and many disappear.
+  const std::vector<LocalPos> few = voxels;
+  for (std::uint8_t y = 0; y < 10; ++y)
+    for (std::uint8_t x = y % 2; x < 10; x = static_cast<std::uint8_t>(x + 2))
+      voxels.push_back({x, y, 4});
+  change_to(voxels);
+  CHECK(mesh->quad_count() == 6 * (kScattered + 55));
+  change_to(few);
+  CHECK(mesh->quad_count() == 6 * (kScattered + 5));
+}
+
+TEST_CASE("a job of layers does not read the runs of a neighbour whose borders are kept",
+          "[schedule]") {
+  Bench bench(0);
+  const ShownPtr old_chunk = chunk_with(among_others({{0, 9, 9}}));
+  MeshJob job = job_of(1, old_chunk);
+  job.neighbours[0] = chunk_with({{15, 9, 9}, {15, 3, 3}});
+  REQUIRE(bench.pool->push(job));
+  job.before = bench.result_of(1).mesh;
+  job.number = 2;
+  job.chunk = chunk_with(among_others({{0, 9, 9}, {0, 3, 3}}));
+  job.changed.here = changed_layers(*old_chunk, *job.chunk);
+  // These borders are of other runs, so that the test sees which of both was read.
+  auto borders = std::make_shared<ChunkBorders>();
+  borders->read(*chunk_with({{15, 9, 9}, {15, 12, 12}}), test::mesh_visibility());
+  job.borders[0] = std::move(borders);
+  REQUIRE(bench.pool->push(job));
+  CHECK(bench.result_of(2).layers_only);
+  CHECK(bench.result_of(2).mesh->quad_count() == 6 * kScattered + 5 + 6);
+}
+
 TEST_CASE("a pool that is full takes no more jobs until results are taken", "[schedule]") {
   Bench bench(1);
   std::uint64_t pushed = 0;

@@ -38,6 +38,8 @@ class FakeEnvironment : public WorldEnvironment {
   };
 
   std::vector<Sent> sent;
+  /// The calls of send_to_all(): the kind of the message, and the number of sessions.
+  std::vector<std::pair<MessageKind, std::size_t>> rounds;
   std::vector<SentSnapshot> snapshots;                // updates included
   std::vector<std::pair<ChunkKey, Version>> updates;  // and the version that the session has
   std::vector<std::pair<SessionId, ChunkKey>>
@@ -90,6 +92,11 @@ class FakeEnvironment : public WorldEnvironment {
     if (class_of(message) == FrameClass::edits && refuse_edits.contains(session)) return false;
     sent.push_back({session, message});
     return true;
+  }
+  std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
+                                     const EncodedMessage& message) override {
+    rounds.emplace_back(message.kind, sessions.size());
+    return WorldEnvironment::send_to_all(sessions, message);
   }
   bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                      const ChunkPtr& chunk) override {

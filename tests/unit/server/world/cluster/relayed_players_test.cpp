@@ -303,6 +303,40 @@ TEST_CASE("lines, the player list and poses reach players at all servers", "[wor
     CHECK(bench.sent<PlayerList>(server, 1).back().left == std::vector<AuthorId>{3});
 }
 
+TEST_CASE("what the owner sends to players at a follower is sent to them in one round",
+          "[world][servers]") {
+  ClusterBench bench;
+  bench.join(0, 1, 1);
+  for (std::uint8_t i = 1; i <= 3; ++i) bench.join(1, i, static_cast<std::uint8_t>(1 + i));
+  bench.tick();
+  FakeEnvironment& follower = bench.environment(1);
+  const auto rounds_of = [&](MessageKind kind) {
+    std::vector<std::size_t> sizes;
+    for (const auto& [sent, sessions] : follower.rounds) {
+      if (sent == kind) sizes.push_back(sessions);
+    }
+    return sizes;
+  };
+  follower.rounds.clear();
+  bench.receive(0, 1, ChatRequest{"to all"});
+  bench.tick();
+  CHECK(rounds_of(kKindOf<ChatLines>) == std::vector<std::size_t>{3});
+
+  // A player who misses a change of the list of players is closed. Other messages may be missed.
+  follower.full.insert(2);
+  bench.receive(0, 1, ChatRequest{"once more"});
+  bench.tick();
+  CHECK_FALSE(bench.end_of(1, 2).has_value());
+  bench.world(0).disconnected(1);
+  follower.rounds.clear();
+  bench.tick();
+  CHECK(rounds_of(kKindOf<PlayerList>) == std::vector<std::size_t>{3});
+  REQUIRE(bench.end_of(1, 2).has_value());
+  CHECK(bench.end_of(1, 2)->reason == GoodbyeReason::timed_out);
+  CHECK_FALSE(bench.end_of(1, 1).has_value());
+  CHECK_FALSE(bench.end_of(1, 3).has_value());
+}
+
 TEST_CASE("a command of a player at a follower is carried out by the owner", "[world][servers]") {
   ClusterBench bench;
   bench.join(1, 1, 2);

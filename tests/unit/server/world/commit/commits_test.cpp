@@ -165,7 +165,11 @@ TEST_CASE("the durable watermark goes to the authors of edits at once, and again
   bench.edit(2, 1, kAtOrigin);
   bench.server.commit(bench.now());
   bench.environment.full.insert(2);
+  bench.environment.rounds.clear();
   bench.server.durable(2, bench.now());
+  // Both authors are in one round.
+  using Round = std::pair<MessageKind, std::size_t>;
+  CHECK(bench.environment.rounds == std::vector<Round>{{kKindOf<Durable>, 2}});
   bench.server.durable(2, bench.now());  // nothing new
   CHECK(bench.environment.messages<Durable>(1, kEdge).size() == 1);
   CHECK(bench.environment.messages<Durable>(2, kEdge).empty());
