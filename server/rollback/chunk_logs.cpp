@@ -139,16 +139,26 @@ StoreResult<bool> ChunkLogs::read_ahead(const std::vector<Need>& needs, Sequence
   return is_complete;
 }
 
+std::optional<std::vector<const EditRecord*>> ChunkLogs::in_memory(const ChunkKey& key,
+                                                                   Sequence first,
+                                                                   Sequence last) const {
+  const auto ahead = ahead_.chunks.find(key);
+  if (ahead == ahead_.chunks.end() || ahead->second.first > first || last > ahead_.last)
+    return std::nullopt;
+  std::vector<const EditRecord*> out;
+  out.reserve(ahead->second.records.size());
+  for (const std::size_t place : ahead->second.records) {
+    const EditRecord& record = ahead_.records[place];
+    if (record.version.seq >= first && record.version.seq <= last) out.push_back(&record);
+  }
+  return out;
+}
+
 StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence last,
                                    const Each& each) {
   if (first > last) return {};
-  const auto ahead = ahead_.chunks.find(key);
-  if (ahead != ahead_.chunks.end() && ahead->second.first <= first && last <= ahead_.last) {
-    for (const std::size_t place : ahead->second.records) {
-      const EditRecord& record = ahead_.records[place];
-      if (record.version.seq > last) break;
-      if (record.version.seq >= first) each(record);
-    }
+  if (const auto records = in_memory(key, first, last)) {
+    for (const EditRecord* record : *records) each(*record);
     return {};
   }
   if (kept_bytes_max_ == 0) return read(key, first, last, each);

@@ -194,7 +194,9 @@ StoreResult<std::vector<AuthorId>> LogTable::authors_without(
   }
 }
 
-StoreResult<sql::Statement> LogTable::reader() { return store_result(database_->prepare(select_text())); }
+StoreResult<sql::Statement> LogTable::reader() {
+  return store_result(database_->prepare(select_text()));
+}
 
 StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq) {
   const sql::ResetAtEnd reset_at_end(reader);
