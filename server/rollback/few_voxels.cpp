@@ -8,9 +8,13 @@
 namespace runstone {
 namespace {
 
-// Spheres, strokes and pastes cost so much more than boxes for each voxel in their bounding box.
-// This is the number of such pairs up to which single voxels still cost less than the whole chunk.
-constexpr std::size_t kLargePairsMax = 8'192;
+// Single voxels cost less than a whole chunk up to this part of its voxels. The maximum bounds the
+// time of an edit, which may meet all of them.
+constexpr std::uint32_t kFewVoxelsPart = 32;
+constexpr std::size_t kFewVoxelsMax = 4'096;
+// Spheres, strokes and pastes cost up to a microsecond for each voxel in their bounding box. This is
+// the maximum number of pairs of such an edit and a voxel.
+constexpr std::size_t kLargePairsMax = 1'024;
 // A generator makes single voxels up to this part of the voxels of a chunk, and whole chunks above.
 constexpr std::uint32_t kSingleVoxelsPart = 512;
 
@@ -33,7 +37,9 @@ std::size_t voxels_in(const VoxelBox& box) {
 
 std::optional<std::vector<VoxelPos>> few_voxels(std::span<const EditRecord* const> records,
                                                 std::span<const Sequence> selected,
-                                                const VoxelBox& inside) {
+                                                const VoxelBox& inside, std::int32_t edge) {
+  const std::uint32_t volume = Extent::cube(static_cast<unsigned>(edge)).volume();
+  const std::size_t voxels_max = std::min<std::size_t>(volume / kFewVoxelsPart, kFewVoxelsMax);
   std::vector<VoxelPos> voxels;
   std::size_t large_edits = 0;
   auto next = selected.begin();
@@ -45,7 +51,7 @@ std::optional<std::vector<VoxelPos>> few_voxels(std::span<const EditRecord* cons
     while (next != selected.end() && *next < record->version.seq) ++next;
     if (next == selected.end() || *next != record->version.seq) continue;
     const VoxelBox box = intersect(bounding_box(edit), inside);
-    if (voxels.size() + voxels_in(box) > kFewVoxelsMax) return std::nullopt;
+    if (voxels.size() + voxels_in(box) > voxels_max) return std::nullopt;
     append_voxels(box, voxels);
   }
   std::sort(voxels.begin(), voxels.end());

@@ -14,16 +14,13 @@
 
 namespace runstone {
 
-/// With more voxels, the whole chunk costs less.
-inline constexpr std::size_t kFewVoxelsMax = 1'024;
-
 /// Returns the voxels of `inside` that the selected records may change, strictly ascending: those of
-/// their bounding boxes. Returns nullopt if they are too many, or if the log has so many large edits
-/// that the whole chunk costs less. `records` are those of the chunk, ascending, and `selected`
-/// ascend. Cost: O(records + voxels log voxels).
+/// their bounding boxes. Returns nullopt if they are so many, or if so many of the records are large
+/// edits, that the whole chunk costs less. `records` are those of the chunk, ascending, `selected`
+/// ascend, and `edge` is that of the chunk. Cost: O(records + voxels log voxels).
 std::optional<std::vector<VoxelPos>> few_voxels(std::span<const EditRecord* const> records,
                                                 std::span<const Sequence> selected,
-                                                const VoxelBox& inside);
+                                                const VoxelBox& inside, std::int32_t edge);
 
 /// Returns the materials of these voxels of a chunk before the log that is added to it: those of
 /// `stored`, or of the generator if that is nullopt.

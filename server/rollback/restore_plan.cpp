@@ -103,8 +103,8 @@ StoreResult<std::uint64_t> RestorePlanner::count_from(StoredForm stored, const I
   const std::int32_t edge = reader_.meta().chunk_edge;
   const VoxelBox chunk = box_of(item.key.at, edge);
   const auto records = logs_.in_memory(item.key, stored ? stored->version.seq + 1 : 1, end);
-  auto voxels = records ? few_voxels(*records, item.selected, box ? intersect(*box, chunk) : chunk)
-                        : std::nullopt;
+  const VoxelBox inside_box = box ? intersect(*box, chunk) : chunk;
+  auto voxels = records ? few_voxels(*records, item.selected, inside_box, edge) : std::nullopt;
   if (!voxels) {
     const auto plan = plan_from(std::move(stored), item, box, end);
     if (!plan) return failure(plan.error());
