@@ -21,11 +21,13 @@ CLI::App* add_edits_command(CLI::App& app, BenchOptions& options) {
 CLI::App* add_log_command(CLI::App& app, BenchOptions& options) {
   options.edits = 1'000'000;
   CLI::App* log = app.add_subcommand(
-      "log", "the costs of a long log: questions, keyframes, moments of the past");
+      "log",
+      "the costs of a long log: questions, keyframes, moments of the past, previews of rollbacks");
   log->add_option("--edits", options.edits, "length of the log")
       ->capture_default_str()
       ->check(CLI::Range(100, 100'000'000));
-  add_repetitions_option(*log, options, "--min-runs", "questions of each sort, and moments");
+  add_repetitions_option(*log, options, "--min-runs",
+                         "questions of each sort, moments, and previews");
   log->add_option("--json", options.json, "write all figures to this file");
   return log;
 }

@@ -198,8 +198,10 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
   return result;
 }
 
-/// Appends single voxels of one author, one each 10 ms, scattered over a square.
-Result<void, std::string> scatter(Store& store, AuthorId author, std::uint64_t count) {
+/// Appends edits of one author, one each 10 ms, scattered over a square: boxes with sides up to
+/// `side_max`, or single voxels if that is 1.
+Result<void, std::string> scatter(Store& store, AuthorId author, std::uint64_t count,
+                                  std::int32_t side_max) {
   constexpr std::int32_t kSide = 1'600, kHeight = 32;
   const auto range = store.log_range();
   if (!range) return failure(range.error().message());
@@ -216,6 +218,11 @@ Result<void, std::string> scatter(Store& store, AuthorId author, std::uint64_t c
     const VoxelPos at{rng.between(0, kSide - 1), rng.between(0, kHeight - 1),
                       rng.between(0, kSide - 1)};
     record.edit = {SetVoxel{at}, {}, Material{1}};
+    if (side_max > 1) {
+      const VoxelPos end{at.x + rng.between(1, side_max), at.y + rng.between(1, side_max),
+                         at.z + rng.between(1, side_max)};
+      record.edit.shape = FillBox{{at, end}};
+    }
     batch.push_back(record);
     if (batch.size() < 64 && i < count) continue;
     if (auto appended = store.append({}, batch); !appended)
@@ -225,17 +232,38 @@ Result<void, std::string> scatter(Store& store, AuthorId author, std::uint64_t c
   return {};
 }
 
+/// Adds up what `make` makes of the chunks. `make` gets a planner, the selected chunks and the
+/// function that takes the voxels of a chunk, or an error.
+template <class Make>
+Result<std::uint64_t, std::string> voxels_of(Store& store, const Generator& generator,
+                                             const Selection& selection, const Make& make) {
+  std::vector<RestorePlanner::Item> items;
+  items.reserve(selection.chunks.size());
+  for (const auto& [key, edits] : selection.chunks) items.push_back({key, edits});
+  RestorePlanner planner(store, generator);
+  std::uint64_t sum = 0;
+  std::string error;
+  make(planner, items, [&](const StoreResult<std::uint64_t>& voxels) {
+    if (!voxels) error = voxels.error().message();
+    if (voxels) sum += *voxels;
+    return voxels.has_value();
+  });
+  if (!error.empty()) return failure(error);
+  return sum;
+}
+
 Result<LogPreview, std::string> preview(const std::string& name, Store& store,
                                         const Generator& generator, AuthorId author,
                                         unsigned repetitions) {
   const auto range = store.log_range();
   if (!range) return failure(range.error().message());
+  const Sequence end = range->last.version.seq;
   SelectionFilter filter;
   filter.authors = {author};
   filter.from_us = range->last.time_us - 60 * kMinute;
   LogPreview result;
   result.name = name;
-  std::vector<double> select_ms, plan_ms;
+  std::vector<double> select_ms, count_ms, preview_ms, plan_ms;
   for (unsigned i = 0; i < repetitions; ++i) {
     const auto selecting = Clock::now();
     const auto selection = select_edits(store, filter);
@@ -243,25 +271,39 @@ Result<LogPreview, std::string> preview(const std::string& name, Store& store,
     select_ms.push_back(ms_since(selecting));
     result.edits = selection->edits;
     result.chunks = selection->chunks.size();
-    result.voxels = 0;
+    const auto counting = Clock::now();
+    const auto counted = voxels_of(
+        store, generator, *selection, [&](RestorePlanner& planner, const auto& items, auto take) {
+          planner.count_all(items, std::nullopt, end,
+                            [&](const ChunkKey&, const StoreResult<std::uint64_t>& voxels) {
+                              return take(voxels);
+                            });
+        });
+    if (!counted) return failure(counted.error());
+    count_ms.push_back(ms_since(counting));
+    preview_ms.push_back(ms_since(selecting));
     const auto planning = Clock::now();
-    std::vector<RestorePlanner::Item> items;
-    for (const auto& [key, edits] : selection->chunks) items.push_back({key, edits});
-    std::string error;
-    RestorePlanner(store, generator)
-        .plan_all(items, std::nullopt, range->last.version.seq,
-                  [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
-                    if (!plan) error = plan.error().message();
-                    if (plan) result.voxels += plan->voxels;
-                    return plan.has_value();
-                  });
-    if (!error.empty()) return failure(error);
+    const auto planned = voxels_of(
+        store, generator, *selection, [&](RestorePlanner& planner, const auto& items, auto take) {
+          planner.plan_all(items, std::nullopt, end,
+                           [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+                             if (!plan) return take(failure(plan.error()));
+                             return take(plan->voxels);
+                           });
+        });
+    if (!planned) return failure(planned.error());
     plan_ms.push_back(ms_since(planning));
+    if (*counted != *planned) return failure(name + ": the preview and the plans differ");
+    result.voxels = *counted;
   }
-  result.select_ms = median(select_ms);
-  result.select_slowest_ms = quantile(select_ms, 1);
-  result.plan_ms = median(plan_ms);
-  result.plan_slowest_ms = quantile(plan_ms, 1);
+  const auto summarise = [](std::vector<double>& times, double& middle, double& slowest) {
+    middle = median(times);
+    slowest = quantile(times, 1);
+  };
+  summarise(select_ms, result.select_ms, result.select_slowest_ms);
+  summarise(count_ms, result.count_ms, result.count_slowest_ms);
+  summarise(preview_ms, result.preview_ms, result.preview_slowest_ms);
+  summarise(plan_ms, result.plan_ms, result.plan_slowest_ms);
   return result;
 }
 
@@ -321,11 +363,16 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
   if (auto done = add_preview("a builder", sampled->records.back().op.author); !done)
     return failure(done.error());
   AuthorId griefer = kFirstGriefer;
-  for (const std::uint64_t most : {12'000u, 60'000u}) {
-    const std::uint64_t voxels = std::min(most, options.edits);
-    if (auto scattered = scatter(*store, ++griefer, voxels); !scattered)
+  struct Griefing {
+    std::uint64_t edits;
+    std::int32_t side_max;
+  };
+  for (const Griefing& most : {Griefing{12'000, 1}, Griefing{60'000, 1}, Griefing{8'000, 8}}) {
+    const std::uint64_t edits = std::min(most.edits, options.edits);
+    if (auto scattered = scatter(*store, ++griefer, edits, most.side_max); !scattered)
       return failure(scattered.error());
-    const std::string name = std::to_string(voxels) + " scattered voxels";
+    const std::string name =
+        std::to_string(edits) + (most.side_max == 1 ? " scattered voxels" : " scattered boxes");
     if (auto done = add_preview(name, griefer); !done) return failure(done.error());
     fmt::print(progress, "the preview of {} is done\n", name);
   }
@@ -357,10 +404,12 @@ void write_table(const LogBench& bench, std::ostream& out) {
   fmt::print(
       out,
       "\n| preview of one author's last hour | edits | chunks | voxels | selected, median ms | "
-      "slowest | planned | slowest |\n|---|---|---|---|---|---|---|---|\n");
+      "counted | preview | slowest | all chunks planned | slowest |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const LogPreview& p : bench.previews) {
-    fmt::print(out, "| {} | {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", p.name, p.edits,
-               p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms, p.plan_slowest_ms);
+    fmt::print(out, "| {} | {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n",
+               p.name, p.edits, p.chunks, p.voxels, p.select_ms, p.count_ms, p.preview_ms,
+               p.preview_slowest_ms, p.plan_ms, p.plan_slowest_ms);
   }
 }
 
@@ -396,6 +445,10 @@ void write_json(const LogBench& bench, std::ostream& out) {
                                 {"voxels", p.voxels},
                                 {"select_ms", p.select_ms},
                                 {"select_slowest_ms", p.select_slowest_ms},
+                                {"count_ms", p.count_ms},
+                                {"count_slowest_ms", p.count_slowest_ms},
+                                {"preview_ms", p.preview_ms},
+                                {"preview_slowest_ms", p.preview_slowest_ms},
                                 {"plan_ms", p.plan_ms},
                                 {"plan_slowest_ms", p.plan_slowest_ms}});
   }

@@ -30,13 +30,16 @@ struct LogMoments {
   double all_ms = 0, all_slowest_ms = 0;
 };
 
-/// The times of the preview of a rollback: all edits of one author in the last hour, planned with
-/// the present keyframes, without a picture.
+/// The times of the preview of a rollback: all edits of one author in the last hour, with the present
+/// keyframes, for somebody who sees none of the chunks, on one thread. A preview selects the edits
+/// and counts the voxels that would change. To apply the rollback, all chunks are planned.
 struct LogPreview {
   std::string name;
   // Selected edits, touched chunks, voxels that would change.
   std::uint64_t edits = 0, chunks = 0, voxels = 0;
   double select_ms = 0, select_slowest_ms = 0;
+  double count_ms = 0, count_slowest_ms = 0;
+  double preview_ms = 0, preview_slowest_ms = 0;  // both together
   double plan_ms = 0, plan_slowest_ms = 0;
 };
 
@@ -49,15 +52,15 @@ struct LogBench {
   std::uint64_t keyframe_chunks = 0;
   std::vector<LogQuestion> questions;
   std::vector<LogMoments> moments;
-  // The first preview is of a builder. The others are of griefers. Each griefer sets single voxels
-  // at random places of a square, which is 1,600 voxels long and wide.
+  // The first preview is of a builder. The others are of griefers, who edit random places of a
+  // square, which is 1,600 voxels long and wide: two set single voxels, the last one fills boxes.
   std::vector<LogPreview> previews;
 };
 
 /// Makes a world of options.edits synthetic edits of eight builders over terrain
 /// (tests/support/edits/builder_session.hpp), in a folder that it removes afterwards. Makes
 /// options.repetitions queries of each sort, spread over the log. Opens as many random moments, and
-/// makes as many previews of equal size.
+/// makes as many previews of equal size. Fails if a preview counts other voxels than the plans change.
 Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::ostream& progress);
 
 void write_table(const LogBench& bench, std::ostream& out);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -209,10 +210,21 @@ void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& com
   const auto pictures = command.picture
                             ? std::make_shared<PreviewPictures>(call.services.world_folder)
                             : std::shared_ptr<PreviewPictures>();
-  const auto view_plan = [edits, pictures](const RestorePlan& plan) {
-    if (edits) edits->add(plan);
-    if (pictures) pictures->add(plan);
-  };
+  RollbackPreview::PlanViewer viewer;
+  if (edits || pictures) {
+    viewer.choose = [edits, pictures](const std::vector<ChunkKey>& changing) {
+      const auto seen = edits ? edits->choose(changing) : std::vector<ChunkKey>();
+      const auto drawn = pictures ? pictures->choose(changing) : std::vector<ChunkKey>();
+      std::vector<ChunkKey> both;
+      std::set_union(seen.begin(), seen.end(), drawn.begin(), drawn.end(),
+                     std::back_inserter(both));
+      return both;
+    };
+    viewer.add = [edits, pictures](const RestorePlan& plan) {
+      if (edits) edits->add(plan);
+      if (pictures) pictures->add(plan);
+    };
+  }
   RollbackPreview::Summary summarise;
   if (pictures) {
     summarise = [pictures](WorldReader& reader, const Generator& generator, const std::string& id,
@@ -229,8 +241,8 @@ void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& com
     reply(given);
   };
   with_selection(call, command.filter, "rollback preview",
-                 [call, answer, view_plan, summarise](const SelectionFilter& filter) {
-                   call.services.rollback.preview(filter, call.now, answer, view_plan, summarise);
+                 [call, answer, viewer, summarise](const SelectionFilter& filter) {
+                   call.services.rollback.preview(filter, call.now, answer, viewer, summarise);
                  });
 }
 

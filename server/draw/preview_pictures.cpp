@@ -40,9 +40,15 @@ VoxelBox in_world(const OrderedBox& box, AxisOrder order, VoxelPos origin) {
 
 }  // namespace
 
+std::vector<ChunkKey> PreviewPictures::choose(const std::vector<ChunkKey>& changing) {
+  are_too_many_ = changing.size() > kChunksMax;
+  return are_too_many_ ? std::vector<ChunkKey>() : changing;
+}
+
 void PreviewPictures::add(const RestorePlan& plan) {
+  if (are_too_many_) return;
   edge_ = plan.now.extent.x;
-  if (changed_.size() <= kChunksMax) changed_.push_back({plan.key, plan.now, plan.restored});
+  changed_.push_back({plan.key, plan.now, plan.restored});
   const OrderedExtent extent = ordered(plan.now.extent, plan.now.order);
   for (const Difference& difference : plan.differences) {
     for_each_box(extent, difference.first, difference.last, [&](const OrderedBox& box) {
@@ -54,11 +60,11 @@ void PreviewPictures::add(const RestorePlan& plan) {
 
 std::string PreviewPictures::draw(WorldReader& reader, const Generator& generator,
                                   const std::string& name, const ShouldContinue& wanted) {
-  if (changed_.empty()) return "no picture: nothing would change";
-  if (changed_.size() > kChunksMax) {
+  if (are_too_many_) {
     return "no picture: more than " + std::to_string(kChunksMax) +
            " chunks would change; a smaller `box` can be drawn";
   }
+  if (changed_.empty()) return "no picture: nothing would change";
   const auto drawn = draw_both(reader, generator, name, wanted);
   if (!drawn) return "no picture: " + drawn.error();
   return "pictures " + folder_ + "/" + name + "-before.png and " + name + "-after.png";

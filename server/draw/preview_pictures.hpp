@@ -25,7 +25,10 @@ class PreviewPictures {
   explicit PreviewPictures(std::string world_folder)
       : folder_(std::move(world_folder) + "/previews") {}
 
-  /// Adds a chunk that would change.
+  /// Returns the chunks that add() needs: all of these, which would change, or none if they are too
+  /// many for a picture.
+  std::vector<ChunkKey> choose(const std::vector<ChunkKey>& changing);
+  /// Adds a chunk that would change. Does nothing if they are too many for a picture.
   void add(const RestorePlan& plan);
   /// Draws NAME-before.png and NAME-after.png, with the chunks around. Returns a line of text with
   /// their paths, or with the reason why there are no pictures. Ends within a second or two when
@@ -42,6 +45,7 @@ class PreviewPictures {
                                       const std::string& name, const ShouldContinue& wanted);
 
   std::string folder_;
+  bool are_too_many_ = false;
   std::vector<ChangedChunk> changed_;
   std::optional<VoxelBox> area_;  // of the voxels that change
   std::int32_t edge_ = 0;

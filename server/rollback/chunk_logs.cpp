@@ -18,11 +18,11 @@ std::size_t bytes_of(const EditRecord& record) {
   return bytes;
 }
 
-/// Returns true if one of the chunks, the keys of a map, overlaps a box that is not empty. Cost:
-/// O(log chunks) for each chunk of a box with few of them; of larger boxes O(1), and the answer may
-/// then be true for a box between the chunks.
+/// Returns true if one of the chunks, the keys of a map, overlaps a box that is not empty, and needs
+/// edits up to `last`. Cost: O(log chunks) for each chunk of a box with few of them; of larger boxes
+/// O(1), and the answer may then be true for a box between the chunks.
 template <class Map>
-bool overlaps_one_of(const Map& chunks, const VoxelBox& box, std::int32_t edge) {
+bool is_needed_by_one_of(const Map& chunks, const VoxelBox& box, Sequence last, std::int32_t edge) {
   constexpr std::int64_t kLookedForMax = 64;
   const ChunkCoord low = chunk_of(box.min, edge),
                    high = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
@@ -35,8 +35,11 @@ bool overlaps_one_of(const Map& chunks, const VoxelBox& box, std::int32_t edge) 
   }
   for (std::int32_t x = low.x; x <= high.x; ++x) {
     for (std::int32_t y = low.y; y <= high.y; ++y) {
-      const auto at = chunks.lower_bound({0, {x, y, low.z}});
-      if (at != chunks.end() && at->first <= ChunkKey{0, {x, y, high.z}}) return true;
+      const ChunkKey end{0, {x, y, high.z}};
+      for (auto at = chunks.lower_bound({0, {x, y, low.z}}); at != chunks.end() && at->first <= end;
+           ++at) {
+        if (at->second.first <= last) return true;
+      }
     }
   }
   return false;
@@ -106,15 +109,17 @@ StoreResult<bool> ChunkLogs::read_ahead(const std::vector<Need>& needs, Sequence
   }
   ahead_.last = last;
   if (query.first > last) return true;
-  query.wants = [&](const VoxelBox& box) {
-    return box.empty() || overlaps_one_of(ahead_.chunks, box, edge);
+  query.wants = [&](const VoxelBox& box, Sequence until) {
+    return box.empty() || is_needed_by_one_of(ahead_.chunks, box, until, edge);
   };
   bool is_wanted = true;
   std::size_t bytes = 0;
+  std::vector<ChunkCoord> touched;
   const auto done = reader_.query_log(query, [&](const EditRecord& record) {
     is_wanted = !should_continue_ || should_continue_();
     bool is_kept = false;
-    for (const ChunkCoord at : touched_chunks(record.edit, edge)) {
+    touched_chunks(record.edit, edge, touched);
+    for (const ChunkCoord at : touched) {
       const auto chunk = ahead_.chunks.find({0, at});
       if (chunk == ahead_.chunks.end() || record.version.seq < chunk->second.first) continue;
       chunk->second.records.push_back(ahead_.records.size());
@@ -134,16 +139,26 @@ StoreResult<bool> ChunkLogs::read_ahead(const std::vector<Need>& needs, Sequence
   return is_complete;
 }
 
+std::optional<std::vector<const EditRecord*>> ChunkLogs::in_memory(const ChunkKey& key,
+                                                                   Sequence first,
+                                                                   Sequence last) const {
+  const auto ahead = ahead_.chunks.find(key);
+  if (ahead == ahead_.chunks.end() || ahead->second.first > first || last > ahead_.last)
+    return std::nullopt;
+  std::vector<const EditRecord*> out;
+  out.reserve(ahead->second.records.size());
+  for (const std::size_t place : ahead->second.records) {
+    const EditRecord& record = ahead_.records[place];
+    if (record.version.seq >= first && record.version.seq <= last) out.push_back(&record);
+  }
+  return out;
+}
+
 StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence last,
                                    const Each& each) {
   if (first > last) return {};
-  const auto ahead = ahead_.chunks.find(key);
-  if (ahead != ahead_.chunks.end() && ahead->second.first <= first && last <= ahead_.last) {
-    for (const std::size_t place : ahead->second.records) {
-      const EditRecord& record = ahead_.records[place];
-      if (record.version.seq > last) break;
-      if (record.version.seq >= first) each(record);
-    }
+  if (const auto records = in_memory(key, first, last)) {
+    for (const EditRecord* record : *records) each(*record);
     return {};
   }
   if (kept_bytes_max_ == 0) return read(key, first, last, each);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,10 @@ class ChunkLogs {
   /// nothing is kept then, and visit() reads the disk. Fails as visit(). Cost: O(segments of the
   /// index around all of the chunks + edits of those that may touch one).
   StoreResult<bool> read_ahead(const std::vector<Need>& needs, Sequence last);
+  /// Returns the edits that visit() would visit, or nullopt if it would read the disk. They live
+  /// until the next call of read_ahead().
+  std::optional<std::vector<const EditRecord*>> in_memory(const ChunkKey& key, Sequence first,
+                                                          Sequence last) const;
 
  private:
   static constexpr std::size_t kAheadBytesMax = std::size_t{64} << 20;

@@ -8,27 +8,22 @@
 
 namespace runstone {
 
-StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
-                               Sequence at) {
+StoreResult<std::optional<Chunk>> stored_form(WorldReader& reader, const ChunkKey& key,
+                                              Sequence at) {
   auto newest = reader.load_kept(key, at);
-  if (!newest) return failure(newest.error());
-  auto snapshot = reader.load_snapshot(key);
-  if (!snapshot) return failure(snapshot.error());
-  const bool is_old_enough = snapshot->has_value() && (*snapshot)->version.seq <= at;
-  if (is_old_enough && (!newest->has_value() || (*newest)->version < (*snapshot)->version))
-    newest = snapshot;
-  if (newest->has_value()) {
-    Chunk chunk = **std::move(newest);
-    chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
-    return chunk;
-  }
-  auto chunk = base_chunk(reader, generator, key);
-  if (chunk && chunk->version.seq > at) {
+  if (!newest) return newest;
+  auto snapshot = reader.load_snapshot(key, at);
+  if (!snapshot) return snapshot;
+  if (snapshot->has_value() && (!newest->has_value() || (*newest)->version < (*snapshot)->version))
+    return snapshot;
+  if (newest->has_value()) return newest;
+  auto base = reader.load_base(key);
+  if (base && base->has_value() && (*base)->version.seq > at) {
     return failure(StoreError{
         StoreError::Kind::bad_request, reader.file(), "base chunk=" + text_of(key),
-        "the log before sequence " + std::to_string(chunk->version.seq) + " was compacted"});
+        "the log before sequence " + std::to_string((*base)->version.seq) + " was compacted"});
   }
-  return chunk;
+  return base;
 }
 
 StoreResult<Chunk> replayed_to(Chunk stored, const ChunkKey& key, std::int32_t edge,
@@ -46,10 +41,13 @@ StoreResult<Chunk> replayed_to(Chunk stored, const ChunkKey& key, std::int32_t e
 
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                               Sequence at, ReplayScratch& scratch) {
-  auto stored = stored_form(reader, generator, key, at);
-  if (!stored) return stored;
+  auto stored = stored_form(reader, key, at);
+  if (!stored) return failure(stored.error());
+  const std::uint16_t edge = reader.meta().chunk_edge;
+  Chunk chunk = stored->has_value() ? **std::move(stored) : generated_chunk(generator, key, edge);
+  chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
   ChunkLogs logs(reader);
-  return replayed_to(*std::move(stored), key, reader.meta().chunk_edge, logs, at, scratch);
+  return replayed_to(std::move(chunk), key, edge, logs, at, scratch);
 }
 
 }  // namespace runstone

@@ -15,14 +15,35 @@ std::int64_t squared(std::int64_t v) { return v * v; }
 
 }  // namespace
 
+std::int64_t PreviewEdits::distance_of(ChunkCoord at) const {
+  return squared(std::int64_t{at.x} - view_.centre.x) +
+         squared(std::int64_t{at.y} - view_.centre.y) +
+         squared(std::int64_t{at.z} - view_.centre.z);
+}
+
+std::vector<ChunkKey> PreviewEdits::choose(const std::vector<ChunkKey>& changing) {
+  std::vector<ChunkKey> seen;
+  for (const ChunkKey& key : changing) {
+    if (key.lod == 0 && view_.contains(key.at)) seen.push_back(key);
+  }
+  if (seen.size() <= kRestorePreviewEditsMax) return seen;
+  is_cut_ = true;
+  const auto end = seen.begin() + kRestorePreviewEditsMax;
+  std::nth_element(seen.begin(), end, seen.end(), [this](const ChunkKey& a, const ChunkKey& b) {
+    const std::int64_t to_a = distance_of(a.at), to_b = distance_of(b.at);
+    return to_a != to_b ? to_a < to_b : a < b;
+  });
+  seen.erase(end, seen.end());
+  std::sort(seen.begin(), seen.end());
+  return seen;
+}
+
 void PreviewEdits::add(const RestorePlan& plan) {
   const ChunkCoord at = plan.key.at;
   if (plan.key.lod != 0 || plan.differences.empty() || !view_.contains(at)) return;
   Part part;
   part.at = at;
-  part.distance = squared(std::int64_t{at.x} - view_.centre.x) +
-                  squared(std::int64_t{at.y} - view_.centre.y) +
-                  squared(std::int64_t{at.z} - view_.centre.z);
+  part.distance = distance_of(at);
   part.edits =
       restore_pastes(plan.now, plan.differences, origin_of(at, plan.now.extent.sides()[0]));
   for (const EditDescriptor& edit : part.edits) part.bytes += encode(edit).size();

@@ -15,6 +15,10 @@ class PreviewEdits {
  public:
   explicit PreviewEdits(const View& view) : view_(view) {}
 
+  /// Returns the chunks of these whose edits there may be room for, ascending: those of the view, and
+  /// of very many the nearest ones. Requires that `changing` ascend and that each has an edit. Cost:
+  /// O(chunks log chunks).
+  std::vector<ChunkKey> choose(const std::vector<ChunkKey>& changing);
   /// Adds the edits of a chunk if the view has it. If there is no room for all, drops the edits of
   /// the chunks that are farthest from the centre. Cost: O(runs of the edits + chunks).
   void add(const RestorePlan& plan);
@@ -28,6 +32,8 @@ class PreviewEdits {
     std::size_t bytes = 0;
     std::vector<EditDescriptor> edits;
   };
+
+  std::int64_t distance_of(ChunkCoord at) const;
 
   View view_;
   std::vector<Part> parts_;  // a heap; the farthest part is at the front

@@ -1,12 +1,16 @@
 #include "server/rollback/restore_plan.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "common/edits/apply/edit_changes.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/restore/voxel_restore.hpp"
+#include "common/runs/reorder.hpp"
 #include "server/rollback/chunk_past.hpp"
+#include "server/rollback/few_voxels.hpp"
+#include "server/rollback/log_restore.hpp"
+#include "server/store/read_span.hpp"
 
 namespace runstone {
 namespace {
@@ -26,63 +30,41 @@ std::vector<Difference> inside(const std::vector<Difference>& all,
   return out;
 }
 
-/// The points of a chunk before each rollback, and before each undo of one, so that an edit that
-/// takes one back can return to it.
-class RestorePoints {
- public:
-  /// Returns the point to which the record returns, or null: its subject is no rollback whose point
-  /// is kept.
-  const RestorePoint* target_of(const EditRecord& record) const {
-    const auto group = group_of_.find(record.subject);
-    if (group == group_of_.end()) return nullptr;
-    const auto point = points_.find(group->second);
-    return point == points_.end() ? nullptr : &point->second;
-  }
-  /// Keeps the point before the record if it begins a rollback in this chunk, or an undo of one.
-  void add(const EditRecord& record, ChunkRestore& restore, ApplyScratch& scratch) {
-    const bool is_rollback = record.cause == Cause::rollback;
-    const bool is_undo = record.cause == Cause::undo && group_of_.contains(record.subject);
-    if (!is_rollback && !is_undo) return;
-    const auto first =
-        first_of_.try_emplace({record.op.author, record.op.instance}, record.version.seq);
-    group_of_[record.version.seq] = first.first->second;
-    if (!first.second) return;
-    points_.emplace(record.version.seq, restore.point(scratch));
-    if (points_.size() > kPointsMax) points_.erase(points_.begin());
-  }
-
- private:
-  // Of a chunk that was rolled back more often, the oldest rollbacks are edits like others.
-  static constexpr std::size_t kPointsMax = 64;
-  std::map<std::pair<AuthorId, ClientInstance>, Sequence> first_of_;  // in this chunk
-  std::map<Sequence, Sequence> group_of_;                             // first edit, by edit
-  std::map<Sequence, RestorePoint> points_;                           // by first edit
-};
-
 }  // namespace
 
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
                                               std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
-  auto stored = stored_form(reader_, generator_, key, selected.front() - 1);
+  auto stored = stored_form(reader_, key, selected.front() - 1);
   if (!stored) return failure(stored.error());
   return plan_from(*std::move(stored), {key, selected}, box, end);
 }
 
-void RestorePlanner::plan_all(std::span<const Item> items, const std::optional<VoxelBox>& box,
-                              Sequence end, const EachPlan& each) {
+void RestorePlanner::in_batches(
+    std::span<const Item> items, Sequence end,
+    const std::function<bool(const Item&, StoreResult<StoredForm>)>& each) {
   std::size_t batch_max = kBatchChunks;
   while (!items.empty()) {
     const auto batch = items.first(std::min(items.size(), batch_max));
-    std::vector<StoreResult<Chunk>> stored;
+    std::vector<StoreResult<StoredForm>> stored;
+    stored.reserve(batch.size());
     std::vector<ChunkLogs::Need> needs;
-    for (const Item& item : batch) {
-      if (should_continue_ && !should_continue_()) {
-        each(batch.front().key, cancelled(reader_));
-        return;
+    {
+      ReadSpan reads(reader_);
+      for (const Item& item : batch) {
+        if (should_continue_ && !should_continue_()) {
+          each(batch.front(), cancelled(reader_));
+          return;
+        }
+        if (const auto begun = reads.next(); !begun) {
+          stored.push_back(failure(begun.error()));
+          continue;
+        }
+        stored.push_back(stored_form(reader_, item.key, item.selected.front() - 1));
+        if (!stored.back()) continue;
+        const StoredForm& form = *stored.back();
+        needs.push_back({item.key, form ? form->version.seq + 1 : 1});
       }
-      stored.push_back(stored_form(reader_, generator_, item.key, item.selected.front() - 1));
-      if (stored.back()) needs.push_back({item.key, stored.back()->version.seq + 1});
     }
     const auto read = logs_.read_ahead(needs, end);
     if (read && !*read && batch.size() > 1) {
@@ -90,54 +72,83 @@ void RestorePlanner::plan_all(std::span<const Item> items, const std::optional<V
       continue;
     }
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (read && stored[i]) {
-        if (!each(batch[i].key, plan_from(*std::move(stored[i]), batch[i], box, end))) return;
-      } else {
-        const StoreError& why = read ? stored[i].error() : read.error();
-        if (!each(batch[i].key, failure(why))) return;
-      }
+      const bool goes_on = each(
+          batch[i], read ? std::move(stored[i]) : StoreResult<StoredForm>(failure(read.error())));
+      if (!goes_on) return;
     }
     items = items.subspan(batch.size());
   }
 }
 
-StoreResult<RestorePlan> RestorePlanner::plan_from(Chunk stored, const Item& item,
+void RestorePlanner::plan_all(std::span<const Item> items, const std::optional<VoxelBox>& box,
+                              Sequence end, const EachPlan& each) {
+  in_batches(items, end, [&](const Item& item, StoreResult<StoredForm> stored) {
+    if (!stored) return each(item.key, failure(stored.error()));
+    return each(item.key, plan_from(*std::move(stored), item, box, end));
+  });
+}
+
+void RestorePlanner::count_all(std::span<const Item> items, const std::optional<VoxelBox>& box,
+                               Sequence end, const EachCount& each) {
+  in_batches(items, end, [&](const Item& item, StoreResult<StoredForm> stored) {
+    if (!stored) return each(item.key, failure(stored.error()));
+    return each(item.key, count_from(*std::move(stored), item, box, end));
+  });
+}
+
+StoreResult<std::uint64_t> RestorePlanner::count_from(StoredForm stored, const Item& item,
+                                                      const std::optional<VoxelBox>& box,
+                                                      Sequence end) {
+  if (should_continue_ && !should_continue_()) return cancelled(reader_);
+  const std::int32_t edge = reader_.meta().chunk_edge;
+  const VoxelBox chunk = box_of(item.key.at, edge);
+  const auto records = logs_.in_memory(item.key, stored ? stored->version.seq + 1 : 1, end);
+  const VoxelBox inside_box = box ? intersect(*box, chunk) : chunk;
+  auto voxels = records ? few_voxels(*records, item.selected, inside_box, edge) : std::nullopt;
+  if (!voxels) {
+    const auto plan = plan_from(std::move(stored), item, box, end);
+    if (!plan) return failure(plan.error());
+    return plan->voxels;
+  }
+  auto before = materials_of(*voxels, stored, generator_, item.key, edge);
+  LogRestore<VoxelRestore> log(VoxelRestore(*std::move(voxels), std::move(before)), item.selected);
+  for (const EditRecord* record : *records) log.add(*record, scratch_.apply);
+  return log.restore().differences();
+}
+
+StoreResult<RestorePlan> RestorePlanner::plan_from(StoredForm stored, const Item& item,
                                                    const std::optional<VoxelBox>& box,
                                                    Sequence end) {
   if (should_continue_ && !should_continue_()) return cancelled(reader_);
   const auto& [key, selected] = item;
   const std::int32_t edge = reader_.meta().chunk_edge;
-  auto before = replayed_to(std::move(stored), key, edge, logs_, selected.front() - 1, scratch_);
-  if (!before) return failure(before.error());
   const VoxelPos origin = origin_of(key.at, edge);
+  // No digest is computed: the plan has none.
+  Chunk start;
+  if (stored) {
+    start = *std::move(stored);
+  } else {
+    start.voxels = generator_.generate(origin, Extent::cube(static_cast<unsigned>(edge)));
+  }
+  start.voxels = in_cheapest_order(std::move(start.voxels));
+  auto before = replayed_to(std::move(start), key, edge, logs_, selected.front() - 1, scratch_);
+  if (!before) return failure(before.error());
   RestorePlan plan;
   plan.key = key;
   plan.version = before->version;
-  ChunkRestore restore(std::move(before->voxels), origin);
-  const VoxelBox here = box_of(key.at, edge);
-  RestorePoints points;
-  auto next = selected.begin();
+  LogRestore<ChunkRestore> log(ChunkRestore(std::move(before->voxels), origin), selected);
   const auto read = logs_.visit(key, selected.front(), end, [&](const EditRecord& record) {
-    while (next != selected.end() && *next < record.version.seq) ++next;
-    const bool is_selected = next != selected.end() && *next == record.version.seq;
-    if (is_selected) {
-      ++plan.edits;
-      plan.subject = record.version.seq;
-    }
-    const RestorePoint* const target = is_selected ? nullptr : points.target_of(record);
-    points.add(record, restore, scratch_.apply);
-    if (target != nullptr) {
-      restore.add_return(record.edit, *target, scratch_.apply);
-    } else {
-      restore.add(record.edit, is_selected, scratch_.apply);
-    }
+    log.add(record, scratch_.apply);
     plan.version = record.version;
   });
   if (!read) return failure(read.error());
-  restore.flush(scratch_.apply);
-  plan.now = restore.now();
-  plan.restored = restore.restored();
+  plan.edits = log.edits();
+  plan.subject = log.subject();
+  log.restore().flush(scratch_.apply);
+  plan.now = log.restore().now();
+  plan.restored = log.restore().restored();
   append_differences(plan.now, plan.restored, plan.differences);
+  const VoxelBox here = box_of(key.at, edge);
   if (box && intersect(*box, here) != here && !plan.differences.empty()) {
     std::vector<IndexSpan> spans;
     append_spans({FillBox{intersect(*box, here)}, {}, kEmpty}, origin, plan.now.extent,

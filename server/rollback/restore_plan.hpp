@@ -57,11 +57,26 @@ class RestorePlanner {
   void plan_all(std::span<const Item> items, const std::optional<VoxelBox>& box, Sequence end,
                 const EachPlan& each);
 
+  /// Is called with the number of voxels that the plan of a chunk changes, or with why it could not
+  /// be made. Returns false to end.
+  using EachCount = std::function<bool(const ChunkKey& key, StoreResult<std::uint64_t> voxels)>;
+  /// Counts what plan_all() would change. Cost: where few voxels are selected in a chunk, only that
+  /// of these voxels and of the edits that touched the chunk; elsewhere that of plan_all().
+  void count_all(std::span<const Item> items, const std::optional<VoxelBox>& box, Sequence end,
+                 const EachCount& each);
+
  private:
   /// The chunks whose log is read at once. Their stored forms are in memory meanwhile.
   static constexpr std::size_t kBatchChunks = 2'048;
-  StoreResult<RestorePlan> plan_from(Chunk stored, const Item& item,
+  using StoredForm = std::optional<Chunk>;  // nullopt: the generator makes the chunk
+  /// Reads the log of many chunks at once, and then calls `each` for each of them, in their order,
+  /// with its stored form or with why that could not be read. Ends if `each` returns false.
+  void in_batches(std::span<const Item> items, Sequence end,
+                  const std::function<bool(const Item&, StoreResult<StoredForm>)>& each);
+  StoreResult<RestorePlan> plan_from(StoredForm stored, const Item& item,
                                      const std::optional<VoxelBox>& box, Sequence end);
+  StoreResult<std::uint64_t> count_from(StoredForm stored, const Item& item,
+                                        const std::optional<VoxelBox>& box, Sequence end);
 
   WorldReader& reader_;
   const Generator& generator_;

@@ -15,35 +15,50 @@ std::string text_of_box(const VoxelBox& box) {
 }  // namespace
 
 void RollbackPreview::compute(WorldReader& reader, const Generator& generator,
-                              const SelectionFilter& filter, Sequence end,
-                              const PlanViewer& view_plan, const Summary& summarise) {
+                              const SelectionFilter& filter, Sequence end, const PlanViewer& viewer,
+                              const Summary& summarise) {
   const auto should_continue = [this] { return is_wanted->load(); };
   auto selected = select_edits(reader, filter, should_continue);
-  if (!selected) {
-    error = should_continue() ? selected.error().message() : "cancelled";
-    return;
-  }
+  if (!selected) return fail_with(selected.error());
   selection = std::make_shared<const Selection>(*std::move(selected));
   std::vector<RestorePlanner::Item> items;
   items.reserve(selection->chunks.size());
   for (const auto& [key, edits] : selection->chunks) items.push_back({key, edits});
   progress->edits.store(selection->edits);
   progress->chunks.store(items.size());
-  RestorePlanner(reader, generator, should_continue)
-      .plan_all(items, selection->box, end,
-                [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
-                  if (!plan) {
-                    error = should_continue() ? plan.error().message() : "cancelled";
-                    return false;
-                  }
-                  ++progress->chunks_done;
-                  voxels += plan->voxels;
-                  chunks += plan->voxels > 0 ? 1 : 0;
-                  if (view_plan && plan->voxels > 0) view_plan(*plan);
-                  return true;
-                });
-  if (!error.empty()) return;
-  if (summarise && voxels > 0) summary = summarise(reader, generator, id(), should_continue);
+  RestorePlanner planner(reader, generator, should_continue);
+  std::vector<ChunkKey> changing;
+  planner.count_all(items, selection->box, end,
+                    [&](const ChunkKey& key, const StoreResult<std::uint64_t>& count) {
+                      if (!count) {
+                        fail_with(count.error());
+                        return false;
+                      }
+                      ++progress->chunks_done;
+                      voxels += *count;
+                      chunks += *count > 0 ? 1 : 0;
+                      if (viewer.choose && *count > 0) changing.push_back(key);
+                      return true;
+                    });
+  if (!error.empty() || voxels == 0) return;
+  if (viewer.choose) show(planner, end, changing, viewer);
+  if (error.empty() && summarise) summary = summarise(reader, generator, id(), should_continue);
+}
+
+void RollbackPreview::show(RestorePlanner& planner, Sequence end,
+                           const std::vector<ChunkKey>& changing, const PlanViewer& viewer) {
+  std::vector<RestorePlanner::Item> items;
+  for (const ChunkKey& key : viewer.choose(changing))
+    items.push_back({key, selection->chunks.at(key)});
+  planner.plan_all(items, selection->box, end,
+                   [&](const ChunkKey&, const StoreResult<RestorePlan>& plan) {
+                     if (plan) {
+                       viewer.add(*plan);
+                     } else {
+                       fail_with(plan.error());
+                     }
+                     return plan.has_value();
+                   });
 }
 
 std::string RollbackPreview::progress_text() const {

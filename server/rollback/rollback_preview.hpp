@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/rollback/restore_plan.hpp"
 #include "server/rollback/selection.hpp"
@@ -16,9 +17,15 @@ namespace runstone {
 
 struct RollbackPreview {
   enum class State { computing, ready, applied };
-  /// A function that gets the plan of each chunk that would change, one after another, on the
-  /// worker.
-  using PlanViewer = std::function<void(const RestorePlan&)>;
+  /// The functions of somebody who wants to see changes, called on the worker. Both are there or
+  /// neither.
+  struct PlanViewer {
+    /// Gets all chunks that would change, ascending, if there are any. Returns those whose plans
+    /// add() shall get.
+    std::function<std::vector<ChunkKey>(const std::vector<ChunkKey>& changing)> choose;
+    /// Gets the plans of these chunks, one after another.
+    std::function<void(const RestorePlan&)> add;
+  };
   /// A function that the worker calls after the last plan. It returns lines for the answer, and
   /// returns soon when the answer is no longer wanted.
   using Summary = std::function<std::string(WorldReader& reader, const Generator& generator,
@@ -44,10 +51,11 @@ struct RollbackPreview {
 
   /// Returns the id: "p1".
   std::string id() const { return "p" + std::to_string(number); }
-  /// Selects edits and plans each chunk that they touch, up to sequence `end`, which must be
-  /// durable. Blocks on the disk. Both functions may be empty.
+  /// Selects edits and counts what would change in each chunk that they touch, up to sequence `end`,
+  /// which must be durable. Then plans the chunks that the viewer chooses. Blocks on the disk. The
+  /// functions may be empty.
   void compute(WorldReader& reader, const Generator& generator, const SelectionFilter& filter,
-               Sequence end, const PlanViewer& view_plan, const Summary& summarise);
+               Sequence end, const PlanViewer& viewer, const Summary& summarise);
   /// Returns how far compute() is, as the end of "p1: ". Thread: the world strand.
   std::string progress_text() const;
   /// Returns true if the rollback would change nothing. Requires that compute() succeeded, as for
@@ -57,6 +65,13 @@ struct RollbackPreview {
   std::string text_of_nothing() const;
   /// Returns the answer about a preview that is not empty.
   std::string text() const;
+
+ private:
+  /// Calls viewer.add() with the plans that it chooses. Sets `error` if one cannot be made.
+  void show(RestorePlanner& planner, Sequence end, const std::vector<ChunkKey>& changing,
+            const PlanViewer& viewer);
+  /// Sets `error`, to "cancelled" if nobody wants the preview any more.
+  void fail_with(const StoreError& why) { error = is_wanted->load() ? why.message() : "cancelled"; }
 };
 
 }  // namespace runstone

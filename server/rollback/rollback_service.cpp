@@ -133,9 +133,9 @@ void RollbackService::start_player_change(AuthorId author, Cause cause, SearchRe
 }
 
 void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
-                              RollbackPreview::PlanViewer view_plan,
+                              RollbackPreview::PlanViewer viewer,
                               RollbackPreview::Summary summarise) {
-  when_durable(now, reply, [this, filter, reply, view_plan, summarise] {
+  when_durable(now, reply, [this, filter, reply, viewer, summarise] {
     const auto preview = std::make_shared<RollbackPreview>();
     preview->number = next_preview_++;
     previews_[preview->number] = preview;
@@ -147,9 +147,9 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
     SelectionFilter until_now = filter;
     until_now.last = std::min(filter.last, world_.order().durable());
     workers_.run(
-        [preview, until_now, view_plan, summarise, end = world_.order().durable()](
+        [preview, until_now, viewer, summarise, end = world_.order().durable()](
             WorldReader& reader, const Generator& generator) {
-          preview->compute(reader, generator, until_now, end, view_plan, summarise);
+          preview->compute(reader, generator, until_now, end, viewer, summarise);
         },
         [this, preview, reply](const std::string& error) {
           answer_preview(*preview, error, reply);

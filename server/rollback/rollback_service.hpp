@@ -55,7 +55,7 @@ class RollbackService {
   /// that takes longer than a moment, answers with the id and the progress come before. Changes
   /// nothing. The functions are those of RollbackPreview::compute().
   void preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
-               RollbackPreview::PlanViewer view_plan = {}, RollbackPreview::Summary summarise = {});
+               RollbackPreview::PlanViewer viewer = {}, RollbackPreview::Summary summarise = {});
   /// Begins to carry out a preview. `author` gives the command; 0 is the server.
   void apply(const std::string& id, AuthorId author, CommandReply reply);
   /// Stops a rollback that is being applied, or discards a preview.

@@ -22,7 +22,8 @@ class Collector {
   bool take(const EditRecord& record) {
     const std::optional<VoxelBox>& box = selection_.box;
     bool is_inside = false;
-    for (const ChunkCoord at : touched_chunks(record.edit, edge_)) {
+    touched_chunks(record.edit, edge_, touched_);
+    for (const ChunkCoord at : touched_) {
       if (box && intersect(*box, box_of(at, edge_)).empty()) continue;
       if (++touches_ > kSelectionTouchesMax) return false;
       selection_.chunks[{0, at}].push_back(record.version.seq);
@@ -55,6 +56,7 @@ class Collector {
   std::string file_;
   std::int32_t edge_;
   Selection selection_;
+  std::vector<ChunkCoord> touched_;  // by the present record
   std::uint64_t touches_ = 0;
 };
 

@@ -43,8 +43,13 @@ class ChunkReader : public virtual WorldInfo {
   /// or version changed.
   virtual StoreResult<std::vector<StoredChunk>> base_chunks() = 0;
 
+  /// Returns the snapshot of a chunk, or nullopt if there is none or it is newer than edit `last`. A
+  /// newer one is not read.
+  virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key, Sequence last) = 0;
   /// Returns the snapshot of a chunk, or nullopt if there is none.
-  virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) {
+    return load_snapshot(key, kSequenceMax);
+  }
   /// Returns keys and versions of all snapshots, ascending by key. Fails as base_chunks().
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() = 0;
   /// Returns the checkpoint: every edit up to it is contained in a snapshot of each chunk that it

@@ -31,7 +31,8 @@ std::uint64_t fold_term(const ChunkKey& key, const Version& version) {
 StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
   const std::string table = kind == Kind::snapshot ? "snapshot" : "base";
   const std::string where = " FROM " + table + " WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
-  auto load = database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data" + where);
+  auto load = database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data" + where +
+                               " AND seq <= ?5");
   if (!load) return failed(load.error());
   auto rows = database.prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM " + table +
                                " ORDER BY lod, x, y, z");
@@ -49,11 +50,11 @@ Unexpected<StoreError> ChunkTable::chunk_failure(StoreError::Kind kind, const Ch
   return {{kind, file_, table_ + " chunk=" + text_of(key), std::move(what)}};
 }
 
-StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uint16_t chunk_edge,
-                                                   RowCheck check) {
+StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, Sequence last,
+                                                   std::uint16_t chunk_edge, RowCheck check) {
   const sql::ResetAtEnd reset_at_end(load_);
   bind_key(load_, key);
-  const auto found = load_.step();
+  const auto found = load_.bind(5, static_cast<std::int64_t>(last)).step();
   if (!found) return failed(found.error());
   if (!*found) return std::optional<Chunk>();
   auto chunk = chunk_of(

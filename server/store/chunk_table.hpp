@@ -19,8 +19,9 @@ class ChunkTable {
   enum class Kind { base, snapshot };
   static StoreResult<ChunkTable> open(sql::Database& database, Kind kind);
 
-  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge,
-                                         RowCheck check);
+  /// Returns the chunk of a row, or nullopt if there is no row or it is newer than edit `last`.
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence last,
+                                         std::uint16_t chunk_edge, RowCheck check);
   /// Returns all rows without their voxels, ascending by key. Fails (corrupt) if their fold is not
   /// `expected`.
   StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);

@@ -44,10 +44,11 @@ struct LogQuery {
   // UTC. Holds for the edits up to the newest edit whose time is not later.
   TimeUs until_us = std::numeric_limits<TimeUs>::max();
   std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
-  /// Called only if `box` is set. Its argument is the bounding box of one edit, or a box that holds
-  /// the bounding boxes of several edits. If it returns false, the query leaves out these edits and
-  /// does not read them. An empty function leaves out no edit.
-  std::function<bool(const VoxelBox&)> wants;
+  /// Called only if `box` is set. Its arguments are the bounding box and the sequence of one edit, or
+  /// a box that holds the bounding boxes of several edits, and the last sequence of them. If it
+  /// returns false, the query leaves out these edits and does not read them. It must then also return
+  /// false for each of them alone. An empty function leaves out no edit.
+  std::function<bool(const VoxelBox& box, Sequence last)> wants;
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };

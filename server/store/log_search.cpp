@@ -1,14 +1,62 @@
 #include "server/store/log_search.hpp"
-#include "server/store/index_hint.hpp"
-#include "server/store/sql_result.hpp"
 
 #include <algorithm>
+#include <map>
+
+#include "server/store/index_hint.hpp"
+#include "server/store/log_table.hpp"
+#include "server/store/sql_result.hpp"
 
 namespace runstone {
 namespace {
 
-// The edits that a statement finds at most. PostgreSQL returns all of them at once.
-constexpr std::size_t kPortion = 65'536;
+// The edits that a statement without a box finds at most. PostgreSQL returns all of them at once.
+constexpr std::size_t kPortion = 4'096;
+// Longer descriptors are not kept while edits are brought into order, and are read again.
+constexpr std::size_t kKeptDescriptorMax = 64;
+
+// Segments of one author that follow each other closely are read by one statement. A stretch is at
+// most kStretchMax sequences long, which bounds the records that are kept.
+constexpr Sequence kStretchMax = 1'024, kStretchGapMax = 64;
+// A stretch with fewer sequences for each of its segments is read in the order of the log, together
+// with the edits of other authors in it. That costs less than a look-up for each edit.
+constexpr Sequence kDenseMax = 4 * kSegmentEditsMin;
+
+/// The edits of one author in a part of the log.
+struct Stretch {
+  Sequence first = 0, last = 0;
+  AuthorId author = 0;
+  Sequence segments = 1;
+  bool is_dense() const { return last - first < kDenseMax * segments; }
+};
+
+/// Joins segments to stretches, by their first sequence. Requires segments in that order.
+std::vector<Stretch> stretches_of(const std::vector<LogSegment>& segments) {
+  std::vector<Stretch> out;
+  std::map<AuthorId, std::size_t> newest;  // place in `out`
+  for (const LogSegment& segment : segments) {
+    const auto found = newest.find(segment.author);
+    if (found != newest.end()) {
+      Stretch& before = out[found->second];
+      if (segment.first <= before.last + kStretchGapMax &&
+          segment.last - before.first < kStretchMax) {
+        before.last = std::max(before.last, segment.last);
+        ++before.segments;
+        continue;
+      }
+    }
+    newest[segment.author] = out.size();
+    out.push_back({segment.first, segment.last, segment.author});
+  }
+  return out;
+}
+
+/// An edit that was found, but whose turn has not come.
+struct FoundEdit {
+  Sequence seq = 0;
+  std::optional<EditRecord> record;  // nullopt: it is read later
+};
+bool is_later(const FoundEdit& a, const FoundEdit& b) { return a.seq > b.seq; }
 
 }  // namespace
 
@@ -62,24 +110,34 @@ StoreResult<std::optional<Sequence>> LogSearch::newest_at(TimeUs time) {
 }
 
 StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
-                                                std::optional<AuthorId> author) const {
+                                                std::optional<AuthorId> author, By by) const {
+  const bool is_postgres = database_.dialect() == sql::Dialect::postgres;
+  std::string columns = LogTable::kRecordColumns;
+  if (is_postgres) {
+    // It would send long descriptors even of edits that nobody wants.
+    const std::string name = "descriptor";
+    columns.replace(columns.find(name), name.size(),
+                    "CASE WHEN length(descriptor) <= " + std::to_string(kKeptDescriptorMax) +
+                        " THEN descriptor END");
+  }
   // The index is named, because the planner has no statistics, and a wrong index would read the
   // whole log.
-  std::string text = query.wants
-                         ? "SELECT seq, min_x, min_y, min_z, max_x, max_y, max_z FROM edit_log"
-                         : "SELECT seq FROM edit_log";
-  const bool by_cause = !author && query.cause && *query.cause != Cause::player;
-  text += indexed_by(database_, author ? "edit_log_author" : by_cause ? "edit_log_cause" : nullptr);
+  const char* const index = by == By::author  ? "edit_log_author"
+                            : by == By::cause ? "edit_log_cause"
+                                              : nullptr;
+  std::string text = "SELECT " + columns + " FROM edit_log" + indexed_by(database_, index);
   text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
   if (author) text += " AND author = ?3";
   if (query.cause) text += " AND cause = ?4";
-  if (by_cause) text += " AND cause <> 0";  // the condition of the partial index
+  if (by == By::cause) text += " AND cause <> 0";  // the condition of the partial index
   if (query.box) {
     text +=
         " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > "
         "?10";
   }
-  auto rows = database_.prepare(text + " ORDER BY seq LIMIT " + std::to_string(kPortion));
+  text += " ORDER BY seq";
+  if (!query.box) text += " LIMIT " + std::to_string(kPortion);
+  auto rows = database_.prepare(text);
   if (!rows) return failed(rows.error());
   if (author) rows->bind(3, std::int64_t{*author});
   if (query.cause) rows->bind(4, static_cast<std::int64_t>(*query.cause));
@@ -92,32 +150,51 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
   return *std::move(rows);
 }
 
-StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query, Sequence first,
-                                                          Sequence last) {
-  std::vector<Sequence> found;
+StoreResult<void> LogSearch::run_in_box(const LogQuery& query, Sequence first, Sequence last,
+                                        const Each& each) {
   const auto segments = segments_.find(query, first, last);
   if (!segments) return failed(segments.error());
-  // The author of each segment is bound below, so the statement needs a condition on the author.
-  auto rows = matching(query, query.author.value_or(0));
-  if (!rows) return failed(rows.error());
-  for (const LogSegment& segment : *segments) {
-    rows->rewind();
-    rows->bind(1, static_cast<std::int64_t>(std::max(first, segment.first)))
-        .bind(2, static_cast<std::int64_t>(std::min(last, segment.last)))
-        .bind(3, std::int64_t{segment.author});
+  // The author of each stretch is bound below, so the statements need a condition on the author.
+  const AuthorId author = query.author.value_or(0);
+  auto by_author = matching(query, author, By::author);
+  if (!by_author) return failed(by_author.error());
+  auto by_sequence = matching(query, author, By::sequence);
+  if (!by_sequence) return failed(by_sequence.error());
+  std::vector<FoundEdit> found;  // a heap; the earliest edit is at the front
+  const auto pass_until = [&](Sequence end) {
+    while (!found.empty() && found.front().seq < end) {
+      std::pop_heap(found.begin(), found.end(), is_later);
+      const FoundEdit edit = std::move(found.back());
+      found.pop_back();
+      if (!each(edit.seq, edit.record ? &*edit.record : nullptr)) return false;
+    }
+    return true;
+  };
+  for (const Stretch& stretch : stretches_of(*segments)) {
+    // All edits that are not found yet have sequences from this one on.
+    if (!pass_until(stretch.first)) return {};
+    sql::Statement& rows = stretch.is_dense() ? *by_sequence : *by_author;
+    rows.rewind();
+    rows.bind(1, static_cast<std::int64_t>(std::max(first, stretch.first)))
+        .bind(2, static_cast<std::int64_t>(std::min(last, stretch.last)))
+        .bind(3, std::int64_t{stretch.author});
     for (;;) {
-      const auto more = rows->step();
+      const auto more = rows.step();
       if (!more) return failed(more.error());
       if (!*more) break;
-      if (query.wants && !query.wants(box_in(*rows, 1))) continue;
-      found.push_back(static_cast<Sequence>(rows->integer(0)));
+      FoundEdit edit{static_cast<Sequence>(rows.integer(0)), std::nullopt};
+      if (query.wants && !query.wants(box_in(rows, LogTable::kBoxColumn), edit.seq)) continue;
+      if (rows.blob(LogTable::kDescriptorColumn).size() <= kKeptDescriptorMax)
+        edit.record = LogTable::record_in(rows);
+      found.push_back(std::move(edit));
+      std::push_heap(found.begin(), found.end(), is_later);
     }
   }
-  std::sort(found.begin(), found.end());
-  return found;
+  static_cast<void>(pass_until(last + 1));
+  return {};
 }
 
-StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool(Sequence)>& each) {
+StoreResult<void> LogSearch::run(const LogQuery& query, const Each& each) {
   Sequence first = std::max(query.first, range_.first);
   Sequence last = std::min(query.last, range_.last.version.seq);
   if (first > last || query.from_us > query.until_us) return {};
@@ -132,15 +209,12 @@ StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool
     last = std::min(last, until->value_or(0));
   }
   if (first > last) return {};
-  if (query.box) {
-    const auto found = in_segments(query, first, last);
-    if (!found) return failed(found.error());
-    for (const Sequence seq : *found) {
-      if (!each(seq)) break;
-    }
-    return {};
-  }
-  auto rows = matching(query, query.author);
+  if (query.box) return run_in_box(query, first, last, each);
+  const bool by_cause = !query.author && query.cause && *query.cause != Cause::player;
+  auto rows = matching(query, query.author,
+                       query.author ? By::author
+                       : by_cause   ? By::cause
+                                    : By::sequence);
   if (!rows) return failed(rows.error());
   for (std::size_t found = kPortion; found == kPortion;) {
     rows->rewind();
@@ -150,7 +224,8 @@ StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool
       if (!more) return failed(more.error());
       if (!*more) break;
       const auto seq = static_cast<Sequence>(rows->integer(0));
-      if (!each(seq)) return {};
+      const auto record = LogTable::record_in(*rows);
+      if (!each(seq, record ? &*record : nullptr)) return {};
       first = seq + 1;
     }
   }

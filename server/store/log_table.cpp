@@ -14,10 +14,11 @@ namespace runstone {
 
 namespace {
 
-constexpr const char* kSelect =
-    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, "
-    "min_z, max_x, max_y, max_z, descriptor, checksum FROM edit_log "
-    "WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
+/// Returns the statement that selects the records ?1 to ?2.
+std::string select_text() {
+  return std::string("SELECT ") + LogTable::kRecordColumns +
+         " FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
+}
 
 constexpr int kColumns = 16;  // of a row, but for `log`
 // The rows that one statement inserts. PostgreSQL takes less than half the time for a row then; with
@@ -63,44 +64,6 @@ bool in_range(std::int64_t value, std::uint64_t max) {
   return value >= 0 && static_cast<std::uint64_t>(value) <= max;
 }
 
-/// Returns the record of the current row, or nullopt if a column does not decode or the checksum is
-/// wrong.
-std::optional<EditRecord> record_of(const sql::Statement& row) {
-  const std::int64_t seq = row.integer(0);
-  const std::int64_t epoch = row.integer(1);
-  const std::int64_t author = row.integer(2);
-  const std::int64_t client_seq = row.integer(4);
-  const std::int64_t cause = row.integer(6);
-  const std::int64_t subject = row.integer(7);
-  auto edit = decode_descriptor(row.blob(14));
-  // The checksum is that of the record's bytes. Numbers that these bytes cannot hold are refused
-  // before it is computed.
-  if (!in_range(client_seq, kSequenceMax) ||
-      !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
-      !in_range(epoch, std::numeric_limits<Epoch>::max()) ||
-      !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) ||
-      !edit) {
-    return std::nullopt;
-  }
-  const VoxelBox box = bounding_box(*edit);
-  const std::array<std::int64_t, 6> sides = {box.min.x, box.min.y, box.min.z,
-                                             box.max.x, box.max.y, box.max.z};
-  for (int i = 0; i < 6; ++i) {
-    if (row.integer(8 + i) != sides[static_cast<std::size_t>(i)]) return std::nullopt;
-  }
-  EditRecord record{{static_cast<Epoch>(epoch), static_cast<Sequence>(seq)},
-                    {static_cast<AuthorId>(author), static_cast<ClientInstance>(row.integer(3)),
-                     static_cast<ClientSequence>(client_seq)},
-                    row.integer(5),
-                    static_cast<Cause>(cause),
-                    *std::move(edit),
-                    static_cast<Sequence>(subject),
-                    LogId{0}};
-  if (!validate_fields(record)) return std::nullopt;
-  if (static_cast<std::uint64_t>(row.integer(15)) != record_checksum(record)) return std::nullopt;
-  return record;
-}
-
 }  // namespace
 
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
@@ -129,6 +92,42 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
   }
   return LogTable(database, *std::move(first), *std::move(last), *std::move(insert),
                   std::move(insert_many));
+}
+
+std::optional<EditRecord> LogTable::record_in(const sql::Statement& row) {
+  const std::int64_t seq = row.integer(0);
+  const std::int64_t epoch = row.integer(1);
+  const std::int64_t author = row.integer(2);
+  const std::int64_t client_seq = row.integer(4);
+  const std::int64_t cause = row.integer(6);
+  const std::int64_t subject = row.integer(7);
+  auto edit = decode_descriptor(row.blob(kDescriptorColumn));
+  // The checksum is that of the record's bytes. Numbers that these bytes cannot hold are refused
+  // before it is computed.
+  if (!in_range(client_seq, kSequenceMax) ||
+      !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
+      !in_range(epoch, std::numeric_limits<Epoch>::max()) ||
+      !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) ||
+      !edit) {
+    return std::nullopt;
+  }
+  const VoxelBox box = bounding_box(*edit);
+  const std::array<std::int64_t, 6> sides = {box.min.x, box.min.y, box.min.z,
+                                             box.max.x, box.max.y, box.max.z};
+  for (int i = 0; i < 6; ++i) {
+    if (row.integer(kBoxColumn + i) != sides[static_cast<std::size_t>(i)]) return std::nullopt;
+  }
+  EditRecord record{{static_cast<Epoch>(epoch), static_cast<Sequence>(seq)},
+                    {static_cast<AuthorId>(author), static_cast<ClientInstance>(row.integer(3)),
+                     static_cast<ClientSequence>(client_seq)},
+                    row.integer(5),
+                    static_cast<Cause>(cause),
+                    *std::move(edit),
+                    static_cast<Sequence>(subject),
+                    LogId{0}};
+  if (!validate_fields(record)) return std::nullopt;
+  if (static_cast<std::uint64_t>(row.integer(15)) != record_checksum(record)) return std::nullopt;
+  return record;
 }
 
 Unexpected<StoreError> LogTable::corrupt(Sequence seq, std::string what) const {
@@ -195,7 +194,9 @@ StoreResult<std::vector<AuthorId>> LogTable::authors_without(
   }
 }
 
-StoreResult<sql::Statement> LogTable::reader() { return store_result(database_->prepare(kSelect)); }
+StoreResult<sql::Statement> LogTable::reader() {
+  return store_result(database_->prepare(select_text()));
+}
 
 StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq) {
   const sql::ResetAtEnd reset_at_end(reader);
@@ -203,7 +204,7 @@ StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq)
       reader.bind(1, static_cast<std::int64_t>(seq)).bind(2, static_cast<std::int64_t>(seq)).step();
   if (!there) return failed(there.error());
   if (!*there) return corrupt(seq, "is missing");
-  const auto record = record_of(reader);
+  const auto record = record_in(reader);
   if (!record) return corrupt(seq, "checksum is wrong");
   return *record;
 }
@@ -212,7 +213,7 @@ StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence
                                  const std::function<bool(const EditRecord&)>& each) {
   const Sequence until = std::min(last_wanted, range.last.version.seq);
   // `each` may read the log too, so this call has a statement for itself.
-  auto rows = database_->prepare(kSelect);
+  auto rows = database_->prepare(select_text());
   if (!rows) return failed(rows.error());
   // PostgreSQL returns all rows of a statement at once, so it is asked for some at a time.
   const Sequence portion = database_->dialect() == sql::Dialect::sqlite ? kSequenceMax : 4'096;
@@ -229,7 +230,7 @@ StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence
     if (!more) return failed(more.error());
     if (!*more || static_cast<Sequence>(rows->integer(0)) != next)
       return corrupt(next, "is missing");
-    const auto record = record_of(*rows);
+    const auto record = record_in(*rows);
     if (!record) return corrupt(next, "checksum is wrong");
     if (record->version.epoch < epoch)
       return corrupt(next, "has an older epoch than the edit before it");

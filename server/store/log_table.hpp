@@ -3,6 +3,7 @@
 // base.
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,16 @@ class LogTable {
   /// Returns the authors of edits in the log that `players` lacks, ascending. Cost: O(authors
   /// (log rows + players)), because an index skips from author to author.
   StoreResult<std::vector<AuthorId>> authors_without(const std::vector<PlayerRow>& players);
+
+  /// The columns of a record, in the order that record_in() takes: the sequence is column 0, the
+  /// bounding box begins at kBoxColumn, and the descriptor is kDescriptorColumn.
+  static constexpr const char* kRecordColumns =
+      "seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, min_z, "
+      "max_x, max_y, max_z, descriptor, checksum";
+  static constexpr int kBoxColumn = 8, kDescriptorColumn = 14;
+  /// Returns the record of the current row, or nullopt if a column does not decode or the checksum is
+  /// wrong.
+  static std::optional<EditRecord> record_in(const sql::Statement& row);
 
   /// Returns a statement for read_one(). It may be used for many records.
   StoreResult<sql::Statement> reader();

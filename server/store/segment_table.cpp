@@ -114,9 +114,9 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const LogQuery& query, S
     if (!more) return failed(more.error());
     if (!*more) break;
     const VoxelBox around = box_in(*rows, 3);
-    if (query.wants && !query.wants(around)) continue;
-    segments.push_back({static_cast<Sequence>(rows->integer(0)),
-                        static_cast<Sequence>(rows->integer(1)),
+    const auto end = static_cast<Sequence>(rows->integer(1));
+    if (query.wants && !query.wants(around, end)) continue;
+    segments.push_back({static_cast<Sequence>(rows->integer(0)), end,
                         static_cast<AuthorId>(rows->integer(2)), around});
   }
   std::sort(segments.begin(), segments.end(),

@@ -321,12 +321,12 @@ StoreResult<std::vector<std::string>> SqlStore::rows_of_no_tile() {
   return tiles_->rows_of_no_tile();
 }
 
-StoreResult<std::optional<Chunk>> SqlStore::load_snapshot(const ChunkKey& key) {
-  return snapshots_.load(key, meta_.chunk_edge, row_check_);
+StoreResult<std::optional<Chunk>> SqlStore::load_snapshot(const ChunkKey& key, Sequence last) {
+  return snapshots_.load(key, last, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<std::optional<Chunk>> SqlStore::load_base(const ChunkKey& key) {
-  return base_.load(key, meta_.chunk_edge, row_check_);
+  return base_.load(key, kSequenceMax, meta_.chunk_edge, row_check_);
 }
 
 StoreResult<void> SqlStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
@@ -347,7 +347,8 @@ StoreResult<void> SqlStore::query_log(const LogQuery& query, const EachRecord& e
     if (!reader) return failed(reader.error());
     StoreResult<void> read;
     LogSearch search(database(), segments_, *head, *range, *std::move(eras));
-    auto searched = search.run(query, [&](Sequence seq) {
+    auto searched = search.run(query, [&](Sequence seq, const EditRecord* found) {
+      if (found != nullptr) return each(*found);
       const auto record = log_.read_one(*reader, seq);
       if (!record) read = failed(record.error());
       return record.has_value() && each(*record);

@@ -55,7 +55,8 @@ class SqlStore final : public Store {
   StoreResult<bool> has_base() override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
   StoreResult<std::vector<StoredChunk>> base_chunks() override;
-  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
+  using ChunkReader::load_snapshot;
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key, Sequence last) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
   StoreResult<Sequence> checkpoint() override;
   StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) override;

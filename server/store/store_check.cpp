@@ -23,7 +23,7 @@ StoreResult<void> SqlStore::check_chunks(ChunkTable& table) {
   const bool is_base = &table == &base_;
   const Version newest = is_base ? head->version : range->last.version;
   for (const auto& [key, version, digest, completed] : *rows) {
-    const auto chunk = table.load(key, meta_.chunk_edge, RowCheck::voxels);
+    const auto chunk = table.load(key, kSequenceMax, meta_.chunk_edge, RowCheck::voxels);
     if (!chunk) return failed(chunk.error());
     if (version > newest) {
       return failure(StoreError{StoreError::Kind::corrupt, file(),

@@ -49,6 +49,7 @@ class ChunkRestore {
  public:
   /// `before`: the chunk, whose first voxel is `origin`, before the first added edit.
   ChunkRestore(RunChunk before, VoxelPos origin);
+  using Point = RestorePoint;
 
   /// Adds the next edit of the log that may touch the chunk; other edits may be left out. Requires
   /// a valid edit. Edits that are not selected are applied together until a selected edit has

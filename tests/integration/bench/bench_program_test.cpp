@@ -317,11 +317,12 @@ TEST_CASE("runstone-bench log opens moments with keyframes and without, and prev
   CHECK(document.at("moments")[1].at("edits_read") <= document.at("moments")[0].at("edits_read"));
   CHECK(document.at("questions").size() == 6);
   const auto& previews = document.at("previews");
-  REQUIRE(previews.size() == 3);
+  REQUIRE(previews.size() == 4);
   for (const auto& preview : previews) {
     CHECK(preview.at("edits") > 1'000);
     CHECK(preview.at("chunks") > 1);
     CHECK(preview.at("voxels") > 100);
+    CHECK(preview.at("preview_ms") >= preview.at("count_ms"));
   }
 }
 

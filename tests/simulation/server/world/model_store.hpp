@@ -53,9 +53,11 @@ class ModelStore final : public Store {
   StoreResult<MaterialTable> materials(Sequence /*at*/) override { return meta_.materials; }
 
   void set_row_check(RowCheck /*check*/) override {}
-  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override {
+  using ChunkReader::load_snapshot;
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key, Sequence last) override {
     const auto found = database_.snapshots().find(key);
-    if (found == database_.snapshots().end()) return std::optional<Chunk>();
+    if (found == database_.snapshots().end() || found->second.version.seq > last)
+      return std::optional<Chunk>();
     return std::optional(found->second);
   }
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {

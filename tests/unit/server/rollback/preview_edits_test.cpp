@@ -1,5 +1,6 @@
 #include "server/rollback/preview_edits.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/support/runs/random_chunk.hpp"
@@ -73,6 +74,35 @@ TEST_CASE("a preview without room keeps the nearest changes and says so", "[roll
   CHECK(before < 39);
 }
 
+TEST_CASE("a preview needs the plans of the chunks in view, and of many the nearest",
+          "[rollback]") {
+  PreviewEdits few(kView);
+  const std::vector<ChunkKey> changing = {
+      {0, {-2, 0, 0}}, {0, {0, 0, 0}}, {0, {0, 0, 9}}, {0, {2, 1, 0}}, {1, {0, 0, 0}}};
+  CHECK(few.choose(changing) ==
+        std::vector<ChunkKey>{{0, {-2, 0, 0}}, {0, {0, 0, 0}}, {0, {2, 1, 0}}});
+  CHECK_FALSE(taken(few).is_cut);
+
+  PreviewEdits many({1, {3, 0, 0}, 64, 64});
+  std::vector<ChunkKey> all;
+  for (std::int32_t x = 0; x < 40; ++x) {
+    for (std::int32_t z = 0; z < 40; ++z) all.push_back({0, {x, 0, z}});
+  }
+  const std::vector<ChunkKey> chosen = many.choose(all);
+  CHECK(chosen.size() == kRestorePreviewEditsMax);
+  CHECK(std::is_sorted(chosen.begin(), chosen.end()));
+  const auto distance = [](const ChunkKey& key) {
+    return (key.at.x - 3) * (key.at.x - 3) + key.at.z * key.at.z;
+  };
+  int farthest = 0;
+  for (const ChunkKey& key : chosen) farthest = std::max(farthest, distance(key));
+  for (const ChunkKey& key : all) {
+    if (distance(key) >= farthest) continue;
+    CHECK(std::binary_search(chosen.begin(), chosen.end(), key));
+  }
+  CHECK(taken(many).is_cut);
+}
+
 TEST_CASE("the edits of a preview restore the chunk", "[rollback]") {
   SplitMix64 rng(9);
   PreviewEdits edits(kView);
@@ -84,6 +114,32 @@ TEST_CASE("the edits of a preview restore the chunk", "[rollback]") {
   const RestorePreview shown = taken(edits);
   apply_stack(chunk, digest, origin_of(plan.key.at, kEdge), shown.edits, scratch);
   CHECK(DenseChunk::of(chunk) == DenseChunk::of(plan.restored));
+}
+
+TEST_CASE("a preview shows the plans that its viewer chooses", "[rollback]") {
+  RollbackBench bench;
+  const AuthorId griefer = bench.join(kGriefer);
+  for (std::int32_t x = 0; x < 4; ++x) bench.set(kGriefer, {x * kEdge, 0, 0}, 2);
+  bench.set(kGriefer, {3 * kEdge, 0, 0}, kEmpty);  // nothing of it is left there
+  SelectionFilter filter;
+  filter.authors = {griefer};
+  std::vector<ChunkKey> offered, shown;
+  RollbackPreview::PlanViewer viewer;
+  viewer.choose = [&](const std::vector<ChunkKey>& changing) {
+    offered = changing;
+    return std::vector<ChunkKey>{changing.at(2), changing.at(0)};
+  };
+  viewer.add = [&](const RestorePlan& plan) {
+    CHECK(plan.voxels == 1);
+    shown.push_back(plan.key);
+  };
+  bench.service.preview(filter, bench.bench.now(), bench.reply(), viewer);
+  bench.run_all();
+  REQUIRE(bench.answer().restore != nullptr);
+  CHECK(bench.answer().restore->voxels == 3);
+  CHECK(bench.answer().restore->chunks == 3);
+  CHECK(offered == std::vector<ChunkKey>{{0, {0, 0, 0}}, {0, {1, 0, 0}}, {0, {2, 0, 0}}});
+  CHECK(shown == std::vector<ChunkKey>{{0, {2, 0, 0}}, {0, {0, 0, 0}}});
 }
 
 TEST_CASE("the answer to a preview has its id and counts for clients that show it", "[rollback]") {

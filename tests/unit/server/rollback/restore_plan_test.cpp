@@ -157,7 +157,8 @@ DenseChunk pasted(const RunChunk& onto, VoxelPos origin,
 
 }  // namespace
 
-/// Requires that the plans of all chunks at once are those of each alone.
+/// Requires that the plans of all chunks at once are those of each alone, and that the counts of all
+/// chunks are those of their plans.
 void check_plan_all(RestorePlanner& planner, const Selection& selection, Sequence end) {
   std::vector<RestorePlanner::Item> items;
   for (const auto& [key, edits] : selection.chunks) items.push_back({key, edits});
@@ -181,6 +182,17 @@ void check_plan_all(RestorePlanner& planner, const Selection& selection, Sequenc
     REQUIRE(DenseChunk::of(all[i].now) == DenseChunk::of(alone->now));
     REQUIRE(DenseChunk::of(all[i].restored) == DenseChunk::of(alone->restored));
   }
+  std::size_t counted = 0;
+  planner.count_all(items, selection.box, end,
+                    [&](const ChunkKey& key, const StoreResult<std::uint64_t>& voxels) {
+                      CAPTURE(counted, key.at.x, key.at.y, key.at.z);
+                      REQUIRE(voxels.has_value());
+                      REQUIRE(key == items[counted].key);
+                      REQUIRE(*voxels == all[counted].voxels);
+                      ++counted;
+                      return true;
+                    });
+  REQUIRE(counted == items.size());
 }
 
 TEST_CASE("plans from the log equal the history of each voxel", "[rollback]") {
@@ -288,6 +300,16 @@ TEST_CASE("plans of many chunks read scattered edits once", "[rollback]") {
   CHECK(voxels > 500);
   check_plan_all(planner, *selection, records.size());
   planner.plan_all({}, std::nullopt, records.size(), count);
+  std::uint64_t counted = 0;
+  read = 0;
+  planner.count_all(items, std::nullopt, records.size(),
+                    [&](const ChunkKey&, const StoreResult<std::uint64_t>& in_chunk) {
+                      REQUIRE(in_chunk.has_value());
+                      counted += *in_chunk;
+                      return true;
+                    });
+  CHECK(counted == voxels);
+  CHECK(read <= records.size() + 2 * items.size());
 
   SECTION("until the result is no longer wanted") {
     int left = 40;
@@ -302,6 +324,30 @@ TEST_CASE("plans of many chunks read scattered edits once", "[rollback]") {
                        });
     CHECK(plans == 0);
     CHECK(why == "cancelled");
+  }
+
+  SECTION("until the count is no longer wanted, with one error and in any place") {
+    const std::uint64_t all = read;
+    for (const std::uint64_t until :
+         {std::uint64_t{0}, items.size() / 2, items.size() + 10, all - items.size() / 2, all - 1}) {
+      std::uint64_t asked = 0;
+      RestorePlanner cancelled(*store, *generator, [&] { return asked++ < until; });
+      std::size_t counts = 0;
+      std::vector<std::string> errors;
+      const auto each = [&](const ChunkKey&, const StoreResult<std::uint64_t>& in_chunk) {
+        counts += in_chunk ? 1 : 0;
+        if (!in_chunk) errors.push_back(in_chunk.error().what);
+        return in_chunk.has_value();
+      };
+      cancelled.count_all(items, std::nullopt, records.size(), each);
+      CAPTURE(until, all);
+      CHECK(errors == std::vector<std::string>{"cancelled"});
+      CHECK(counts < items.size());
+      CHECK((counts > 0) == (until >= items.size() + records.size()));
+      // The reader is free of the transaction of the look-ups.
+      REQUIRE(store->begin_reads().has_value());
+      REQUIRE(store->end_reads().has_value());
+    }
   }
 }
 
