@@ -58,8 +58,8 @@ EditDescriptor scattered_edit(SplitMix64& rng, std::uint32_t large_of_100) {
   return edit;
 }
 
-struct World {
-  explicit World(SplitMix64& rng, std::size_t count, std::uint32_t large_of_100) {
+struct CountedWorld {
+  explicit CountedWorld(SplitMix64& rng, std::size_t count, std::uint32_t large_of_100) {
     WorldMeta meta = sample_meta();
     meta.generator = {"flat", 1, 0, ""};
     REQUIRE(create_world(folder.path(), meta).has_value());
@@ -121,7 +121,7 @@ std::vector<RestorePlanner::Item> items_of(const Selection& selection) {
 
 using Counts = std::vector<std::pair<ChunkKey, std::uint64_t>>;
 
-Counts counts_of_plans(World& world, const Selection& selection) {
+Counts counts_of_plans(CountedWorld& world, const Selection& selection) {
   Counts out;
   RestorePlanner(*world.store, *world.generator)
       .plan_all(items_of(selection), selection.box, world.end(),
@@ -141,7 +141,8 @@ TEST_CASE("counts of scattered voxels are those of the plans, also behind rollba
   std::size_t voxels = 0, chunks = 0, changed = 0;
   for (int round = 0; round < 24; ++round) {
     const std::vector<std::uint32_t> large = {0, 1, 15};
-    World world(rng, 30 + rng.below(400), large[static_cast<std::size_t>(round) % large.size()]);
+    CountedWorld world(rng, 30 + rng.below(400),
+                       large[static_cast<std::size_t>(round) % large.size()]);
     if (rng.below(2) == 0) world.save_some_snapshots(rng);
     for (int question = 0; question < 4; ++question) {
       SelectionFilter filter;
@@ -211,7 +212,7 @@ TEST_CASE("few voxels are those of the selected edits inside the box", "[rollbac
 TEST_CASE("a chunk that cannot be read has the only error, and the others their counts",
           "[rollback][sqlite]") {
   SplitMix64 rng(5);
-  World world(rng, 300, 0);
+  CountedWorld world(rng, 300, 0);
   ReplayScratch scratch;
   const ChunkKey bad{0, {1, 0, 1}};
   auto chunk = chunk_past(*world.store, *world.generator, bad, 100, scratch);
