@@ -592,6 +592,7 @@ EditRequest any_edit_request(SplitMix64& rng) {
     request.edit = any_edit(rng);
   }
   if (rng.below(2) == 0) request.action = 1 + any64(rng) % request.client_seq;
+  request.is_optional = request.action != 0 && rng.below(2) == 0;
   return request;
 }
 
