@@ -73,6 +73,8 @@ class Build {
 
   /// Returns the number of touched cells, at least 1.
   std::uint64_t touched() const { return touched_; }
+  /// Returns the number of cells that are touched and not empty.
+  std::uint64_t solid() const { return solid_; }
   /// Returns the number of runs, those of each section counted once.
   std::uint64_t run_count() const;
   /// Returns the bytes of memory that the build takes. Sections count in full, although builds that
@@ -93,7 +95,7 @@ class Build {
   std::vector<Material> palette_;
   std::vector<SectionPtr> sections_;
   std::vector<std::uint32_t> grid_;
-  std::uint64_t touched_ = 0;
+  std::uint64_t touched_ = 0, solid_ = 0;
   std::size_t memory_bytes_ = 0;
 };
 

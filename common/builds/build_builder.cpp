@@ -82,21 +82,24 @@ Result<std::uint32_t> BuildBuilder::add(SectionPtr cells) {
   const std::size_t bytes = kSectionBytes + cells->runs.byte_capacity();
   if (bytes > bytes_max_ || made_.memory_bytes_ > bytes_max_ - bytes)
     return fail(ErrorCode::limit_exceeded, "build takes too much memory");
-  std::uint64_t touched = 0;
+  CellCount count;
+  const std::uint16_t empty = numbers_.empty() ? std::uint16_t{0} : numbers_[kEmpty];
   cells->runs.visit([&](const auto& runs) {
     std::uint32_t begin = 0;
     for (std::size_t i = 0; i < runs.size(); begin = runs.end(i++)) {
       const std::uint16_t number = runs.material(i);
       RUNSTONE_ASSERT(number < is_used_.size());
       is_used_[number] = true;
-      if (number != 0) touched += runs.end(i) - begin;
+      if (number == 0) continue;
+      count.touched += runs.end(i) - begin;
+      if (number != empty) count.solid += runs.end(i) - begin;
     }
   });
   made_.memory_bytes_ += bytes;
   const auto index = static_cast<std::uint32_t>(made_.sections_.size());
   index_.emplace(cells.get(), index);
   made_.sections_.push_back(std::move(cells));
-  cells_.push_back(touched);
+  cells_.push_back(count);
   return index;
 }
 
@@ -116,7 +119,8 @@ Result<void> BuildBuilder::put(SectionPos at, SectionPtr cells) {
   const auto index = add(std::move(cells));
   if (!index) return failure(index.error());
   place = *index;
-  made_.touched_ += cells_[*index];
+  made_.touched_ += cells_[*index].touched;
+  made_.solid_ += cells_[*index].solid;
   return {};
 }
 

@@ -45,7 +45,10 @@ class BuildBuilder {
   std::vector<std::uint16_t> numbers_;              // by material; 0: not in the palette
   std::map<const RunChunk*, std::uint32_t> index_;  // of the sections that were added
   std::map<std::tuple<Extent, std::uint16_t>, SectionPtr> uniform_;
-  std::vector<std::uint64_t> cells_;  // by distinct section: its touched cells
+  struct CellCount {
+    std::uint64_t touched = 0, solid = 0;
+  };
+  std::vector<CellCount> cells_;  // by distinct section
   std::vector<bool> is_used_;         // by cell number
 };
 

@@ -109,7 +109,7 @@ CellGrid turned_cells(const CellGrid& cells, const Orientation& orientation) {
 
 std::string broken_invariant(const Build& build) {
   const SectionPos counts = build.section_counts();
-  std::uint64_t touched = 0;
+  std::uint64_t touched = 0, solid = 0;
   std::vector<bool> is_used(build.palette().size() + 1, false);
   for (SectionPos at; at.z < counts.z; ++at.z) {
     for (at.y = 0; at.y < counts.y; ++at.y) {
@@ -124,12 +124,16 @@ std::string broken_invariant(const Build& build) {
           const std::uint16_t number = cells.runs.material(i);
           if (number > build.palette().size()) return "a cell number lies outside the palette";
           is_used[number] = true;
-          if (number != 0) touched += cells.runs.end(i) - cells.runs.begin(i);
+          if (number == 0) continue;
+          const std::uint32_t count = cells.runs.end(i) - cells.runs.begin(i);
+          touched += count;
+          if (build.material(number) != kEmpty) solid += count;
         }
       }
     }
   }
   if (touched != build.touched()) return "the number of touched cells is wrong";
+  if (solid != build.solid()) return "the number of solid cells is wrong";
   if (std::find(is_used.begin() + 1, is_used.end(), false) != is_used.end())
     return "the palette has an unused material";
   std::vector<Material> palette = build.palette();
