@@ -30,8 +30,8 @@ class ScriptActions final : public ScriptHost {
   std::optional<Material> shown_at(VoxelPos at) const override {
     return session_.replica().shown_at(at);
   }
-  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
-    return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
+  Result<BuildPtr> copy(const VoxelBox& box) const override {
+    return copy_box(session_.replica(), box);
   }
   std::optional<RayHit> pick() const override { return play_.tool().pick(); }
   ToolBox& tool_box() override { return play_.tool().box(); }
@@ -47,6 +47,14 @@ class ScriptActions final : public ScriptHost {
   Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);
+  }
+  Result<void, std::string> begin_action(std::unique_ptr<EditSource> edits) override {
+    LargeActions* const large = play_.tool().large_actions();
+    if (large == nullptr) return failure("this client sends no action of so many edits");
+    return large->begin(std::move(edits), "script");
+  }
+  std::optional<Result<void, std::string>> action_end() const override {
+    return play_.tool().large_actions()->end();
   }
   bool loaded() const override;
   bool sees_horizon() const override;

@@ -3,6 +3,8 @@
 #include <utility>
 #include <variant>
 
+#include "client/tools/action_source.hpp"
+
 namespace runstone {
 namespace {
 
@@ -24,6 +26,13 @@ const char* name_of(SymmetryKind kind) {
       return "turned by a half turn";
   }
   return "";
+}
+
+/// Returns what the progress of an action is called.
+std::string name_of(const ToolAction& action) {
+  if (!action.pastes.empty()) return action.edits.empty() ? "paste" : "move";
+  if (action.edits.front().mask.kind == MaskKind::only_material) return "replace";
+  return action.edits.front().material == kEmpty ? "clear" : "fill";
 }
 
 }  // namespace
@@ -55,13 +64,13 @@ Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs
   return done;
 }
 
-Result<void, std::string> EditTool::propose_beside(const ToolEdits& edits, TimeUs now_us) {
-  if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
-    const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
+Result<void, std::string> EditTool::propose_beside(const ToolEdits& made, TimeUs now_us) {
+  if (made && made->edits.size() == 1 && made->edits.front().material != kEmpty) {
+    const auto* const voxel = std::get_if<SetVoxel>(&made->edits.front().shape);
     if (voxel != nullptr && player_.is_in(voxel->at))
       return failure("you stand there: step back first");
   }
-  return propose(edits, now_us);
+  return propose(made, now_us);
 }
 
 void EditTool::drag() {
@@ -73,10 +82,16 @@ Result<void, std::string> EditTool::release(TimeUs now_us) {
   return propose(box_.release(session_.replica(), aim()), now_us);
 }
 
-Result<void, std::string> EditTool::propose(const ToolEdits& edits, TimeUs now_us) {
-  if (!edits) return failure(edits.error());
-  for (std::size_t i = 0; i < edits->size(); ++i) {
-    if (auto done = propose((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
+Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us) {
+  if (!made) return failure(made.error());
+  const Replica& replica = session_.replica();
+  if (replica.opened() && !is_small(*made, replica.edit_limits())) {
+    if (large_ == nullptr) return failure("this client sends no action of so many edits");
+    return large_->begin(source_of(*made, replica.edit_limits()), name_of(*made));
+  }
+  const std::vector<EditDescriptor>& edits = made->edits;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    if (auto done = propose(edits[i], now_us, now_us, part_of_action(i, edits.size())); !done)
       return done;
   }
   return {};
@@ -94,7 +109,7 @@ bool EditTool::step_preview() {
 }
 
 std::span<const GhostChunk> EditTool::ghosts() const {
-  return has_preview() ? std::span<const GhostChunk>(box_.preview().ghosts())
+  return has_preview() ? std::span<const GhostChunk>(box_.ghosts())
                        : std::span<const GhostChunk>();
 }
 

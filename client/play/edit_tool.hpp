@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/build/large_actions.hpp"
 #include "client/play/player.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/schedule/latency_recorder.hpp"
@@ -35,6 +36,10 @@ class EditTool {
         box_(box),
         on_refused_(std::move(on_refused)) {}
 
+  /// Sets who sends large actions, which must outlive the tool; null: they are refused.
+  void set_large_actions(LargeActions* large) { large_ = large; }
+  LargeActions* large_actions() const { return large_; }
+
   const Replica& replica() const { return session_.replica(); }
   ToolBox& box() { return box_; }
   const ToolBox& box() const { return box_; }
@@ -54,8 +59,9 @@ class EditTool {
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
   /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits
-  /// after it are not proposed. If `edits` is a failure, fails with it.
-  Result<void, std::string> propose(const ToolEdits& edits, TimeUs now_us);
+  /// after it are not proposed. An action whose edits must be cut is begun by
+  /// large_actions(). If `made` is a failure, fails with it.
+  Result<void, std::string> propose(const ToolEdits& made, TimeUs now_us);
 
   /// Carries out a command of the tool window, and proposes its edits. Fails with words for the
   /// player.
@@ -84,13 +90,14 @@ class EditTool {
 
  private:
   /// Proposes the edits, unless they would put a voxel where the player stands.
-  Result<void, std::string> propose_beside(const ToolEdits& edits, TimeUs now_us);
+  Result<void, std::string> propose_beside(const ToolEdits& made, TimeUs now_us);
 
   ClientSession& session_;
   const Player& player_;
   LatencyRecorder& recorder_;
   ToolBox& box_;
   const OnRefused on_refused_;
+  LargeActions* large_ = nullptr;
   std::optional<FixedAim> fixed_aim_;
   ClientSequence action_ = 0;  // first edit of the current action; 0: none was accepted yet
   std::uint64_t refused_ = 0;

@@ -1,6 +1,6 @@
 #include "client/replica/copy_box.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -60,6 +60,9 @@ Result<BuildPtr> copy_box(const Replica& replica, const VoxelBox& box, std::size
   if (!replica.opened()) return fail(ErrorCode::bad_value, "no world is open");
   if (!inside_world(box))
     return fail(ErrorCode::bad_value, "box to copy reaches outside the world");
+  if (std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) >
+      kBuildEdgeMax)
+    return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   const std::int32_t edge = replica.chunk_edge();
   const ChunkCoord first = chunk_of(box.min, edge);
   const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);

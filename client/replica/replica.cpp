@@ -157,6 +157,15 @@ Result<void> Replica::check(const EditDescriptor& edit) const {
   return {};
 }
 
+EditLimits Replica::edit_limits() const {
+  RUNSTONE_ASSERT(parameters_.has_value());
+  EditLimits out = parameters_->edit_limits();
+  const auto& permissions = ground_.permissions();
+  if (permissions && permissions->edit_volume_max != 0)
+    out.volume_max = std::min(out.volume_max, permissions->edit_volume_max);
+  return out;
+}
+
 void Replica::add_pending_to_chunks(ClientSequence seq) {
   const LocalEdit& local = *local_edits_.find(seq);
   for (const ChunkKey& key : local.chunks) {

@@ -87,6 +87,8 @@ class Replica {
   bool opened() const { return parameters_.has_value(); }
   /// Returns 0 before open().
   std::int32_t chunk_edge() const { return parameters_ ? parameters_->chunk_edge : 0; }
+  /// Returns the limits of one edit of this player, as far as the client knows. Requires opened().
+  EditLimits edit_limits() const;
 
   /// Drops the chunks outside of the view. The server is expected to send those inside. The view
   /// has the number with which it is sent; see RecentViews::set().

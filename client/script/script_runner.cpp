@@ -5,6 +5,9 @@
 #include <numbers>
 #include <utility>
 
+#include "client/tools/action_source.hpp"
+#include "client/tools/build_words.hpp"
+#include "common/builds/build_transforms.hpp"
 #include "common/core/key_text.hpp"
 
 namespace runstone {
@@ -216,7 +219,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!a || !b || !material || !mask) return Progress::stop;
-  return propose({FillBox{box_between(*a, *b)}, *mask, *material});
+  return propose_any({FillBox{box_between(*a, *b)}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
@@ -224,7 +227,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!centre || !material || !mask) return Progress::stop;
-  return propose({FillSphere{*centre, c.radius}, *mask, *material});
+  return propose_any({FillSphere{*centre, c.radius}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
@@ -238,26 +241,36 @@ ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!material || !mask) return Progress::stop;
-  return propose({std::move(stroke), *mask, *material});
+  return propose_any({std::move(stroke), *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
   const auto a = resolve_voxel(c.from);
   const auto b = resolve_voxel(c.to);
   if (!a || !b) return Progress::stop;
-  auto copied = host_.copy(box_between(*a, *b), c.solid);
-  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + copied.error().what);
-  clipboards_[c.name] = *std::move(copied);
+  auto copied = host_.copy(box_between(*a, *b));
+  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + words_of(copied.error()));
+  if (c.solid && (*copied)->solid() == 0)
+    return give_up("cannot copy \"" + c.name + "\": there is nothing in the box");
+  clipboards_[c.name] = {*std::move(copied), c.solid ? EmptyCells::skipped : EmptyCells::pasted};
   return Progress::done;
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
+  if (started_) return propose_edits();
   const auto clipboard = clipboards_.find(c.name);
   if (clipboard == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
   const auto at = resolve_voxel(c.at);
   const auto mask = resolve_mask(c.mask);
   if (!at || !mask) return Progress::stop;
-  return propose({runstone::Paste{*at, clipboard->second, c.orientation}, *mask, kEmpty});
+  auto build = turned(*clipboard->second.build, c.orientation);
+  if (!build) return give_up("cannot paste \"" + c.name + "\": " + words_of(build.error()));
+  if (!is_in_world(*at, (*build)->sides()))
+    return give_up("cannot paste \"" + c.name + "\": it reaches outside the world");
+  const Replica& replica = host_.replica();
+  start_edits(paste_of_build({*std::move(build), *at, *mask, clipboard->second.empty},
+                             replica.opened() ? replica.edit_limits() : EditLimits{}));
+  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/builds/widened.hpp"
 #include "common/core/assert.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/reorder.hpp"
@@ -168,6 +169,20 @@ RunChunk cells_in(const Build& build, const VoxelBox& box) {
         parts[part].append_line(side_of(parts[part]), out);
     }
   }
+  return out.finish();
+}
+
+RunChunk materials_in(const Build& build, const VoxelBox& box) {
+  const VoxelBox part = intersect(box, build.box());
+  if (part.empty()) return uniform_chunk(extent_of_cells(box), kEmpty);
+  const RunChunk cells = widened(cells_in(build, part), part, box);
+  RunBuilder out(cells.extent, cells.order);
+  cells.runs.visit([&](const auto& runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const std::uint16_t number = runs.material(i);
+      out.append_to(runs.end(i), number == 0 ? kEmpty : build.material(number));
+    }
+  });
   return out.finish();
 }
 

@@ -42,6 +42,8 @@ Result<BuildBuilder> BuildBuilder::of(BuildCuts cuts, std::size_t bytes_max) {
   std::size_t bytes = sizeof(Build);
   std::size_t places = 1;
   for (const auto& along : cuts) {
+    if (along.back() > kBuildEdgeMax)
+      return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
     bytes += along.size() * sizeof(std::int32_t);
     const std::size_t count = along.size() - 1;
     if (places > bytes_max / sizeof(std::uint32_t) / count)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/builds/build_builder.hpp"
+#include "common/builds/widened.hpp"
 #include "common/core/assert.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/reorder.hpp"
@@ -80,13 +81,12 @@ void take_palette(const Build& build, BuildBuilder& out) {
   for (const Material material : build.palette()) static_cast<void>(out.number_of(material));
 }
 
-Result<void> fits_world(VoxelPos offset, std::int32_t times, VoxelPos sides) {
+Result<void> check_length(VoxelPos offset, std::int32_t times, VoxelPos sides) {
   const auto o = by_axis(offset), s = by_axis(sides);
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t way = std::abs(std::int64_t{o[i]});
-    // The bound of the product comes first, so that it cannot overflow.
-    if (way > 2LL * kWorldLimit || way * times + s[i] > 2LL * kWorldLimit)
-      return fail(ErrorCode::limit_exceeded, "stack is longer than the world");
+    const std::int64_t way = std::abs(std::int64_t{o[i]}) * times;
+    if (way + s[i] > kBuildEdgeMax)
+      return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   }
   return {};
 }
@@ -148,48 +148,6 @@ VoxelBox moved_by(const VoxelBox& box, const std::array<std::int64_t, 3>& by) {
                     static_cast<std::int32_t>(at.z + by[2])};
   };
   return {add(box.min), add(box.max)};
-}
-
-/// Returns the cells of `part`, at its place in `box`, and untouched cells around them.
-RunChunk widened(const RunChunk& cells, const VoxelBox& part, const VoxelBox& box) {
-  if (part == box) return cells;
-  const auto axes = axes_of(cells.order);
-  const auto min = by_axis(part.min), max = by_axis(part.max);
-  const auto low = by_axis(box.min), high = by_axis(box.max);
-  std::array<std::uint32_t, 3> before{}, inside{}, behind{};
-  for (std::size_t rank = 0; rank < 3; ++rank) {
-    const std::size_t i = index_of_axis(axes[rank]);
-    before[rank] = static_cast<std::uint32_t>(min[i] - low[i]);
-    inside[rank] = static_cast<std::uint32_t>(max[i] - min[i]);
-    behind[rank] = static_cast<std::uint32_t>(high[i] - max[i]);
-  }
-  const Extent extent{static_cast<std::uint8_t>(high[0] - low[0]),
-                      static_cast<std::uint8_t>(high[1] - low[1]),
-                      static_cast<std::uint8_t>(high[2] - low[2])};
-  const std::uint32_t line = before[0] + inside[0] + behind[0];
-  const std::uint32_t layer = line * (before[1] + inside[1] + behind[1]);
-  RunBuilder out(extent, cells.order);
-  out.append(before[2] * layer, 0);
-  std::size_t run = 0;
-  std::uint32_t at = 0;
-  for (std::uint32_t s = 0; s < inside[2]; ++s) {
-    out.append(before[1] * line, 0);
-    for (std::uint32_t m = 0; m < inside[1]; ++m) {
-      out.append(before[0], 0);
-      for (std::uint32_t left = inside[0]; left != 0;) {
-        const Run part_run = cells.runs[run];
-        const std::uint32_t count = std::min(left, part_run.end - at);
-        out.append(count, part_run.material);
-        at += count;
-        left -= count;
-        if (at == part_run.end) ++run;
-      }
-      out.append(behind[0], 0);
-    }
-    out.append(behind[1] * line, 0);
-  }
-  out.append(behind[2] * layer, 0);
-  return out.finish();
 }
 
 Result<BuildPtr> stacked_anywhere(const Build& build, VoxelPos offset, std::int32_t copies,
@@ -287,7 +245,7 @@ Result<BuildPtr> stacked(const Build& build, VoxelPos offset, std::int32_t times
                          std::size_t bytes_max) {
   RUNSTONE_ASSERT(times >= 1);
   if (offset == VoxelPos{}) return fail(ErrorCode::bad_value, "stack has no offset");
-  if (const auto fits = fits_world(offset, times, build.sides()); !fits)
+  if (const auto fits = check_length(offset, times, build.sides()); !fits)
     return failure(fits.error());
   const std::int32_t copies = times + 1;
   if (const auto row = row_of(offset, build.sides()))

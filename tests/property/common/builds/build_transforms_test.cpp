@@ -44,6 +44,18 @@ TEST_CASE("a build has the cells from which it was made, and so has each box of 
         const GridCell cell = number == 0 ? GridCell{} : build->material(number);
         REQUIRE(cell == cells.at({min.x + c.x, min.y + c.y, min.z + c.z}));
       });
+      const VoxelPos corner{rng.between(-9, s.x), rng.between(-9, s.y), rng.between(-9, s.z)};
+      const RunChunk shown = materials_in(
+          *build, {corner, {corner.x + 12, corner.y + 7, corner.z + rng.between(1, 15)}});
+      REQUIRE(validate_runs(shown).has_value());
+      for_each_cell({12, 7, shown.extent.z}, [&](VoxelPos c) {
+        const VoxelPos at{corner.x + c.x, corner.y + c.y, corner.z + c.z};
+        const bool is_inside = at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < s.x && at.y < s.y &&
+                               at.z < s.z;
+        const Material wanted = is_inside ? cells.at(at).value_or(kEmpty) : kEmpty;
+        REQUIRE(material_at(shown, {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y),
+                                    static_cast<std::uint8_t>(c.z)}) == wanted);
+      });
     }
   }
 }

@@ -104,7 +104,9 @@ TEST_CASE_METHOD(CopyFixture, "a copy that cannot be made returns the reason", "
   CHECK(error_of({{0, 0, 0}, {0, 1, 1}}) == "box to copy is empty");
   CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) ==
         "box to copy reaches outside the world");
-  CHECK(error_of({{-kWorldLimit, 0, 0}, {kWorldLimit, 64, 64}}) == "build takes too much memory");
+  CHECK(error_of({{-kWorldLimit, 0, 0}, {kWorldLimit, 64, 64}}) ==
+        "build is longer than 1,048,576 voxels");
+  CHECK(error_of({{0, 0, 0}, {1 << 20, 1 << 10, 1 << 20}}) == "build takes too much memory");
   const auto small = copy_box(replica, {{-20, -7, -30}, {25, 30, 31}}, 2000);
   REQUIRE_FALSE(small);
   CHECK(small.error().code == ErrorCode::limit_exceeded);

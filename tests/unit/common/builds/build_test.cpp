@@ -83,7 +83,9 @@ TEST_CASE("uniform sections are one object, and a build without a touched cell i
 TEST_CASE("a build that takes more memory than allowed is refused when the bound is reached",
           "[builds]") {
   CHECK(BuildBuilder::of(cube_cuts(512, 64), 1000).error().code == ErrorCode::limit_exceeded);
-  const std::vector<std::int32_t> longest = grid_cuts(1 << 22, 1);
+  CHECK(BuildBuilder::of({grid_cuts(kBuildEdgeMax + 1, 64), {0, 1}, {0, 1}}).error().what ==
+        std::string("build is longer than 1,048,576 voxels"));
+  const std::vector<std::int32_t> longest = grid_cuts(kBuildEdgeMax, 1);
   CHECK(BuildBuilder::of({longest, longest, longest}).error().code == ErrorCode::limit_exceeded);
   SplitMix64 rng{4};
   auto out = BuildBuilder::of(cube_cuts(512, 64), 3'000'000);
@@ -151,15 +153,19 @@ TEST_CASE("a clipboard and the build of it have equal cells", "[builds]") {
   CHECK(whole_clipboard(*build, EmptyCells::skipped, {})->touched() == 1);
 }
 
-TEST_CASE("a stack without an offset, or longer than the world, is refused", "[builds]") {
+TEST_CASE("a stack without an offset, or longer than a build may be, is refused", "[builds]") {
   const BuildPtr build = build_of(*[] {
     ClipboardBuilder cells({1, 1, 1});
     cells.append(1, Material{5});
     return *cells.finish();
   }());
   CHECK(stacked(*build, {}, 1).error().code == ErrorCode::bad_value);
-  CHECK(stacked(*build, {1 << 29, 0, 0}, 4).error().code == ErrorCode::limit_exceeded);
-  CHECK(stacked(*build, {1 << 20, 1 << 20, 1 << 20}, 4).error().code == ErrorCode::limit_exceeded);
+  CHECK(stacked(*build, {1 << 29, 0, 0}, INT32_MAX).error().what ==
+        std::string("build is longer than 1,048,576 voxels"));
+  CHECK(stacked(*build, {0, -(1 << 18), 0}, 3));
+  CHECK_FALSE(stacked(*build, {0, -(1 << 18), 0}, 4));
+  CHECK(stacked(*build, {1 << 18, 1 << 18, 1 << 18}, 3).error().code ==
+        ErrorCode::limit_exceeded);
 }
 
 }  // namespace runstone::test
