@@ -109,8 +109,7 @@ bool EditTool::step_preview() {
 }
 
 std::span<const GhostChunk> EditTool::ghosts() const {
-  return has_preview() ? std::span<const GhostChunk>(box_.ghosts())
-                       : std::span<const GhostChunk>();
+  return has_preview() ? std::span<const GhostChunk>(box_.ghosts()) : std::span<const GhostChunk>();
 }
 
 std::string EditTool::text() const {

@@ -110,17 +110,16 @@ bool BuildPreview::step(std::size_t tiles_max) {
   }
   if (!is_changed_) return false;
   // The ghosts of the builds before stay until all of the new ones are made.
-  if (std::any_of(models_.begin(), models_.end(), [](const Model& model) {
-        return model.stage != Model::Stage::complete;
-      }))
+  if (std::any_of(models_.begin(), models_.end(),
+                  [](const Model& model) { return model.stage != Model::Stage::complete; }))
     return false;
   collect();
   return true;
 }
 
 bool BuildPreview::read_cube(Model& model) {
-  const auto per_layer = static_cast<std::uint64_t>(model.counts.x) *
-                         static_cast<std::uint64_t>(model.counts.y);
+  const auto per_layer =
+      static_cast<std::uint64_t>(model.counts.x) * static_cast<std::uint64_t>(model.counts.y);
   const auto x_side = static_cast<std::uint64_t>(model.counts.x);
   const TilePos at{static_cast<std::int32_t>(model.next % x_side),
                    static_cast<std::int32_t>(model.next % per_layer / x_side),
@@ -192,8 +191,8 @@ void BuildPreview::coarsen(Model& model) {
       for (at.x = 0; at.x < model.counts.x; ++at.x) {
         std::vector<RunChunk> children;
         for (std::int32_t i = 0; i < 8; ++i) {
-          const auto found = model.tiles.find(
-              {2 * at.x + (i & 1), 2 * at.y + (i >> 1 & 1), 2 * at.z + (i >> 2)});
+          const auto found =
+              model.tiles.find({2 * at.x + (i & 1), 2 * at.y + (i >> 1 & 1), 2 * at.z + (i >> 2)});
           children.push_back(found != model.tiles.end()
                                  ? std::move(found->second)
                                  : uniform_chunk(Extent::cube(static_cast<unsigned>(kTileEdge)),

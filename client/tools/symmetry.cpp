@@ -97,7 +97,8 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
     out.pastes.push_back(paste);
     using Kind = SymmetryKind;
     const Kind kind = symmetry.kind;
-    for (const auto& [x, z] : {std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
+    for (const auto& [x, z] :
+         {std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
       const bool is_made = kind == Kind::both || (kind == Kind::x && x && !z) ||
                            (kind == Kind::z && !x && z) || (kind == Kind::point && x && z);
       if (!is_made) continue;

@@ -489,7 +489,8 @@ void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {
     const auto* const fill = std::get_if<FillBox>(&edit.shape);
-    if (fill == nullptr || chunks_of(fill->box, chunk_edge) <= EditPreview::kChunksMax) return false;
+    if (fill == nullptr || chunks_of(fill->box, chunk_edge) <= EditPreview::kChunksMax)
+      return false;
     const bool is_removed = edit.material == kEmpty;
     if (auto build = block_of(fill->box, is_removed ? Material{1} : edit.material))
       builds.push_back({std::move(build), fill->box.min, is_removed});

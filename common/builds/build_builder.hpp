@@ -49,7 +49,7 @@ class BuildBuilder {
     std::uint64_t touched = 0, solid = 0;
   };
   std::vector<CellCount> cells_;  // by distinct section
-  std::vector<bool> is_used_;         // by cell number
+  std::vector<bool> is_used_;     // by cell number
 };
 
 }  // namespace runstone

@@ -50,8 +50,8 @@ TEST_CASE("a build has the cells from which it was made, and so has each box of 
       REQUIRE(validate_runs(shown).has_value());
       for_each_cell({12, 7, shown.extent.z}, [&](VoxelPos c) {
         const VoxelPos at{corner.x + c.x, corner.y + c.y, corner.z + c.z};
-        const bool is_inside = at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < s.x && at.y < s.y &&
-                               at.z < s.z;
+        const bool is_inside =
+            at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < s.x && at.y < s.y && at.z < s.z;
         const Material wanted = is_inside ? cells.at(at).value_or(kEmpty) : kEmpty;
         REQUIRE(material_at(shown, {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y),
                                     static_cast<std::uint8_t>(c.z)}) == wanted);

@@ -92,7 +92,8 @@ TEST_CASE_METHOD(FlatBench, "a stroke is one edit along the places of the held b
   const auto edits = box.release(replica, aim_at({5, -1, 8}, Direction::pos_y));
   REQUIRE(edits);
   REQUIRE(edits->edits.size() == 1);
-  CHECK(edits->edits.front() == EditDescriptor{FillStroke{{{3, 0, 3}, {5, 0, 3}, {5, 0, 8}}, 2}, {}, 2});
+  CHECK(edits->edits.front() ==
+        EditDescriptor{FillStroke{{{3, 0, 3}, {5, 0, 3}, {5, 0, 8}}, 2}, {}, 2});
   CHECK(box.release(replica, aim_at(kGround, Direction::pos_y))->empty());
 }
 
@@ -320,7 +321,8 @@ TEST_CASE_METHOD(RichBench, "a selection that no descriptor holds is copied, tur
   for (VoxelPos p{-32, -32, -32}; p.z < 32; ++p.z) {
     for (p.y = -32; p.y < 32; ++p.y) {
       // A quarter turn takes +z to +x and +x to -z.
-      for (p.x = -32; p.x < 32; ++p.x) wrong += after[slot({p.z, p.y, -1 - p.x})] != before[slot(p)];
+      for (p.x = -32; p.x < 32; ++p.x)
+        wrong += after[slot({p.z, p.y, -1 - p.x})] != before[slot(p)];
     }
   }
   CHECK(wrong == 0);
@@ -335,10 +337,12 @@ TEST_CASE_METHOD(RichBench, "a large selection moves by pastes, and is cleared a
   REQUIRE(made);
   CHECK(made->pastes.size() + made->edits.size() == 3);
   CHECK(made->pastes.back().empty == EmptyCells::pasted);
-  REQUIRE(made->edits.back() == EditDescriptor{FillBox{{{-32, -32, -32}, {-30, 32, 32}}}, {}, kEmpty});
+  REQUIRE(made->edits.back() ==
+          EditDescriptor{FillBox{{{-32, -32, -32}, {-30, 32, 32}}}, {}, kEmpty});
   const auto source = source_of(*made, replica.edit_limits());
   std::vector<SourceStep::Kind> kinds;
-  for (SourceStep step = source->next(); step.kind != SourceStep::Kind::end; step = source->next()) {
+  for (SourceStep step = source->next(); step.kind != SourceStep::Kind::end;
+       step = source->next()) {
     if (kinds.empty() || kinds.back() != step.kind) kinds.push_back(step.kind);
   }
   using Kind = SourceStep::Kind;

@@ -164,8 +164,7 @@ TEST_CASE("a stack without an offset, or longer than a build may be, is refused"
         std::string("build is longer than 1,048,576 voxels"));
   CHECK(stacked(*build, {0, -(1 << 18), 0}, 3));
   CHECK_FALSE(stacked(*build, {0, -(1 << 18), 0}, 4));
-  CHECK(stacked(*build, {1 << 18, 1 << 18, 1 << 18}, 3).error().code ==
-        ErrorCode::limit_exceeded);
+  CHECK(stacked(*build, {1 << 18, 1 << 18, 1 << 18}, 3).error().code == ErrorCode::limit_exceeded);
 }
 
 }  // namespace runstone::test
