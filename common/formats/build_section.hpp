@@ -8,7 +8,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
-#include "common/formats/build_info.hpp"
+#include "common/formats/build_head.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {

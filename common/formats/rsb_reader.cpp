@@ -84,7 +84,7 @@ RsbResult<void> RsbReader::read_head() {
   position_ = mark.size();
   const auto block = read_block(RsbKind::head);
   if (!block) return failure(block.error());
-  auto head = decode_build_info(raw_);
+  auto head = decode_build_head(raw_);
   if (!head) return failure_at(head.error(), "head", block->position);
   info_ = std::move(head->info);
   return read_materials(head->material_count);

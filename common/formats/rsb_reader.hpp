@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/formats/build_info.hpp"
+#include "common/formats/build_head.hpp"
 #include "common/formats/build_section.hpp"
 #include "common/formats/rsb_block.hpp"
 

@@ -56,7 +56,7 @@ RsbResult<void> RsbWriter::begin(const BuildInfo& info, std::span<const BuildMat
   position_ = mark.size();
   RsbBlock block;
   block.kind = RsbKind::head;
-  if (auto written = write_block(block, encode_build_info(info, materials.size())); !written)
+  if (auto written = write_block(block, encode_build_head({info, material_count_})); !written)
     return written;
   block.kind = RsbKind::materials;
   std::uint64_t all_bytes = 0;

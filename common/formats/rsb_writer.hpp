@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/formats/build_info.hpp"
+#include "common/formats/build_head.hpp"
 #include "common/formats/build_section.hpp"
 #include "common/formats/rsb_block.hpp"
 
