@@ -292,6 +292,7 @@ Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
                                                          : MaterialRow{});
   }
   hold_clipboard(*std::move(copied), empty_cells(is_solid));
+  ++clipboard_changes_;
   return {};
 }
 
@@ -310,7 +311,6 @@ void ToolBox::hold_clipboard(BuildPtr build, EmptyCells empty) {
   auto whole = whole_clipboard(*build, empty, any_volume);
   clipboard_ = {std::move(build), empty, std::move(whole)};
   mirrored_.forget();
-  ++clipboard_changes_;
   ++revision_;
 }
 
@@ -396,6 +396,7 @@ Result<void, std::string> ToolBox::turn(const Orientation& orientation) {
   if (!made) return failure("cannot turn the clipboard: " + words_of(made.error()));
   // The palette of a turned build has the same order, and so have the rows.
   hold_clipboard(*std::move(made), clipboard_.empty);
+  ++clipboard_changes_;
   return {};
 }
 
