@@ -477,7 +477,8 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     show(std::move(made), replica.chunk_edge());
   }
   const bool has_edits_changed = preview_.step(replica, chunks_max);
-  const bool has_builds_changed = build_preview_.step(chunks_max);
+  // A cube of 64 cells is as much work as several chunks.
+  const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
   if (!has_edits_changed && !has_builds_changed) return false;
   ghosts_ = preview_.ghosts();
   ghosts_.insert(ghosts_.end(), build_preview_.ghosts().begin(), build_preview_.ghosts().end());
