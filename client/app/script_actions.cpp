@@ -92,6 +92,14 @@ bool ScriptActions::sees_horizon() const {
   return missing.roots + missing.others == 0;
 }
 
+std::optional<Result<void, std::string>> ScriptActions::built() const {
+  const EditTool& tool = play_.tool();
+  if (tool.is_building()) return std::nullopt;
+  const ActionProgress& last = tool.last_build();
+  if (last.stop_reason.empty() && last.edits_refused == 0) return Result<void, std::string>();
+  return Result<void, std::string>(failure(end_text_of("action", last)));
+}
+
 bool ScriptActions::synced(std::uint64_t mark) const {
   // Two pongs are needed, because the first one may answer a ping that was sent before the mark.
   return play_.view().is_complete() && session_.pongs() >= mark + 2 &&

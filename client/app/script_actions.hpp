@@ -44,6 +44,13 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
+  bool needs_build(std::span<const EditDescriptor> edits) const override {
+    return replica().opened() && play_.tool().needs_build(edits);
+  }
+  Result<void, std::string> build(const std::vector<EditDescriptor>& edits) override {
+    return play_.tool().build(edits);
+  }
+  std::optional<Result<void, std::string>> built() const override;
   Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);

@@ -1,7 +1,12 @@
 #include "client/play/edit_tool.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
+
+#include "client/build/cut_edit.hpp"
+#include "client/build/joined_source.hpp"
+#include "client/session/session_edit_port.hpp"
 
 namespace runstone {
 namespace {
@@ -9,6 +14,15 @@ namespace {
 /// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches
 /// 27 chunks of edge 32 at most, and takes two steps for each of them.
 constexpr std::size_t kPreviewChunks = 64;
+/// The edits of an action that are offered in one turn. Each is predicted in up to some thirty chunks.
+constexpr std::size_t kBuildEdits = 8;
+
+/// Returns what the edits of an action do, as a verb.
+std::string build_name_of(const EditDescriptor& first) {
+  if (std::holds_alternative<Paste>(first.shape)) return "paste";
+  if (first.material == kEmpty) return "clear";
+  return first.mask.kind == MaskKind::only_material ? "replace" : "fill";
+}
 
 const char* name_of(SymmetryKind kind) {
   switch (kind) {
@@ -75,11 +89,69 @@ Result<void, std::string> EditTool::release(TimeUs now_us) {
 
 Result<void, std::string> EditTool::propose(const ToolEdits& edits, TimeUs now_us) {
   if (!edits) return failure(edits.error());
+  if (session_.replica().opened() && needs_build(*edits)) return build(*edits);
   for (std::size_t i = 0; i < edits->size(); ++i) {
     if (auto done = propose((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
       return done;
   }
   return {};
+}
+
+bool EditTool::needs_build(std::span<const EditDescriptor> edits) const {
+  const EditLimits limits = session_.replica().edit_limits();
+  return std::any_of(edits.begin(), edits.end(),
+                     [&](const EditDescriptor& edit) { return needs_cut(edit, limits); });
+}
+
+Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,
+                                          OnRefusal on_refusal) {
+  if (sender_ != nullptr)
+    return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
+  build_name_ = std::move(name);
+  return {};
+}
+
+Result<void, std::string> EditTool::build(const std::vector<EditDescriptor>& edits) {
+  if (!session_.replica().opened()) return failure("no world is open");
+  if (edits.empty()) return {};
+  const EditLimits limits = session_.replica().edit_limits();
+  auto joined = std::make_unique<JoinedSource>();
+  bool needs_all = false;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    const bool clears =
+        edits[i].material == kEmpty && !std::holds_alternative<Paste>(edits[i].shape);
+    const bool is_after = clears && i > 0;
+    needs_all = needs_all || is_after;
+    joined->add(cut_edit(edits[i], limits),
+                is_after ? PartOrder::after_all_before : PartOrder::free);
+  }
+  return build(build_name_of(edits.front()), std::move(joined),
+               needs_all ? OnRefusal::stop : OnRefusal::skip);
+}
+
+void EditTool::take(const ReplicaChanges& changes, TimeUs now_us) {
+  if (sender_ != nullptr) sender_->take(changes, now_us);
+}
+
+std::optional<std::string> EditTool::step_build(TimeUs now_us) {
+  if (sender_ == nullptr) return std::nullopt;
+  SessionEditPort port(session_);
+  sender_->step(port, now_us, kBuildEdits);
+  if (!sender_->has_ended()) return std::nullopt;
+  last_build_ = sender_->progress();
+  sender_.reset();
+  return end_text_of(build_name_, last_build_);
+}
+
+bool EditTool::stop_building() {
+  if (sender_ == nullptr) return false;
+  sender_->cancel();
+  return true;
+}
+
+std::string EditTool::build_text() const {
+  return sender_ == nullptr ? std::string() : text_of(build_name_, sender_->progress());
 }
 
 bool EditTool::has_preview() const {

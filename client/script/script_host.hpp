@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "client/input/key.hpp"
 #include "client/render/inspection.hpp"
@@ -64,6 +66,17 @@ class ScriptHost {
   /// Proposes an edit that was due at `due_us`. Fails with the reason if the client refuses it.
   virtual Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us,
                                             TimeUs now_us, ActionPart part) = 0;
+
+  /// Returns true if one of the edits is too large to be proposed: build() sends them as one action.
+  virtual bool needs_build(std::span<const EditDescriptor> /*edits*/) const { return false; }
+  /// Begins an action of these edits, whatever their size. Fails with the reason.
+  virtual Result<void, std::string> build(const std::vector<EditDescriptor>& /*edits*/) {
+    return failure(std::string("this client sends no large actions"));
+  }
+  /// Returns nullopt while the action is under way, and then why a part of it is missing, if so.
+  virtual std::optional<Result<void, std::string>> built() const {
+    return Result<void, std::string>();
+  }
 
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.

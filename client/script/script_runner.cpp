@@ -120,7 +120,23 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
   return Mask{mask.kind, *id};
 }
 
+ScriptRunner::Progress ScriptRunner::build(const std::vector<EditDescriptor>& edits) {
+  if (!is_building_) {
+    if (const auto begun = host_.build(edits); !begun) {
+      fail("edit refused: " + begun.error());
+      return Progress::done;
+    }
+    is_building_ = true;
+  }
+  const auto built = host_.built();
+  if (!built) return Progress::waits;
+  is_building_ = false;
+  if (!*built) fail("edit refused: " + built->error());
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::propose(const EditDescriptor& edit, ActionPart part) {
+  if (is_building_ || host_.needs_build({&edit, 1})) return build({edit});
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
   if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {

@@ -105,6 +105,7 @@ class ScriptRunner {
   void fail(const std::string& what);
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
+  Progress build(const std::vector<EditDescriptor>& edits);
   Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
   /// Starts a command of a tool with its edits. If the tool refuses, the command fails, and the
   /// script goes on.
@@ -132,6 +133,7 @@ class ScriptRunner {
   std::vector<std::uint32_t> repeats_left_;  // rounds left of the open repeats, innermost last
   std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
   std::vector<EditDescriptor> edits_;  // of the tool command that runs
+  bool is_building_ = false;           // a command waits for its action of any size
   struct Roaming {
     WorldPos to, back;
     double speed = 0;  // voxels a second

@@ -30,6 +30,7 @@ void ScriptRunner::start_edits(ToolEdits edits) {
 }
 
 ScriptRunner::Progress ScriptRunner::propose_edits() {
+  if (is_building_ || host_.needs_build(edits_)) return build(edits_);
   for (; state_.count < edits_.size(); ++state_.count) {
     const Progress progress =
         propose(edits_[state_.count], part_of_action(state_.count, edits_.size()));

@@ -459,21 +459,64 @@ TEST_CASE("a player has one undo at a time, and it waits until the edit is on di
   CHECK(bench.at({1, 1, 1}) == kEmpty);
 }
 
-TEST_CASE("an undo is refused while an edit of the player waits, not done to an older edit",
+TEST_CASE("an undo waits for the edits of the player that wait, and takes back the newest of them",
           "[rollback][undo]") {
   WorldConfig without_budget = config();
   without_budget.edit_budget = {};
   RollbackBench bench(without_budget);
   const AuthorId ana = bench.join(kBuilder);
-  for (ClientSequence seq = 1; seq <= 100; ++seq)
+  bench.set(kBuilder, {1, 1, 1}, 1);
+  for (ClientSequence seq = 2; seq <= 100; ++seq)
     bench.bench.edit(kBuilder, seq, Paste{{0, 0, 0}, long_clipboard(), {}}, kEmpty);
   bench.service.undo(ana, bench.bench.now(), bench.reply());
-  CHECK_FALSE(bench.answer().is_ok);
-  CHECK(bench.answer().text ==
-        "undo: an edit of yours still waits for its turn; it is large, or behind a large one");
-  while (bench.bench.server.order().has_waiting_edit(ana)) bench.tick();
+  REQUIRE(bench.bench.server.order().has_waiting_edit(ana));
+  bench.write_log();
+  bench.tick();
+  CHECK(bench.answers.empty());
+  CHECK(bench.works.empty());
   bench.service.undo(ana, bench.bench.now(), bench.reply());
-  CHECK(bench.answers.size() == 1);  // it waits for the log, as an undo does
+  CHECK(bench.answer().text == "undo: one of yours is still under way");
+  while (bench.bench.server.order().has_waiting_edit(ana)) bench.tick();
+  CHECK(bench.works.empty());
+  bench.write_log();
+  bench.tick();
+  CHECK(bench.works.size() == 1);
+  CHECK_FALSE(bench.service.is_idle());
+}
+
+TEST_CASE("an undo ends an action under way, and takes back all of it", "[rollback][undo]") {
+  RollbackBench bench;
+  const AuthorId ana = bench.bench.join(kBuilder, kBuilder, 1, {}, kFeatureLargeActions).author;
+  bench.bench.view(kBuilder, View{1, {0, 0, 0}, 4, 1});
+  const auto send = [&](ClientSequence seq) {
+    EditRequest request{
+        seq, 0, {SetVoxel{{static_cast<std::int32_t>(seq) % 64 - 32, 1, 1}}, {}, 1}};
+    request.action = 1;
+    request.is_optional = true;
+    bench.bench.server.received(kBuilder, request, bench.bench.now());
+    bench.bench.server.commit(bench.bench.now());
+    bench.bench.answer_loads();
+  };
+  ClientSequence seq = 0;
+  while (seq < 300) send(++seq);
+  bench.write_log();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  REQUIRE(bench.works.size() == 1);
+  while (seq < 310) send(++seq);  // after the search has begun
+  REQUIRE(bench.work());
+  while (seq < 320) send(++seq);  // after the action has ended
+  const auto rejects = bench.bench.environment.messages<Reject>(kBuilder, kEdge);
+  REQUIRE(rejects.size() == 10);
+  CHECK(rejects[0].client_seq == 311);
+  CHECK(rejects[0].reason == RejectReason::action_ended);
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.digests().empty());
+  bench.service.redo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  for (ClientSequence i = 247; i <= 310; ++i)
+    CHECK(bench.at({static_cast<std::int32_t>(i) % 64 - 32, 1, 1}) == 1);
 }
 
 TEST_CASE("a rollback continues if the log has room for fewer edits than a slice", "[rollback]") {
