@@ -135,6 +135,9 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
   tile_rules_ = accepted.tile_rules;
   is_server_read_only_ = false;
   allowance_.set(world.edit_budget, world.chunk_edge);
+  allowance_.set_clipboard_bytes((world.features & kFeatureLargeActions) != 0
+                                     ? EditPrices::kClipboardBytes
+                                     : EditPrices::kClipboardBytesBefore);
   replica_->set_view(view());
   waiting_ = replica_->open({.chunk_edge = world.chunk_edge,
                              .author = accepted.author,

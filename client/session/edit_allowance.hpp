@@ -16,6 +16,8 @@ class EditAllowance {
   /// Takes the budget of Welcome or Permissions. A budget that stays the same is not filled again,
   /// because the server remembers it over a reconnection, too.
   void set(const EditBudget& budget, std::uint16_t chunk_edge);
+  /// Sets the price of a clipboard, see edit_price(). It is EditPrices::kClipboardBytes at first.
+  void set_clipboard_bytes(std::size_t bytes) { clipboard_bytes_ = bytes; }
   /// The part of the budget that a large action leaves, in units. A click costs one.
   static constexpr std::uint64_t kLeftForClicks = 20;
 
@@ -30,6 +32,7 @@ class EditAllowance {
  private:
   EditBudget budget_;
   std::uint16_t chunk_edge_ = 32;
+  std::size_t clipboard_bytes_ = EditPrices::kClipboardBytes;
   TokenBucket left_{0, 0};
 };
 

@@ -28,7 +28,8 @@ struct ActionLog {
   }
   FoundAction find(AuthorId author, ClientInstance instance, ClientSequence seq) {
     if (!records.empty()) {
-      REQUIRE(store->append({sample_player(1), sample_player(2)}, records).has_value());
+      const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
+      REQUIRE(store->append(players, records).has_value());
       records.clear();
     }
     const auto found = find_action(*store, {author, instance, seq});

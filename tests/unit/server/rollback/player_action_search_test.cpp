@@ -142,7 +142,8 @@ struct WrittenLog {
     return last;
   }
   void write() {
-    REQUIRE(store->append({sample_player(kAna), sample_player(kBob)}, records).has_value());
+    const std::vector<PlayerRow> players = {sample_player(kAna), sample_player(kBob)};
+    REQUIRE(store->append(players, records).has_value());
     records.clear();
   }
   PlayerActionSearch find(Cause cause) {

@@ -18,7 +18,7 @@ EditRequest waiting(ClientSequence seq, ClientSequence action) {
 TEST_CASE("edits that wait keep their order, and are found by their number", "[world]") {
   WaitingEdits edits;
   CHECK_FALSE(edits.has_any());
-  for (const ClientSequence seq : {3, 4, 9}) edits.push(5, waiting(seq, 3));
+  for (const ClientSequence seq : {3U, 4U, 9U}) edits.push(5, waiting(seq, 3));
   edits.push(6, waiting(4, 4));
   CHECK(edits.size() == 4);
   CHECK(edits.has(5, 4));
@@ -64,7 +64,7 @@ TEST_CASE("a session waits with a bounded number of edits and bytes", "[world]")
 
 TEST_CASE("the sessions with waiting edits take turns", "[world]") {
   WaitingEdits edits;
-  for (const SessionId session : {2, 4, 6}) edits.push(session, waiting(1, 1));
+  for (const SessionId session : {2U, 4U, 6U}) edits.push(session, waiting(1, 1));
   CHECK(edits.sessions() == std::vector<SessionId>{2, 4, 6});
   edits.begin_turn_at(4);
   CHECK(edits.sessions() == std::vector<SessionId>{4, 6, 2});
