@@ -66,7 +66,8 @@ ChildProgram command_line(const LocalServerConfig& config) {
                  config.folder, "--listen", "127.0.0.1:0", "--port-file",
                  port_file_of(config.folder), "--operators", to_hex(config.player),
                  // The world is the player's own.
-                 "--builder-budget", "unlimited", "--stop-with-input"};
+                 "--builder-budget", "unlimited", "--read-kib-per-second", "0",
+                 "--stop-with-input"};
   if (!config.creation) return child;
   for (std::string word :
        {std::string("--create"), std::string("--generator"), config.creation->generator}) {

@@ -202,6 +202,12 @@ std::string ClientSession::refusal_text(const EditDescriptor& edit, const Error&
   if (error.code == ErrorCode::not_permitted) {
     if (auto why = replica_->ground().refusal(edit)) return *std::move(why);
   }
+  if (replica_->opened() && validate(edit)) {
+    const EditLimits limits = replica_->edit_limits();
+    if (const auto wrong = check_edit(edit, limits)) {
+      if (std::string words = refusal_words(*wrong, edit, limits); !words.empty()) return words;
+    }
+  }
   return error.what;
 }
 

@@ -53,6 +53,8 @@ class Authority {
   std::optional<RejectReason> check(const EditDescriptor& edit) const {
     return check_edit(edit, limits_);
   }
+  /// Returns the limits of players' edits.
+  const EditLimits& limits() const { return limits_; }
   /// Queues an edit, so that the next commit() orders it. Fails if the edit is rejected. Either way
   /// the operation is resolved: a second call for it fails in the same way, or as already_resolved.
   /// An edit of a player must pass check_edit(), any other edit check_server_edit(). Requires that

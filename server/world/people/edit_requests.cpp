@@ -123,7 +123,7 @@ std::optional<EditRequests::Refusal> EditRequests::check_reach(const Attempt& at
 std::optional<EditRequests::Refusal> EditRequests::check_edit(const Attempt& attempt) {
   const auto wrong = order_.authority().check(attempt.request.edit);
   if (!wrong) return std::nullopt;
-  return Refusal{*wrong};
+  return Refusal{*wrong, refusal_words(*wrong, attempt.request.edit, order_.authority().limits())};
 }
 
 std::optional<EditRequests::Refusal> EditRequests::check_rights(const Attempt& attempt) {
