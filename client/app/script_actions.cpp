@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/build/action_progress.hpp"
 #include "client/replica/surface.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/os/steady_clock.hpp"
