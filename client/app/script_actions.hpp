@@ -44,17 +44,16 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
+  bool needs_build(const ToolAction& action) const override {
+    return replica().opened() && play_.tool().needs_build(action);
+  }
+  Result<void, std::string> build(const ToolAction& action) override {
+    return play_.tool().build(action);
+  }
+  std::optional<Result<void, std::string>> built() const override;
   Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);
-  }
-  Result<void, std::string> begin_action(std::unique_ptr<EditSource> edits) override {
-    LargeActions* const large = play_.tool().large_actions();
-    if (large == nullptr) return failure("this client sends no action of so many edits");
-    return large->begin(std::move(edits), "script");
-  }
-  std::optional<Result<void, std::string>> action_end() const override {
-    return play_.tool().large_actions()->end();
   }
   bool loaded() const override;
   bool sees_horizon() const override;

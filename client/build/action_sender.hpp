@@ -76,6 +76,7 @@ class ActionSender {
   struct Sent {
     EditDescriptor edit;
     std::uint64_t voxels = 0;
+    ClientSequence action = 0;
   };
   void take_answers(const EditPort& port);
   /// Returns the next edit to offer, which stays the next one until pop(), or null if there is none
@@ -93,6 +94,7 @@ class ActionSender {
   State state_ = State::sending;
   std::optional<SourceStep> ahead_;  // taken from the source and not offered
   bool has_source_ended_ = false;
+  bool has_stopped_ = false;  // nothing more is sent
   std::map<ClientSequence, Sent> under_way_;
   std::deque<EditDescriptor> again_;  // refused for a while, in their order
   TimeUs again_us_ = 0;

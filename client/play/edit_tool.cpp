@@ -3,6 +3,7 @@
 #include <utility>
 #include <variant>
 
+#include "client/session/session_edit_port.hpp"
 #include "client/tools/action_source.hpp"
 
 namespace runstone {
@@ -11,6 +12,8 @@ namespace {
 /// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches
 /// 27 chunks of edge 32 at most, and takes two steps for each of them.
 constexpr std::size_t kPreviewChunks = 64;
+/// The edits of an action that are offered in one turn. Each is predicted in up to some thirty chunks.
+constexpr std::size_t kBuildEdits = 8;
 
 const char* name_of(SymmetryKind kind) {
   switch (kind) {
@@ -28,11 +31,13 @@ const char* name_of(SymmetryKind kind) {
   return "";
 }
 
-/// Returns what the progress of an action is called.
+/// Returns what an action does, as a verb.
 std::string name_of(const ToolAction& action) {
-  if (!action.pastes.empty()) return action.edits.empty() ? "paste" : "move";
-  if (action.edits.front().mask.kind == MaskKind::only_material) return "replace";
-  return action.edits.front().material == kEmpty ? "clear" : "fill";
+  if (clears_at_end(action)) return "move";
+  if (action.edits.empty() || std::holds_alternative<Paste>(action.edits.front().shape))
+    return "paste";
+  if (action.edits.front().material == kEmpty) return "clear";
+  return action.edits.front().mask.kind == MaskKind::only_material ? "replace" : "fill";
 }
 
 }  // namespace
@@ -84,17 +89,57 @@ Result<void, std::string> EditTool::release(TimeUs now_us) {
 
 Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us) {
   if (!made) return failure(made.error());
-  const Replica& replica = session_.replica();
-  if (replica.opened() && !is_small(*made, replica.edit_limits())) {
-    if (large_ == nullptr) return failure("this client sends no action of so many edits");
-    return large_->begin(source_of(*made, replica.edit_limits()), name_of(*made));
-  }
+  if (session_.replica().opened() && needs_build(*made)) return build(*made);
   const std::vector<EditDescriptor>& edits = made->edits;
   for (std::size_t i = 0; i < edits.size(); ++i) {
     if (auto done = propose(edits[i], now_us, now_us, part_of_action(i, edits.size())); !done)
       return done;
   }
   return {};
+}
+
+bool EditTool::needs_build(const ToolAction& action) const {
+  return !is_small(action, session_.replica().edit_limits());
+}
+
+Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,
+                                          OnRefusal on_refusal) {
+  if (sender_ != nullptr)
+    return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
+  build_name_ = std::move(name);
+  return {};
+}
+
+Result<void, std::string> EditTool::build(const ToolAction& action) {
+  if (!session_.replica().opened()) return failure("no world is open");
+  if (action.empty()) return {};
+  return build(name_of(action), source_of(action, session_.replica().edit_limits()),
+               clears_at_end(action) ? OnRefusal::stop : OnRefusal::skip);
+}
+
+void EditTool::take(const ReplicaChanges& changes, TimeUs now_us) {
+  if (sender_ != nullptr) sender_->take(changes, now_us);
+}
+
+std::optional<std::string> EditTool::step_build(TimeUs now_us) {
+  if (sender_ == nullptr) return std::nullopt;
+  SessionEditPort port(session_);
+  sender_->step(port, now_us, kBuildEdits);
+  if (!sender_->has_ended()) return std::nullopt;
+  last_build_ = sender_->progress();
+  sender_.reset();
+  return end_text_of(build_name_, last_build_);
+}
+
+bool EditTool::stop_building() {
+  if (sender_ == nullptr) return false;
+  sender_->cancel();
+  return true;
+}
+
+std::string EditTool::build_text() const {
+  return sender_ == nullptr ? std::string() : text_of(build_name_, sender_->progress());
 }
 
 bool EditTool::has_preview() const {

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "client/build/edit_source.hpp"
 #include "client/input/key.hpp"
 #include "client/render/inspection.hpp"
 #include "client/replica/ray_pick.hpp"
@@ -66,10 +65,16 @@ class ScriptHost {
   virtual Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us,
                                             TimeUs now_us, ActionPart part) = 0;
 
-  /// Begins an action of any number of edits. Fails with words for the player if it cannot begin now.
-  virtual Result<void, std::string> begin_action(std::unique_ptr<EditSource> edits) = 0;
-  /// Returns nullopt while the action of begin_action() is under way, and then how it ended.
-  virtual std::optional<Result<void, std::string>> action_end() const = 0;
+  /// Returns true if a part of the action is too large to be proposed: build() sends it.
+  virtual bool needs_build(const ToolAction& /*action*/) const { return false; }
+  /// Begins an action, whatever its size. Fails with the reason.
+  virtual Result<void, std::string> build(const ToolAction& /*action*/) {
+    return failure(std::string("this client sends no large actions"));
+  }
+  /// Returns nullopt while the action is under way, and then why a part of it is missing, if so.
+  virtual std::optional<Result<void, std::string>> built() const {
+    return Result<void, std::string>();
+  }
 
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.

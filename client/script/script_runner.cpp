@@ -123,7 +123,23 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
   return Mask{mask.kind, *id};
 }
 
+ScriptRunner::Progress ScriptRunner::build(const ToolAction& action) {
+  if (!is_building_) {
+    if (const auto begun = host_.build(action); !begun) {
+      fail("edit refused: " + begun.error());
+      return Progress::done;
+    }
+    is_building_ = true;
+  }
+  const auto built = host_.built();
+  if (!built) return Progress::waits;
+  is_building_ = false;
+  if (!*built) fail("edit refused: " + built->error());
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::propose(const EditDescriptor& edit, ActionPart part) {
+  if (is_building_ || host_.needs_build(std::vector{edit})) return build(std::vector{edit});
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
   if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {
@@ -219,7 +235,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!a || !b || !material || !mask) return Progress::stop;
-  return propose_any({FillBox{box_between(*a, *b)}, *mask, *material});
+  return propose({FillBox{box_between(*a, *b)}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
@@ -227,7 +243,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!centre || !material || !mask) return Progress::stop;
-  return propose_any({FillSphere{*centre, c.radius}, *mask, *material});
+  return propose({FillSphere{*centre, c.radius}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
@@ -241,7 +257,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!material || !mask) return Progress::stop;
-  return propose_any({std::move(stroke), *mask, *material});
+  return propose({std::move(stroke), *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {

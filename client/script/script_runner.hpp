@@ -105,13 +105,12 @@ class ScriptRunner {
   void fail(const std::string& what);
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
+  Progress build(const ToolAction& action);
   Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
   /// Starts a command with its edits. If they are refused, the command fails, and the script goes on.
   void start_edits(ToolEdits made);
   /// Proposes the edits of start_edits() that are left, or waits for the end of a large action.
   Progress propose_edits();
-  /// Proposes an edit of any size.
-  Progress propose_any(EditDescriptor edit);
   /// Carries out a command of the tools. Returns the edits to propose.
   ToolEdits carry_out(const ToolCommand& command);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
@@ -136,8 +135,8 @@ class ScriptRunner {
     EmptyCells empty = EmptyCells::pasted;
   };
   std::map<std::string, NamedBuild> clipboards_;
-  std::vector<EditDescriptor> edits_;  // of the tool command that runs
-  bool is_large_ = false;              // it is a large action instead
+  ToolAction made_;           // of the tool command that runs
+  bool is_building_ = false;  // a command waits for its action of any size
   struct Roaming {
     WorldPos to, back;
     double speed = 0;  // voxels a second

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "client/script/script_runner.hpp"
-#include "client/tools/action_source.hpp"
 
 namespace runstone {
 namespace {
@@ -25,44 +24,20 @@ std::optional<std::int32_t> value_of(const ToolParameter& parameter, const std::
 
 void ScriptRunner::start_edits(ToolEdits made) {
   start();
-  edits_.clear();
-  is_large_ = false;
+  made_ = {};
   if (!made) return fail("edit refused: " + made.error());
-  const Replica& replica = host_.replica();
-  const EditLimits limits = replica.opened() ? replica.edit_limits() : EditLimits{};
-  for (const EditDescriptor& edit : made->edits) {
-    if (std::holds_alternative<FillBox>(edit.shape)) continue;  // a longer one is cut
-    if (const auto ok = validate(edit); !ok)
-      return fail(std::string("not an edit: ") + ok.error().what);
-  }
-  if (is_small(*made, limits)) {
-    edits_ = std::move(made->edits);
-    return;
-  }
-  const auto begun = host_.begin_action(source_of(*made, limits));
-  is_large_ = begun.has_value();
-  if (!begun) fail("edit refused: " + begun.error());
+  made_ = *std::move(made);
 }
 
 ScriptRunner::Progress ScriptRunner::propose_edits() {
-  if (is_large_) {
-    const auto end = host_.action_end();
-    if (!end) return Progress::waits;
-    is_large_ = false;
-    if (!*end) fail("edit refused: " + end->error());
-    return Progress::done;
-  }
-  for (; state_.count < edits_.size(); ++state_.count) {
+  if (is_building_ || host_.needs_build(made_)) return build(made_);
+  const std::vector<EditDescriptor>& edits = made_.edits;
+  for (; state_.count < edits.size(); ++state_.count) {
     const Progress progress =
-        propose(edits_[state_.count], part_of_action(state_.count, edits_.size()));
+        propose(edits[state_.count], part_of_action(state_.count, edits.size()));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;
-}
-
-ScriptRunner::Progress ScriptRunner::propose_any(EditDescriptor edit) {
-  if (!started_) start_edits(std::vector{std::move(edit)});
-  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::ChooseTool& c) {

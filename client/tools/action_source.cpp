@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "client/build/cut_edit.hpp"
 #include "client/build/joined_source.hpp"
@@ -25,6 +26,10 @@ class BuildPasteSource final : public EditSource {
   const std::uint64_t voxels_;
   PasteSource edits_;
 };
+
+bool clears(const EditDescriptor& edit) {
+  return edit.material == kEmpty && !std::holds_alternative<Paste>(edit.shape);
+}
 
 }  // namespace
 
@@ -52,13 +57,20 @@ bool is_small(const ToolAction& action, const EditLimits& limits) {
                       [&](const EditDescriptor& edit) { return needs_cut(edit, limits); });
 }
 
+bool clears_at_end(const ToolAction& action) {
+  return !action.edits.empty() && clears(action.edits.back()) &&
+         (!action.pastes.empty() || !clears(action.edits.front()));
+}
+
 std::unique_ptr<EditSource> source_of(const ToolAction& action, const EditLimits& limits) {
   auto out = std::make_unique<JoinedSource>();
   for (const BuildPaste& paste : action.pastes)
     out->add(std::make_unique<BuildPasteSource>(paste, limits));
-  PartOrder order = action.pastes.empty() ? PartOrder::free : PartOrder::after_all_before;
+  bool needs_barrier = clears_at_end(action);
   for (const EditDescriptor& edit : action.edits) {
-    out->add(cut_edit(edit, limits), std::exchange(order, PartOrder::free));
+    const bool is_behind = needs_barrier && clears(edit);
+    if (is_behind) needs_barrier = false;
+    out->add(cut_edit(edit, limits), is_behind ? PartOrder::after_all_before : PartOrder::free);
   }
   return out;
 }

@@ -17,8 +17,13 @@ ToolAction paste_of_build(BuildPaste paste, const EditLimits& limits);
 /// Returns true if the edits of the action are legal as they are, so that no source is needed.
 bool is_small(const ToolAction& action, const EditLimits& limits);
 
+/// Returns true if the action clears voxels after something else, as a move does. What it clears is
+/// needed elsewhere first.
+bool clears_at_end(const ToolAction& action);
+
 /// Returns a source of the edits of an action in a world with these limits: those of the pastes, and
-/// then, when all of them were applied, the other edits. Requires an action that is not empty.
+/// then the other edits. If the action clears at its end, a barrier stands before the first edit that
+/// clears. Requires an action that is not empty.
 std::unique_ptr<EditSource> source_of(const ToolAction& action, const EditLimits& limits);
 
 }  // namespace runstone

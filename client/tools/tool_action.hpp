@@ -30,8 +30,8 @@ struct ToolAction {
   ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
 
   std::vector<BuildPaste> pastes;
-  /// The edits after the pastes. If there are pastes, an edit is made only after all of them were
-  /// applied. An edit may have more voxels and chunks than the world allows in one: then it is cut.
+  /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
+  /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 

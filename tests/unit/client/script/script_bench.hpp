@@ -109,14 +109,21 @@ struct FakeScriptHost final : ScriptHost {
     if (!takes) return failure("the past cannot be edited");
     return {};
   }
-  std::vector<std::unique_ptr<EditSource>> actions;
+  std::uint64_t build_from_voxels = 1'000'000;  // edits of more voxels are actions
+  std::vector<ToolAction> actions;
   std::optional<Result<void, std::string>> ended_action;
-  Result<void, std::string> begin_action(std::unique_ptr<EditSource> edits) override {
-    actions.push_back(std::move(edits));
+  bool needs_build(const ToolAction& action) const override {
+    return !action.pastes.empty() ||
+           std::any_of(action.edits.begin(), action.edits.end(), [&](const EditDescriptor& edit) {
+             return counted_voxels(edit) > build_from_voxels;
+           });
+  }
+  Result<void, std::string> build(const ToolAction& action) override {
+    actions.push_back(action);
     if (!takes) return failure("another action is under way");
     return {};
   }
-  std::optional<Result<void, std::string>> action_end() const override { return ended_action; }
+  std::optional<Result<void, std::string>> built() const override { return ended_action; }
   bool loaded() const override { return is_loaded; }
   bool sees_horizon() const override { return is_horizon_seen; }
   bool durable() const override { return is_durable; }
