@@ -30,6 +30,8 @@ inline constexpr std::uint64_t kFeatureTiles = 1024;  // View.levels, and chunks
 inline constexpr std::uint64_t kFeatureResume =
     4096;  // Resume, Resumed; a Durable may raise the epoch
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
+// Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
+inline constexpr std::uint64_t kFeatureLargeActions = 32768;
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
@@ -38,7 +40,7 @@ inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTi
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
-    kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList;
+    kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -109,7 +111,16 @@ inline constexpr std::size_t kGroundBoxesMax = 1024;    // that a session knows 
 inline constexpr std::size_t kGroundNameBytesMax = 32;  // of boxes and roles
 inline constexpr std::int32_t kGroundPriorityMax = 1000;
 
-inline constexpr std::size_t kActionEditsMax = 256;  // edits that are undone as one
+// Actions. Without the feature large actions, an action has so many edits at most.
+inline constexpr std::size_t kActionEditsMax = 256;
+// Edits of actions that one session may have under way, that is sent and not answered, and the
+// bytes of their descriptors. A server tells its bounds in Welcome. They pay for a round trip of
+// 100 ms at 1,280 edits and 5 MB a second, and bound what waits at the server for the budgets.
+inline constexpr std::uint32_t kWaitingEditsMax = 128;
+inline constexpr std::uint32_t kWaitingEditBytesMax = 512 * 1024;
+static_assert(kDescriptorBytesMax * 8 <= kWaitingEditBytesMax, "eight of the largest edits fit");
+// Other edits of a session that may wait behind those of an action.
+inline constexpr std::size_t kWaitingClicksMax = 64;
 
 // Previews of others.
 inline constexpr std::size_t kPreviewEditsMax = 4;         // of one player

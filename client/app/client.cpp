@@ -70,6 +70,7 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       wake_(display.wake),
       network_(options_, [this] { wake_.notify(); }),
       session_(network_.session()),
+      clipboard_(display.clipboard.get()),
       window_(display.window.get()),
       menu_(menu),
       play_(session_, display.tools, display.draw_thread.get(), log_,
@@ -168,6 +169,9 @@ void Client::show_news() {
   }
   for (PlayerNotice& notice : play_.take_notices())
     hud_.notify(std::move(notice.text), notice.kind);
+  if (clipboard_ == nullptr) return;
+  if (std::string failed = clipboard_->step(play_.tool().box()); !failed.empty())
+    hud_.notify(std::move(failed));
 }
 
 void Client::poll_window() {

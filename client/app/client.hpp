@@ -85,9 +85,10 @@ class Client {
   const ClientOptions options_;
   WakeUp& wake_;  // of the display
   ThreadedSession network_;
-  ClientSession& session_;  // of network_
-  Window* const window_;    // of the display; null off screen
-  GameMenu* const menu_;    // may be null
+  ClientSession& session_;          // of network_
+  ClipboardFile* const clipboard_;  // of the display; may be null
+  Window* const window_;            // of the display; null off screen
+  GameMenu* const menu_;            // may be null
   ClientLog log_;
   Play play_;
   MeshPipeline& pipeline_;  // of play_

@@ -4,6 +4,7 @@
 #pragma once
 #include <memory>
 
+#include "client/app/clipboard_file.hpp"
 #include "client/app/options.hpp"
 #include "client/display/draw_thread.hpp"
 #include "client/net/wake_up.hpp"
@@ -21,6 +22,8 @@ struct ClientDisplay {
   std::unique_ptr<Window> window;           // null off screen
   std::unique_ptr<DrawThread> draw_thread;  // null if nothing is drawn
   ToolBox tools;
+  /// Keeps the clipboard; null unless a person plays in a window.
+  std::unique_ptr<ClipboardFile> clipboard;
 };
 
 }  // namespace runstone

@@ -61,6 +61,9 @@ int run_in_window(runstone::ClientOptions options, const volatile std::sig_atomi
   for (const std::string& warning : loaded.warnings) spdlog::warn("{}", warning);
   apply_settings(loaded.settings, options);
   ClientDisplay display(options);
+  display.clipboard = std::make_unique<ClipboardFile>(default_clipboard_file());
+  if (const auto loaded_clipboard = display.clipboard->load(display.tools); !loaded_clipboard)
+    spdlog::warn("no clipboard: {}", loaded_clipboard.error());
   const LostDisplay lost_display;
   Shell shell(std::move(options), std::move(loaded), file, display);
   return shell.run(stop);

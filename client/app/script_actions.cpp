@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/build/action_progress.hpp"
 #include "client/replica/surface.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/os/steady_clock.hpp"
@@ -90,6 +91,14 @@ bool ScriptActions::sees_horizon() const {
   if (!loaded() || !play_.pipeline().is_far_meshed()) return false;
   const FarTiles::Missing missing = session_.replica().far_tiles().missing();
   return missing.roots + missing.others == 0;
+}
+
+std::optional<Result<void, std::string>> ScriptActions::built() const {
+  const EditTool& tool = play_.tool();
+  if (tool.is_building()) return std::nullopt;
+  const ActionProgress& last = tool.last_build();
+  if (last.stop_reason.empty() && last.edits_refused == 0) return Result<void, std::string>();
+  return Result<void, std::string>(failure(end_text_of("action", last)));
 }
 
 bool ScriptActions::synced(std::uint64_t mark) const {

@@ -30,8 +30,8 @@ class ScriptActions final : public ScriptHost {
   std::optional<Material> shown_at(VoxelPos at) const override {
     return session_.replica().shown_at(at);
   }
-  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
-    return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
+  Result<BuildPtr> copy(const VoxelBox& box) const override {
+    return copy_box(session_.replica(), box);
   }
   std::optional<RayHit> pick() const override { return play_.tool().pick(); }
   ToolBox& tool_box() override { return play_.tool().box(); }
@@ -44,6 +44,13 @@ class ScriptActions final : public ScriptHost {
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {
     return session_.edit_wait_us(edit, now_us);
   }
+  bool needs_build(const ToolAction& action) const override {
+    return replica().opened() && play_.tool().needs_build(action);
+  }
+  Result<void, std::string> build(const ToolAction& action) override {
+    return play_.tool().build(action);
+  }
+  std::optional<Result<void, std::string>> built() const override;
   Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);

@@ -57,6 +57,8 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::symmetry, "symmetry", "choose the next symmetry, about the voxel in sight", building,
      "Y"},
     {Action::preview, "preview", "show or hide what the next click does", building, "P"},
+    {Action::stop_building, "stop_building", "stop the fill, paste or move under way", building,
+     "backspace"},
     {Action::chat, "chat", "write to all players", others, "T enter"},
     {Action::command, "command", "write a command for the server", others, "slash"},
     {Action::map, "map", "show or hide the map from above", others, "M"},

@@ -57,6 +57,7 @@ enum class Action : std::uint8_t {
   mirror,
   symmetry,
   preview,
+  stop_building,
   chat,
   command,
   map,

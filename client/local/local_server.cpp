@@ -62,15 +62,11 @@ struct Descriptor {
 
 ChildProgram command_line(const LocalServerConfig& config) {
   ChildProgram child;
-  child.words = {config.program.empty() ? local_server_program() : config.program,
-                 "--world",
-                 config.folder,
-                 "--listen",
-                 "127.0.0.1:0",
-                 "--port-file",
-                 port_file_of(config.folder),
-                 "--operators",
-                 to_hex(config.player),
+  child.words = {config.program.empty() ? local_server_program() : config.program, "--world",
+                 config.folder, "--listen", "127.0.0.1:0", "--port-file",
+                 port_file_of(config.folder), "--operators", to_hex(config.player),
+                 // The world is the player's own.
+                 "--builder-budget", "unlimited", "--read-kib-per-second", "0",
                  "--stop-with-input"};
   if (!config.creation) return child;
   for (std::string word :

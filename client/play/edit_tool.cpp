@@ -3,12 +3,17 @@
 #include <utility>
 #include <variant>
 
+#include "client/session/session_edit_port.hpp"
+#include "client/tools/action_source.hpp"
+
 namespace runstone {
 namespace {
 
 /// The chunks that a preview compares and meshes in one turn. A paste of 64 voxels a side touches
 /// 27 chunks of edge 32 at most, and takes two steps for each of them.
 constexpr std::size_t kPreviewChunks = 64;
+/// The edits of an action that are offered in one turn. Each is predicted in up to some thirty chunks.
+constexpr std::size_t kBuildEdits = 8;
 
 const char* name_of(SymmetryKind kind) {
   switch (kind) {
@@ -24,6 +29,15 @@ const char* name_of(SymmetryKind kind) {
       return "turned by a half turn";
   }
   return "";
+}
+
+/// Returns what an action does, as a verb.
+std::string name_of(const ToolAction& action) {
+  if (clears_at_end(action)) return "move";
+  if (action.edits.empty() || std::holds_alternative<Paste>(action.edits.front().shape))
+    return "paste";
+  if (action.edits.front().material == kEmpty) return "clear";
+  return action.edits.front().mask.kind == MaskKind::only_material ? "replace" : "fill";
 }
 
 }  // namespace
@@ -55,13 +69,13 @@ Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs
   return done;
 }
 
-Result<void, std::string> EditTool::propose_beside(const ToolEdits& edits, TimeUs now_us) {
-  if (edits && edits->size() == 1 && edits->front().material != kEmpty) {
-    const auto* const voxel = std::get_if<SetVoxel>(&edits->front().shape);
+Result<void, std::string> EditTool::propose_beside(const ToolEdits& made, TimeUs now_us) {
+  if (made && made->edits.size() == 1 && made->edits.front().material != kEmpty) {
+    const auto* const voxel = std::get_if<SetVoxel>(&made->edits.front().shape);
     if (voxel != nullptr && player_.is_in(voxel->at))
       return failure("you stand there: step back first");
   }
-  return propose(edits, now_us);
+  return propose(made, now_us);
 }
 
 void EditTool::drag() {
@@ -73,13 +87,59 @@ Result<void, std::string> EditTool::release(TimeUs now_us) {
   return propose(box_.release(session_.replica(), aim()), now_us);
 }
 
-Result<void, std::string> EditTool::propose(const ToolEdits& edits, TimeUs now_us) {
-  if (!edits) return failure(edits.error());
-  for (std::size_t i = 0; i < edits->size(); ++i) {
-    if (auto done = propose((*edits)[i], now_us, now_us, part_of_action(i, edits->size())); !done)
+Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us) {
+  if (!made) return failure(made.error());
+  if (session_.replica().opened() && needs_build(*made)) return build(*made);
+  const std::vector<EditDescriptor>& edits = made->edits;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    if (auto done = propose(edits[i], now_us, now_us, part_of_action(i, edits.size())); !done)
       return done;
   }
   return {};
+}
+
+bool EditTool::needs_build(const ToolAction& action) const {
+  return !is_small(action, session_.replica().edit_limits());
+}
+
+Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,
+                                          OnRefusal on_refusal) {
+  if (sender_ != nullptr)
+    return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
+  build_name_ = std::move(name);
+  return {};
+}
+
+Result<void, std::string> EditTool::build(const ToolAction& action) {
+  if (!session_.replica().opened()) return failure("no world is open");
+  if (action.empty()) return {};
+  return build(name_of(action), source_of(action, session_.replica().edit_limits()),
+               clears_at_end(action) ? OnRefusal::stop : OnRefusal::skip);
+}
+
+void EditTool::take(const ReplicaChanges& changes, TimeUs now_us) {
+  if (sender_ != nullptr) sender_->take(changes, now_us);
+}
+
+std::optional<std::string> EditTool::step_build(TimeUs now_us) {
+  if (sender_ == nullptr) return std::nullopt;
+  SessionEditPort port(session_);
+  sender_->step(port, now_us, kBuildEdits);
+  if (!sender_->has_ended()) return std::nullopt;
+  last_build_ = sender_->progress();
+  sender_.reset();
+  return end_text_of(build_name_, last_build_);
+}
+
+bool EditTool::stop_building() {
+  if (sender_ == nullptr) return false;
+  sender_->cancel();
+  return true;
+}
+
+std::string EditTool::build_text() const {
+  return sender_ == nullptr ? std::string() : text_of(build_name_, sender_->progress());
 }
 
 bool EditTool::has_preview() const {
@@ -94,8 +154,7 @@ bool EditTool::step_preview() {
 }
 
 std::span<const GhostChunk> EditTool::ghosts() const {
-  return has_preview() ? std::span<const GhostChunk>(box_.preview().ghosts())
-                       : std::span<const GhostChunk>();
+  return has_preview() ? std::span<const GhostChunk>(box_.ghosts()) : std::span<const GhostChunk>();
 }
 
 std::string EditTool::text() const {

@@ -1,14 +1,17 @@
 // EditTool: gives clicks to the tool box, proposes the edits of clicks and scripts to the session,
-// and records when each was proposed. One thread.
+// and records when each was proposed. Edits that are too large for one descriptor become an action of
+// many (ActionSender), of which one is under way at a time. One thread.
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "client/build/action_sender.hpp"
 #include "client/play/player.hpp"
 #include "client/replica/ray_pick.hpp"
 #include "client/schedule/latency_recorder.hpp"
@@ -54,8 +57,30 @@ class EditTool {
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
   /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits
-  /// after it are not proposed. If `edits` is a failure, fails with it.
-  Result<void, std::string> propose(const ToolEdits& edits, TimeUs now_us);
+  /// after it are not proposed. An action that needs_build() is begun by
+  /// build(). If `made` is a failure, fails with it.
+  Result<void, std::string> propose(const ToolEdits& made, TimeUs now_us);
+
+  /// Begins an action of any size. `name` is a verb for the player, such as "fill". Fails if one is
+  /// under way.
+  Result<void, std::string> build(std::string name, std::unique_ptr<EditSource> source,
+                                  OnRefusal on_refusal = OnRefusal::skip);
+  /// Begins an action of the tools, whatever its size. If it clears at its end, the clearing edits are
+  /// sent when those before were applied, and not if one of them was refused. Fails as build() does.
+  Result<void, std::string> build(const ToolAction& action);
+  /// Returns true if a part of the action is too large to be proposed. Requires an open replica.
+  bool needs_build(const ToolAction& action) const;
+  /// Takes what the server rejected. Call it for each drained ReplicaChanges, before step_build().
+  void take(const ReplicaChanges& changes, TimeUs now_us);
+  /// Offers what fits of the action under way. Returns a line for the player when it has ended.
+  std::optional<std::string> step_build(TimeUs now_us);
+  bool is_building() const { return sender_ != nullptr; }
+  /// Sends nothing more of the action under way. Returns false if there is none.
+  bool stop_building();
+  /// Returns how far the action under way is, as a line for the player, or an empty text.
+  std::string build_text() const;
+  /// Returns how the last action ended; an empty stop_reason if all of it was sent.
+  const ActionProgress& last_build() const { return last_build_; }
 
   /// Carries out a command of the tool window, and proposes its edits. Fails with words for the
   /// player.
@@ -84,7 +109,7 @@ class EditTool {
 
  private:
   /// Proposes the edits, unless they would put a voxel where the player stands.
-  Result<void, std::string> propose_beside(const ToolEdits& edits, TimeUs now_us);
+  Result<void, std::string> propose_beside(const ToolEdits& made, TimeUs now_us);
 
   ClientSession& session_;
   const Player& player_;
@@ -92,6 +117,9 @@ class EditTool {
   ToolBox& box_;
   const OnRefused on_refused_;
   std::optional<FixedAim> fixed_aim_;
+  std::unique_ptr<ActionSender> sender_;  // of the action under way, or null
+  std::string build_name_;
+  ActionProgress last_build_;
   ClientSequence action_ = 0;  // first edit of the current action; 0: none was accepted yet
   std::uint64_t refused_ = 0;
 };

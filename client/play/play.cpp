@@ -41,6 +41,11 @@ void Play::begin_turn(bool is_opened, const ShownPanels& shown, TimeUs now_us) {
   if (is_opened) open_world(now_us);
   take_new_materials();
   take_changes(now_us);
+  if (const auto ended = tool_.step_build(now_us)) {
+    const bool is_whole =
+        tool_.last_build().stop_reason.empty() && tool_.last_build().edits_refused == 0;
+    notify(*ended, is_whole ? NoticeKind::information : NoticeKind::warning);
+  }
   view_.update_completeness(now_us);
   if (panels_.step(shown, now_us)) pipeline_.moved();
   limit_memory(now_us);
@@ -92,9 +97,12 @@ void Play::take_changes(TimeUs now_us) {
   const ReplicaChanges changes = session_.replica().drain_changes();
   pipeline_.take(changes, session_.clock(), now_us);
   panels_.take(changes);
+  tool_.take(changes, now_us);
   const std::vector<PlayerNotice> state = server_notices_.take_state();
   log_.on_changes(changes, state);
   notices_.insert(notices_.end(), state.begin(), state.end());
+  // The progress of an action counts its own refusals.
+  if (tool_.is_building()) return;
   for (const RejectedEdit& reject : changes.rejects) notices_.push_back(notice_of(reject));
 }
 
@@ -131,7 +139,12 @@ bool Play::act(Action action, TimeUs now_us) {
     case Action::walk_or_fly:
       player_.set_walking(!player_.is_walking());
       return true;
+    case Action::stop_building:
+      notify(tool_.stop_building() ? "it stops when the server has answered what was sent"
+                                   : "no fill, paste or move is under way");
+      return true;
     case Action::undo:
+      tool_.stop_building();
       chat_.send("/undo");  // the answer is shown
       return true;
     case Action::redo:
@@ -206,6 +219,7 @@ FrameOrder Play::frame(const FrameChoice& choice, TimeUs now_us) {
 std::string Play::state_text() const {
   if (const auto& past = session_.replica().past()) return moment_text(past);
   if (player_.is_waiting_for_ground()) return "the ground here has not arrived yet";
+  if (std::string building = tool_.build_text(); !building.empty()) return building;
   return limits_.text();
 }
 

@@ -80,16 +80,14 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
     case Action::cut:
       return words(tool.propose(box.cut(replica, true), now_us), "cut");
     case Action::paste:
-      if (!box.clipboard().content) return KeyAnswer(failure("nothing was copied"));
+      if (!box.clipboard().build) return KeyAnswer(failure("nothing was copied"));
       return choose_tool(tool, "paste");
     case Action::clear_selection:
       return words(tool.propose(box.fill(kEmpty), now_us), "cleared");
     case Action::rotate:
-      box.rotate(1);
-      return KeyAnswer(std::string("the clipboard is turned"));
+      return words(box.rotate(1), "the clipboard is turned");
     case Action::mirror:
-      box.mirror(Axis::x);
-      return KeyAnswer(std::string("the clipboard is mirrored"));
+      return words(box.mirror(Axis::x), "the clipboard is mirrored");
     case Action::symmetry:
       return next_symmetry(tool);
     case Action::preview:

@@ -12,6 +12,7 @@
 namespace runstone {
 
 struct GhostChunk {
+  /// The level is that of the mesh: a cell of it covers 1 << key.lod voxels along each axis.
   ChunkKey key;
   std::int32_t edge = 0;  // of the chunk, in voxels
   /// placed: the quads of voxels that the edit would set, drawn in the colours of their materials.
@@ -20,6 +21,8 @@ struct GhostChunk {
   /// The colour of the player whose preview it is, r, g, b; nullopt: of this player. Ghosts of
   /// others are drawn lighter, in their colour.
   std::optional<std::array<std::uint8_t, 3>> tint = std::nullopt;
+  /// Added to the place that the key gives. A build may be pasted anywhere.
+  VoxelPos shift{};
 };
 
 }  // namespace runstone

@@ -616,7 +616,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   glUniformMatrix4fv(glGetUniformLocation(ghost_program_.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(in_front(view.clip)));
   glUniform1f(glGetUniformLocation(ghost_program_.get(), "seam"), 0);
-  glUniform1f(glGetUniformLocation(ghost_program_.get(), "scale"), 1);
+  const GLint scale = glGetUniformLocation(ghost_program_.get(), "scale");
   materials_.bind(ghost_program_, kMaterialUnit);
   const GLint first_vertex = quads_.bind(ghost_program_, kQuadUnit);
   const auto pulse = static_cast<float>(0.08 * std::sin(view.look.seconds * 4));
@@ -627,8 +627,10 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;
-    const glm::vec3 at(origin_in_world(ghost.key, ghost.edge) - view.eye);
+    const glm::dvec3 shift{ghost.shift.x, ghost.shift.y, ghost.shift.z};
+    const glm::vec3 at(origin_in_world(ghost.key, ghost.edge) + shift - view.eye);
     const glm::vec3 pattern = pattern_of(ghost.key, ghost.edge);
+    glUniform1f(scale, static_cast<float>(1U << ghost.key.lod));
     glUniform3fv(glGetUniformLocation(ghost_program_.get(), "origin"), 1, glm::value_ptr(at));
     glUniform3fv(glGetUniformLocation(ghost_program_.get(), "pattern"), 1, glm::value_ptr(pattern));
     glUniform4fv(glGetUniformLocation(ghost_program_.get(), "tint"), 1, glm::value_ptr(tint));

@@ -1,27 +1,22 @@
-// copy_box(): copies the voxels that a replica shows inside a box to a clipboard.
+// copy_box(): copies the voxels that a replica shows inside a box to a build.
 #pragma once
-#include <cstdint>
-#include <memory>
+#include <cstddef>
 
 #include "client/replica/replica.hpp"
+#include "common/builds/build.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
-#include "common/edits/clipboard/clipboard.hpp"
 
 namespace runstone {
 
-/// How empty voxels are copied.
-enum class CopyEmpty : std::uint8_t {
-  as_empty,      // a paste empties these voxels
-  as_untouched,  // a paste leaves these voxels as they are
-};
-
-/// Returns the shown voxels of a box, predicted edits included. Copies run by run. Fails with
-///   - bad_value if the box is empty, or if the paste would touch nothing;
-///   - limit_exceeded if a side is longer than 128 voxels, or if the clipboard is too long;
+/// Returns the shown voxels of a box of any size, predicted edits included. Every cell is touched;
+/// empty voxels are empty cells. Copies chunk by chunk, run by run: each chunk becomes a section, and
+/// uniform chunks share one. Fails with
+///   - bad_value if the box is empty, if it reaches outside the world, or if no world is open;
+///   - limit_exceeded if the build takes more than `bytes_max`;
 ///   - not_found if a chunk of the box is not shown.
-/// Cost: O(runs of the chunks inside + lines of the box * chunks along them).
-Result<std::shared_ptr<const Clipboard>> copy_box(const Replica& replica, const VoxelBox& box,
-                                                  CopyEmpty empty);
+/// Cost: O(chunks inside + their runs + lines of the chunks that the box cuts).
+Result<BuildPtr> copy_box(const Replica& replica, const VoxelBox& box,
+                          std::size_t bytes_max = kBuildBytesMax);
 
 }  // namespace runstone

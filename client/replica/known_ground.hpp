@@ -6,6 +6,7 @@
 //     refused that a box of higher rank would admit.
 // One thread.
 #pragma once
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,6 +30,12 @@ class KnownGround {
   /// O(boxes), and that of decide_ground() for the boxes that overlap the edit.
   std::optional<std::string> refusal(const EditDescriptor& edit) const;
 
+  /// Returns the bound of the voxels of an edit that the player's role has, or the largest number.
+  std::uint64_t edit_volume_max() const {
+    return permissions_ && permissions_->edit_volume_max != 0
+               ? permissions_->edit_volume_max
+               : std::numeric_limits<std::uint64_t>::max();
+  }
   /// Returns nullopt if the server has sent none.
   const std::optional<Permissions>& permissions() const { return permissions_; }
   /// Returns the boxes by the record that made each.

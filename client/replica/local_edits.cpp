@@ -4,17 +4,20 @@
 #include <utility>
 
 #include "common/edits/descriptor/edit_memory.hpp"
+#include "protocol/rules/window_bytes.hpp"
 
 namespace runstone {
 
 Result<ClientSequence> LocalEdits::add(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                                       TimeUs submitted_us, ClientSequence action) {
+                                       TimeUs submitted_us, InAction in_action) {
   if (edits_.size() >= kLocalEditsMax) {
     return fail(ErrorCode::limit_exceeded, "too many local edits wait for the server");
   }
   LocalEdit local;
   local.edit = edit;
-  local.action = action == kBeginsAction ? last_ + 1 : action;
+  local.action = in_action.action == kBeginsAction ? last_ + 1 : in_action.action;
+  local.is_optional = in_action.is_optional;
+  local.has_sender = in_action.has_sender;
   local.chunks = std::move(chunks);
   local.submitted_us = submitted_us;
   bytes_ += bytes_of(local);
@@ -24,7 +27,8 @@ Result<ClientSequence> LocalEdits::add(const EditDescriptor& edit, std::vector<C
 }
 
 void LocalEdits::mark_sent(ClientSequence seq, TimeUs now_us) {
-  if (const auto it = edits_.find(seq); it != edits_.end()) it->second.sent_us = now_us;
+  if (const auto it = edits_.find(seq); it != edits_.end())
+    set(it->second, now_us, it->second.state);
 }
 
 std::optional<LocalEditState> LocalEdits::confirm(ClientSequence seq, const Version& version) {
@@ -33,7 +37,9 @@ std::optional<LocalEditState> LocalEdits::confirm(ClientSequence seq, const Vers
   LocalEdit& local = it->second;
   if (local.needs_answer()) ++counters_.confirmed;
   local.version = version;
-  return std::exchange(local.state, LocalEditState::confirmed);
+  const LocalEditState before = local.state;
+  set(local, local.sent_us, LocalEditState::confirmed);
+  return before;
 }
 
 std::optional<LocalEdits::Rejection> LocalEdits::reject(const Reject& reject,
@@ -47,7 +53,7 @@ std::optional<LocalEdits::Rejection> LocalEdits::reject(const Reject& reject,
     return out;
   }
   Rejection out{it->second, true};
-  it->second.state = LocalEditState::unseen;
+  set(it->second, it->second.sent_us, LocalEditState::unseen);
   it->second.version = {newest.epoch, reject.seq != 0 ? reject.seq : newest.seq};
   return out;
 }
@@ -56,15 +62,12 @@ std::vector<ClientSequence> LocalEdits::resume(ClientSequence resolved) {
   std::vector<ClientSequence> offers;
   for (auto& [seq, local] : edits_) {
     if (seq > resolved) {
-      local.state = LocalEditState::pending;
+      set(local, LocalEdit::kNever, LocalEditState::pending);
       local.version = {};
       offers.push_back(seq);
-    } else if (local.state == LocalEditState::pending) {
-      local.state = LocalEditState::asking;
-    } else {
-      continue;
+    } else if (local.needs_answer()) {
+      set(local, LocalEdit::kNever, LocalEditState::asking);
     }
-    local.sent_us = LocalEdit::kNever;
   }
   counters_.offered_again += offers.size();
   return offers;
@@ -90,7 +93,22 @@ std::size_t LocalEdits::bytes_of(const LocalEdit& local) {
   return sizeof(LocalEdit) + memory_bytes(local.edit) + local.chunks.size() * sizeof(ChunkKey);
 }
 
+void LocalEdits::set(LocalEdit& local, TimeUs sent_us, LocalEditState state) {
+  count_under_way(local, false);
+  local.sent_us = sent_us;
+  local.state = state;
+  count_under_way(local, true);
+}
+
+void LocalEdits::count_under_way(const LocalEdit& local, bool is_added) {
+  if (local.action == 0 || local.sent_us == LocalEdit::kNever || !local.needs_answer()) return;
+  const std::size_t bytes = window_bytes(local.edit);
+  under_way_.edits += is_added ? 1 : std::size_t{0} - 1;
+  under_way_.bytes += is_added ? bytes : std::size_t{0} - bytes;
+}
+
 LocalEdits::Map::iterator LocalEdits::erase(Map::iterator it) {
+  count_under_way(it->second, false);
   bytes_ -= bytes_of(it->second);
   return edits_.erase(it);
 }

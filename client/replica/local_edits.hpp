@@ -42,6 +42,18 @@ enum class LocalEditState : std::uint8_t {
 /// The value of `action` for the first edit of a new action.
 inline constexpr ClientSequence kBeginsAction = UINT64_MAX;
 
+/// The place of an edit in an action, and who handles its rejection.
+struct InAction {
+  /// The first edit of the action, kBeginsAction, or 0: the edit is an action by itself.
+  ClientSequence action = 0;
+  /// The action goes on without the edit if the server rejects it.
+  bool is_optional = false;
+  /// An ActionSender has the edit, and offers it again if it is rejected for a while.
+  bool has_sender = false;
+  InAction(ClientSequence action_ = 0, bool is_optional_ = false, bool has_sender_ = false)
+      : action(action_), is_optional(is_optional_), has_sender(has_sender_) {}
+};
+
 struct LocalEdit {
   static constexpr TimeUs kNever = INT64_MIN;
 
@@ -51,7 +63,8 @@ struct LocalEdit {
   TimeUs submitted_us = 0;       // this client's steady clock: the click, or the scheduled time
   TimeUs sent_us = kNever;       // last put on the wire
   LocalEditState state = LocalEditState::pending;
-  Version version;  // confirmed: of its commit; unseen: an upper bound
+  bool is_optional = false, has_sender = false;  // as in InAction
+  Version version;                               // confirmed: of its commit; unseen: an upper bound
 
   bool needs_answer() const {
     return state == LocalEditState::pending || state == LocalEditState::asking;
@@ -72,10 +85,10 @@ class LocalEdits {
  public:
   using Map = std::map<ClientSequence, LocalEdit>;
 
-  /// Adds a pending edit. `action` is as LocalEdit::action, or kBeginsAction. Fails if
+  /// Adds a pending edit, which may begin an action (kBeginsAction). Fails if
   /// kLocalEditsMax edits are kept.
   Result<ClientSequence> add(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
-                             TimeUs submitted_us, ClientSequence action = 0);
+                             TimeUs submitted_us, InAction in_action = {});
   /// Notes that the edit was put on the wire. An edit that left already is ignored.
   void mark_sent(ClientSequence seq, TimeUs now_us);
 
@@ -106,7 +119,14 @@ class LocalEdits {
   void clear() {
     edits_.clear();
     bytes_ = 0;
+    under_way_ = {};
   }
+  /// The edits of actions that were sent and have no answer, and the bytes that they count for
+  /// (window_bytes()).
+  struct UnderWay {
+    std::size_t edits = 0, bytes = 0;
+  };
+  const UnderWay& under_way() const { return under_way_; }
   /// Returns the memory of the edits that are kept.
   std::size_t bytes() const { return bytes_; }
 
@@ -122,10 +142,14 @@ class LocalEdits {
 
  private:
   static std::size_t bytes_of(const LocalEdit& local);
+  /// Sets when the edit was sent and its state, and counts it in under_way_.
+  void set(LocalEdit& local, TimeUs sent_us, LocalEditState state);
+  void count_under_way(const LocalEdit& local, bool is_added);
   Map::iterator erase(Map::iterator it);
 
   Map edits_;
   std::size_t bytes_ = 0;  // of edits_
+  UnderWay under_way_;
   ClientSequence last_ = 0;
   LocalEditCounters counters_;
 };

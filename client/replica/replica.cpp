@@ -116,7 +116,7 @@ void Replica::show_moment(const std::optional<PastMoment>& past) {
 // Local edits.
 
 Result<ClientSequence> Replica::predict(const EditDescriptor& edit, TimeUs submitted_us,
-                                        TimeUs now_us, ClientSequence action) {
+                                        TimeUs now_us, InAction in_action) {
   if (const auto ok = check(edit); !ok) return failure(ok.error());
   std::vector<ChunkKey> keys;
   for (const ChunkCoord at : touched_chunks(edit, parameters_->chunk_edge)) {
@@ -125,7 +125,7 @@ Result<ClientSequence> Replica::predict(const EditDescriptor& edit, TimeUs submi
       return fail(ErrorCode::not_found, "edit touches a chunk that the server cannot send");
     }
   }
-  const auto seq = local_edits_.add(edit, keys, submitted_us, action);
+  const auto seq = local_edits_.add(edit, keys, submitted_us, in_action);
   if (!seq) return seq;
   EditChange& change =
       changes_.prediction({parameters_->author, parameters_->instance, *seq}, now_us);

@@ -31,6 +31,7 @@
 // claims by kClaimsMax; the cache by kCacheOutboxMax and kCacheOutboxBytesMax. MemoryBudget
 // (client/schedule) reduces the view if the chunks take too many bytes.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -85,6 +86,12 @@ class Replica {
   /// Forgets chunks and local edits, because the next connection is to another world.
   void reset();
   bool opened() const { return parameters_.has_value(); }
+  /// Returns the limits of an edit of this player. Requires opened().
+  EditLimits edit_limits() const {
+    EditLimits limits = parameters_->edit_limits();
+    limits.volume_max = std::min(limits.volume_max, ground_.edit_volume_max());
+    return limits;
+  }
   /// Returns 0 before open().
   std::int32_t chunk_edge() const { return parameters_ ? parameters_->chunk_edge : 0; }
 
@@ -94,7 +101,7 @@ class Replica {
   const std::optional<View>& view() const { return views_.current(); }
 
   /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
-  /// scheduled time. `action`: as in LocalEdits::add(). Fails
+  /// scheduled time. `in_action`: as in LocalEdits::add(). Fails
   ///   - before open(), and while the past is shown;
   ///   - if the descriptor is invalid, has a material that the world lacks, or exceeds the heights
   ///     or the edit volume of the world;
@@ -102,7 +109,7 @@ class Replica {
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
   ///   - if kLocalEditsMax edits are kept.
   Result<ClientSequence> predict(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
-                                 ClientSequence action = 0);
+                                 InAction in_action = {});
   void mark_sent(ClientSequence seq, TimeUs now_us) { local_edits_.mark_sent(seq, now_us); }
 
   /// Takes snapshots, also of tiles, and completes claimed chunks by the edits that they lack.

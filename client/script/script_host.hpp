@@ -11,6 +11,7 @@
 #include "client/replica/ray_pick.hpp"
 #include "client/tools/action_part.hpp"
 #include "client/tools/tool_box.hpp"
+#include "common/builds/build.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
@@ -41,9 +42,8 @@ class ScriptHost {
   virtual Result<Material, std::string> material(std::string_view name) const = 0;
   /// Returns nullopt if the chunk is not here.
   virtual std::optional<Material> shown_at(VoxelPos at) const = 0;
-  /// Copies the shown voxels of a box; with `solid`, empty voxels become untouched. Fails as
-  /// copy_box() does.
-  virtual Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const = 0;
+  /// Copies the shown voxels of a box. Fails as copy_box() does.
+  virtual Result<BuildPtr> copy(const VoxelBox& box) const = 0;
   /// Returns the voxel that the player looks at, or nullopt if there is none within reach.
   virtual std::optional<RayHit> pick() const = 0;
   /// Returns the building tools, and the replica and the aim with which they work.
@@ -64,6 +64,17 @@ class ScriptHost {
   /// Proposes an edit that was due at `due_us`. Fails with the reason if the client refuses it.
   virtual Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us,
                                             TimeUs now_us, ActionPart part) = 0;
+
+  /// Returns true if a part of the action is too large to be proposed: build() sends it.
+  virtual bool needs_build(const ToolAction& /*action*/) const { return false; }
+  /// Begins an action, whatever its size. Fails with the reason.
+  virtual Result<void, std::string> build(const ToolAction& /*action*/) {
+    return failure(std::string("this client sends no large actions"));
+  }
+  /// Returns nullopt while the action is under way, and then why a part of it is missing, if so.
+  virtual std::optional<Result<void, std::string>> built() const {
+    return Result<void, std::string>();
+  }
 
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.

@@ -5,6 +5,9 @@
 #include <numbers>
 #include <utility>
 
+#include "client/tools/action_source.hpp"
+#include "client/tools/build_words.hpp"
+#include "common/builds/build_transforms.hpp"
 #include "common/core/key_text.hpp"
 
 namespace runstone {
@@ -120,7 +123,23 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
   return Mask{mask.kind, *id};
 }
 
+ScriptRunner::Progress ScriptRunner::build(const ToolAction& action) {
+  if (!is_building_) {
+    if (const auto begun = host_.build(action); !begun) {
+      fail("edit refused: " + begun.error());
+      return Progress::done;
+    }
+    is_building_ = true;
+  }
+  const auto built = host_.built();
+  if (!built) return Progress::waits;
+  is_building_ = false;
+  if (!*built) fail("edit refused: " + built->error());
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::propose(const EditDescriptor& edit, ActionPart part) {
+  if (is_building_ || host_.needs_build(std::vector{edit})) return build(std::vector{edit});
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
   if (const TimeUs wait_us = host_.edit_wait_us(edit, now_us_); wait_us > 0) {
@@ -245,19 +264,29 @@ ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
   const auto a = resolve_voxel(c.from);
   const auto b = resolve_voxel(c.to);
   if (!a || !b) return Progress::stop;
-  auto copied = host_.copy(box_between(*a, *b), c.solid);
-  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + copied.error().what);
-  clipboards_[c.name] = *std::move(copied);
+  auto copied = host_.copy(box_between(*a, *b));
+  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + words_of(copied.error()));
+  if (c.solid && (*copied)->solid() == 0)
+    return give_up("cannot copy \"" + c.name + "\": there is nothing in the box");
+  clipboards_[c.name] = {*std::move(copied), c.solid ? EmptyCells::skipped : EmptyCells::pasted};
   return Progress::done;
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
+  if (started_) return propose_edits();
   const auto clipboard = clipboards_.find(c.name);
   if (clipboard == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
   const auto at = resolve_voxel(c.at);
   const auto mask = resolve_mask(c.mask);
   if (!at || !mask) return Progress::stop;
-  return propose({runstone::Paste{*at, clipboard->second, c.orientation}, *mask, kEmpty});
+  auto build = turned(*clipboard->second.build, c.orientation);
+  if (!build) return give_up("cannot paste \"" + c.name + "\": " + words_of(build.error()));
+  if (!is_in_world(*at, (*build)->sides()))
+    return give_up("cannot paste \"" + c.name + "\": it reaches outside the world");
+  const Replica& replica = host_.replica();
+  start_edits(paste_of_build({*std::move(build), *at, *mask, clipboard->second.empty},
+                             replica.opened() ? replica.edit_limits() : EditLimits{}));
+  return propose_edits();
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {

@@ -105,11 +105,11 @@ class ScriptRunner {
   void fail(const std::string& what);
   /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
+  Progress build(const ToolAction& action);
   Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
-  /// Starts a command of a tool with its edits. If the tool refuses, the command fails, and the
-  /// script goes on.
-  void start_edits(ToolEdits edits);
-  /// Proposes the edits of start_edits() that are left.
+  /// Starts a command with its edits. If they are refused, the command fails, and the script goes on.
+  void start_edits(ToolEdits made);
+  /// Proposes the edits of start_edits() that are left, or waits for the end of a large action.
   Progress propose_edits();
   /// Carries out a command of the tools. Returns the edits to propose.
   ToolEdits carry_out(const ToolCommand& command);
@@ -130,8 +130,13 @@ class ScriptRunner {
   bool started_ = false;
   Started state_;
   std::vector<std::uint32_t> repeats_left_;  // rounds left of the open repeats, innermost last
-  std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
-  std::vector<EditDescriptor> edits_;  // of the tool command that runs
+  struct NamedBuild {
+    BuildPtr build;
+    EmptyCells empty = EmptyCells::pasted;
+  };
+  std::map<std::string, NamedBuild> clipboards_;
+  ToolAction made_;           // of the tool command that runs
+  bool is_building_ = false;  // a command waits for its action of any size
   struct Roaming {
     WorldPos to, back;
     double speed = 0;  // voxels a second

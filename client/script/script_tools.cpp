@@ -22,17 +22,19 @@ std::optional<std::int32_t> value_of(const ToolParameter& parameter, const std::
 
 }  // namespace
 
-void ScriptRunner::start_edits(ToolEdits edits) {
+void ScriptRunner::start_edits(ToolEdits made) {
   start();
-  edits_.clear();
-  if (!edits) return fail("edit refused: " + edits.error());
-  edits_ = *std::move(edits);
+  made_ = {};
+  if (!made) return fail("edit refused: " + made.error());
+  made_ = *std::move(made);
 }
 
 ScriptRunner::Progress ScriptRunner::propose_edits() {
-  for (; state_.count < edits_.size(); ++state_.count) {
+  if (is_building_ || host_.needs_build(made_)) return build(made_);
+  const std::vector<EditDescriptor>& edits = made_.edits;
+  for (; state_.count < edits.size(); ++state_.count) {
     const Progress progress =
-        propose(edits_[state_.count], part_of_action(state_.count, edits_.size()));
+        propose(edits[state_.count], part_of_action(state_.count, edits.size()));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;
@@ -79,7 +81,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::UseTool& c) {
   if (!started_) {
     if (!host_.replica().opened()) return give_up("no world is open");
     const Aim aim = host_.aim();
-    ToolEdits edits = std::vector<EditDescriptor>{};
+    ToolEdits edits = ToolAction{};
     if (c.part == Part::click || c.part == Part::press)
       edits = box.press(host_.replica(), aim, c.button);
     if (c.part == Part::drag) box.drag(aim);

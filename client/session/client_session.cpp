@@ -9,8 +9,14 @@
 #include "protocol/codec/view_size.hpp"
 #include "protocol/codec/view_tiles.hpp"
 #include "protocol/rules/chat_text.hpp"
+#include "protocol/rules/window_bytes.hpp"
 
 namespace runstone {
+namespace {
+
+constexpr std::size_t kOldWindowEdits = 16;
+
+}  // namespace
 
 ClientSession::ClientSession(SessionConfig config) : connection_(std::move(config)) {
   if (connection_.config().has_cache) replica_->collect_for_cache();
@@ -129,6 +135,9 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
   tile_rules_ = accepted.tile_rules;
   is_server_read_only_ = false;
   allowance_.set(world.edit_budget, world.chunk_edge);
+  allowance_.set_clipboard_bytes((world.features & kFeatureLargeActions) != 0
+                                     ? EditPrices::kClipboardBytes
+                                     : EditPrices::kClipboardBytesBefore);
   replica_->set_view(view());
   waiting_ = replica_->open({.chunk_edge = world.chunk_edge,
                              .author = accepted.author,
@@ -176,11 +185,11 @@ void ClientSession::offer_lost_edits(TimeUs now_us) {
 }
 
 Result<ClientSequence> ClientSession::offer(const EditDescriptor& edit, TimeUs submitted_us,
-                                            TimeUs now_us, ClientSequence action) {
+                                            TimeUs now_us, InAction in_action) {
   // The edit is paid only once the replica has checked it.
   if (validate(edit) && allowance_.wait_us(edit, now_us) > 0)
     return fail(ErrorCode::limit_exceeded, "your edit budget is used up for now");
-  const auto seq = replica_->predict(edit, submitted_us, now_us, action);
+  const auto seq = replica_->predict(edit, submitted_us, now_us, in_action);
   if (seq) allowance_.pay(edit, now_us);
   if (seq && is_open()) {
     waiting_.push_back(*seq);
@@ -193,6 +202,12 @@ std::string ClientSession::refusal_text(const EditDescriptor& edit, const Error&
   if (error.code == ErrorCode::not_permitted) {
     if (auto why = replica_->ground().refusal(edit)) return *std::move(why);
   }
+  if (replica_->opened() && validate(edit)) {
+    const EditLimits limits = replica_->edit_limits();
+    if (const auto wrong = check_edit(edit, limits)) {
+      if (std::string words = refusal_words(*wrong, edit, limits); !words.empty()) return words;
+    }
+  }
   return error.what;
 }
 
@@ -203,12 +218,36 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
   if (waiting_.empty()) return;
   // Without a clock offset the other clients could not tell how old the edit is.
   if (!clock().known() && now_us - opened_us_ < kOffsetWaitUsMax) return;
-  for (const ClientSequence seq : std::exchange(waiting_, {})) {
+  std::size_t done = 0;
+  for (; done < waiting_.size(); ++done) {
+    const ClientSequence seq = waiting_[done];
     const LocalEdit* local = replica_->local_edits().find(seq);
     if (local == nullptr || !local->needs_answer()) continue;
+    const bool is_counted = local->action != 0 && local->sent_us == LocalEdit::kNever;
+    // The edits behind it keep their order: the server takes ascending client sequences.
+    if (is_counted && has_large_actions() && !fits_window(local->edit)) break;
     connection_.send_edit(seq, *local);
     replica_->mark_sent(seq, now_us);
   }
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+bool ClientSession::has_large_actions() const {
+  return is_open() && (welcome()->features & kFeatureLargeActions) != 0;
+}
+
+bool ClientSession::fits_window(const EditDescriptor& edit) const {
+  const LocalEdits::UnderWay& under_way = replica_->local_edits().under_way();
+  return under_way.edits < welcome()->waiting_edits_max &&
+         under_way.bytes + window_bytes(edit) <= welcome()->waiting_edit_bytes_max;
+}
+
+bool ClientSession::has_window_for(const EditDescriptor& edit) const {
+  if (!is_open() || !waiting_.empty()) return false;
+  if (replica_->local_edits().all().size() >= kLocalEditsMax / 2) return false;
+  if (has_large_actions()) return fits_window(edit);
+  // A server without large actions has no window. A few edits keep it busy.
+  return replica_->local_edits().under_way().edits < kOldWindowEdits;
 }
 
 void ClientSession::set_view(const View& view) {

@@ -73,11 +73,21 @@ class ClientSession {
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
   /// Shows an edit and offers it to the server. `submitted_us`: the click or the scheduled time;
-  /// latency is measured from there. `action` is as in LocalEdits::add(): the edits of an action
-  /// are undone as one. Fails as Replica::predict() does, and with limit_exceeded if edit_wait_us()
-  /// is not 0.
+  /// latency is measured from there. `in_action` is as in LocalEdits::add(): the edits of an action
+  /// are undone as one. With the feature large actions, edits of actions beyond the window of the
+  /// session are sent when earlier ones are answered, and later edits behind them. Fails as
+  /// Replica::predict() does, and with limit_exceeded if edit_wait_us() is not 0.
   Result<ClientSequence> offer(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
-                               ClientSequence action = 0);
+                               InAction in_action = {});
+  /// Returns true if an action may have any number of edits, and budgets delay them at the server.
+  bool has_large_actions() const;
+  /// Returns true if the edit, as one of an action, would be sent at once.
+  bool has_window_for(const EditDescriptor& edit) const;
+  /// Returns how long the edit of an action waits for the player's edit budget, so that a part of the
+  /// budget is left for clicks.
+  TimeUs action_wait_us(const EditDescriptor& edit, TimeUs now_us) {
+    return allowance_.wait_us(edit, now_us, EditAllowance::kLeftForClicks);
+  }
   /// Returns why offer() has refused this edit with this error, for the player. If the player may
   /// not make the edit, the text names the protected box or the role.
   std::string refusal_text(const EditDescriptor& edit, const Error& error) const;
@@ -204,6 +214,7 @@ class ClientSession {
   /// Sends the claims of what is held, and then the view.
   void send_view();
   void send_waiting_edits(TimeUs now_us);
+  bool fits_window(const EditDescriptor& edit) const;
   void offer_lost_edits(TimeUs now_us);
 
   ServerConnection connection_;

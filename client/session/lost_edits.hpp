@@ -22,14 +22,14 @@ class LostEdits {
   /// The time from a rejection to the next attempt.
   static constexpr TimeUs kAgainUs = 1'000'000;
 
-  /// Takes the edit over if it is older than the connection, which opened at `opened_us`, and the
-  /// reason of the rejection is temporary. Call it before LocalEdits takes the rejection.
+  /// Takes the edit over if it is older than the connection, which opened at `opened_us`, the reason of
+  /// the rejection is temporary, and no ActionSender offers it again. Call it before LocalEdits takes the rejection.
   void take(const LocalEdits& edits, const Reject& reject, TimeUs opened_us, TimeUs now_us) {
     const bool is_temporary =
         reject.reason == RejectReason::busy || reject.reason == RejectReason::rate_limited;
     const LocalEdit* local = edits.find(reject.client_seq);
     const bool is_again = again_.erase(reject.client_seq) != 0;
-    if (!is_temporary || local == nullptr) return;
+    if (!is_temporary || local == nullptr || local->has_sender) return;
     if (!is_again && local->submitted_us >= opened_us) return;
     edits_.push_back({local->edit, local->submitted_us, local->action});
     put_off(now_us);

@@ -198,6 +198,7 @@ TimeUs ServerConnection::tick_due_us(TimeUs ping_every_us) const {
 void ServerConnection::send_edit(ClientSequence seq, const LocalEdit& local) {
   EditRequest request{seq, clock_.to_server(local.submitted_us).value_or(0), local.edit};
   request.action = local.action;
+  request.is_optional = local.is_optional && (welcome_->features & kFeatureLargeActions) != 0;
   outgoing_.push_back(std::move(request));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/tools/build_words.hpp"
 #include "client/tools/cell_list.hpp"
 #include "client/tools/shown_voxels.hpp"
 #include "client/tools/surface_flood.hpp"
@@ -244,12 +245,18 @@ class PasteTool final : public Tool {
 };
 
 ToolEdits PasteTool::plan(const ToolInput& input) const {
-  if (!input.clipboard.content) return failure("nothing was copied");
+  const ToolClipboard& clipboard = input.clipboard;
+  if (!clipboard.build) return failure("nothing was copied");
   if (input.button == ToolButton::clear) return failure("paste with the right button");
-  const Extent sides = input.clipboard.orientation.rotated(input.clipboard.content->extent());
+  const VoxelPos sides = clipboard.build->sides();
   const VoxelPos at{input.target.x - sides.x / 2, input.target.y, input.target.z - sides.z / 2};
-  return std::vector{EditDescriptor{Paste{at, input.clipboard.content, input.clipboard.orientation},
-                                    mask(), kEmpty}};
+  if (!is_in_world(at, sides)) return failure("the clipboard reaches outside the world there");
+  const auto& whole = clipboard.whole;
+  if (whole && whole->touched() <= input.replica.edit_limits().volume_max)
+    return std::vector{EditDescriptor{Paste{at, whole, {}}, mask(), kEmpty}};
+  ToolAction out;
+  out.pastes.push_back({clipboard.build, at, mask(), clipboard.empty});
+  return out;
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
+#include "common/builds/build_transforms.hpp"
 
 namespace runstone {
 namespace {
@@ -69,6 +71,49 @@ std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
       append_new(out, in_x(in_z(edit)));
   }
   return merge_edits(std::move(out));
+}
+
+Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, bool along_z) {
+  if (build != of_) {
+    forget();
+    of_ = build;
+  }
+  BuildPtr& form = forms_[(along_x ? 1U : 0U) + (along_z ? 2U : 0U)];
+  if (!form) {
+    Orientation orientation;
+    if (along_x) orientation = orientation.mirrored(Axis::x);
+    if (along_z) orientation = orientation.mirrored(Axis::z);
+    auto made = turned(*build, orientation);
+    if (!made) return failure(made.error());
+    form = *std::move(made);
+  }
+  return form;
+}
+
+Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
+                                            MirroredBuilds& builds) {
+  ToolAction out(with_copies(std::move(action.edits), symmetry));
+  for (const BuildPaste& paste : action.pastes) {
+    out.pastes.push_back(paste);
+    using Kind = SymmetryKind;
+    const Kind kind = symmetry.kind;
+    for (const auto& [x, z] :
+         {std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
+      const bool is_made = kind == Kind::both || (kind == Kind::x && x && !z) ||
+                           (kind == Kind::z && !x && z) || (kind == Kind::point && x && z);
+      if (!is_made) continue;
+      auto build = builds.mirrored(paste.build, x, z);
+      if (!build) return failure(words_of(build.error()));
+      BuildPaste copy = paste;
+      const VoxelPos sides = paste.build->sides();
+      copy.build = *std::move(build);
+      if (x) copy.at.x = symmetry.centre2_x - (paste.at.x + sides.x - 1);
+      if (z) copy.at.z = symmetry.centre2_z - (paste.at.z + sides.z - 1);
+      if (!is_in_world(copy.at, sides)) return failure("a mirrored copy reaches outside the world");
+      out.pastes.push_back(std::move(copy));
+    }
+  }
+  return out;
 }
 
 }  // namespace runstone

@@ -1,10 +1,14 @@
 // Symmetry: copies each edit to the other sides of one or two vertical mirror planes through one
 // place.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "client/tools/tool_action.hpp"
 #include "common/core/coords.hpp"
+#include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
 namespace runstone {
@@ -33,5 +37,25 @@ EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t cent
 /// edit where merge_edits() can do it.
 std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
                                         const Symmetry& symmetry);
+
+/// The mirrored forms of one build, so that a build that is pasted again and again is mirrored once.
+/// One thread.
+class MirroredBuilds {
+ public:
+  /// Returns the build mirrored along x, z or both. Keeps the forms of the last build that was asked
+  /// for. Fails as turned() does. Cost: that of turned() for a new form, otherwise O(1).
+  Result<BuildPtr> mirrored(const BuildPtr& build, bool along_x, bool along_z);
+  void forget() { *this = MirroredBuilds(); }
+
+ private:
+  BuildPtr of_;
+  std::array<BuildPtr, 4> forms_;  // bit 0: along x; bit 1: along z
+};
+
+/// Returns an action with the copies of its edits, as with_copies() above makes them, and with those
+/// of its pastes. Fails with words for the player if a mirrored build takes too much memory, or if a
+/// copy of a paste reaches outside the world.
+Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
+                                            MirroredBuilds& builds);
 
 }  // namespace runstone

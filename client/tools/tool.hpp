@@ -12,6 +12,7 @@
 
 #include "client/replica/replica.hpp"
 #include "client/tools/aim.hpp"
+#include "client/tools/tool_action.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
@@ -28,10 +29,12 @@ struct ToolParameter {
   std::vector<std::string> choices;
 };
 
-/// The content of a paste and its orientation.
+/// The content of a paste, as it lies in the world: turns and mirrors make another build.
 struct ToolClipboard {
-  std::shared_ptr<const Clipboard> content;  // null: nothing was copied
-  Orientation orientation;
+  BuildPtr build;  // null: nothing was copied
+  EmptyCells empty = EmptyCells::pasted;
+  /// The build as the clipboard of one descriptor, or null if it is too large for one.
+  std::shared_ptr<const Clipboard> whole;
 };
 
 /// The facts from which a tool makes its edits.
@@ -73,9 +76,9 @@ class Tool {
   virtual bool selects() const { return false; }
   /// Returns what the place with this number, from 0, is called for the player.
   virtual std::string_view place_name(std::size_t) const { return "voxel"; }
-  /// Returns the edits of the click that completes an action, in the order in which they are made.
-  /// Fails with words for the player. The edits are valid, but the world's limits are not checked.
-  virtual Result<std::vector<EditDescriptor>, std::string> plan(const ToolInput& input) const = 0;
+  /// Returns what the click makes that completes an action. Fails with words for the player. The
+  /// edits are valid, but the world's limits are not checked.
+  virtual Result<ToolAction, std::string> plan(const ToolInput& input) const = 0;
 
  protected:
   /// Returns the value of a parameter. Requires a parameter of this tool.
@@ -93,6 +96,6 @@ class Tool {
   std::vector<ToolParameter> parameters_;
 };
 
-using ToolEdits = Result<std::vector<EditDescriptor>, std::string>;
+using ToolEdits = Result<ToolAction, std::string>;
 
 }  // namespace runstone

@@ -2,18 +2,24 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
+#include <variant>
 
 #include "client/replica/copy_box.hpp"
+#include "client/tools/action_source.hpp"
+#include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
-#include "common/edits/clipboard/clipboard_builder.hpp"
+#include "common/builds/build_builder.hpp"
+#include "common/builds/build_transforms.hpp"
+#include "common/core/assert.hpp"
 #include "common/materials/material_lookup.hpp"
 
 namespace runstone {
 namespace {
 
-/// Bounds the work of one stack.
-constexpr std::int32_t kStackMax = 64;
+/// Bounds the copies of one stack.
+constexpr std::int32_t kStackMax = 4096;
 /// Bounds the steps of one move or growth.
 constexpr std::int32_t kStepsMax = 4096;
 /// A preview that is refused is planned again after so many calls.
@@ -55,28 +61,54 @@ MoveParts parts_of_move(const VoxelBox& box, Direction direction, std::int32_t s
   return out;
 }
 
-CopyEmpty copy_empty(bool is_solid) {
-  return is_solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty;
+EmptyCells empty_cells(bool is_solid) {
+  return is_solid ? EmptyCells::skipped : EmptyCells::pasted;
 }
 
 Unexpected<std::string> cannot_copy(const Error& error) {
-  if (error.code == ErrorCode::bad_value) return failure("the selection is empty");
-  return failure(std::string("cannot copy: ") + error.what);
+  return failure("cannot copy: " + words_of(error));
 }
 
-/// Returns the clipboard with other materials. A cell of a palette entry without a new material
-/// becomes untouched. Returns null if no cell is left.
-std::shared_ptr<const Clipboard> with_materials(const Clipboard& clipboard,
-                                                std::span<const std::optional<Material>> palette) {
-  const RunChunk& cells = clipboard.cells();
-  ClipboardBuilder out(cells.extent, cells.order);
-  for (std::size_t i = 0; i < cells.runs.size(); ++i) {
-    const Run run = cells.runs[i];
-    std::optional<Material> material;
-    if (run.material != 0) material = palette[run.material - 1U];
-    out.append(run.end - out.filled(), material);
+VoxelPos sides_of(const VoxelBox& box) {
+  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T> from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// Returns the number of chunks that a box meets, at most about 2^60.
+std::uint64_t chunks_of(const VoxelBox& box, std::int32_t edge) {
+  const VoxelPos sides = sides_of(box);
+  const auto along = [&](std::int32_t side) {
+    return std::min<std::uint64_t>(static_cast<std::uint64_t>(side / edge) + 2, 1U << 20);
+  };
+  return along(sides.x) * along(sides.y) * along(sides.z);
+}
+
+/// Returns a build of one material with the sides of a box, or null if there is no such build.
+BuildPtr block_of(const VoxelBox& box, Material material) {
+  const VoxelPos sides = sides_of(box);
+  if (std::max({sides.x, sides.y, sides.z}) > kBuildEdgeMax) return nullptr;
+  constexpr auto kEdge = static_cast<std::int32_t>(kSideMax);
+  auto out = BuildBuilder::of(
+      {grid_cuts(sides.x, kEdge), grid_cuts(sides.y, kEdge), grid_cuts(sides.z, kEdge)});
+  if (!out) return nullptr;
+  const std::uint16_t number = *out->number_of(material);
+  const BuildCuts cuts = out->cuts();
+  const auto side = [&](std::size_t axis, std::uint32_t i) {
+    return static_cast<std::uint8_t>(cuts[axis][i + 1U] - cuts[axis][i]);
+  };
+  for (SectionPos at; at.z + 1U < cuts[2].size(); ++at.z) {
+    for (at.y = 0; at.y + 1U < cuts[1].size(); ++at.y) {
+      for (at.x = 0; at.x + 1U < cuts[0].size(); ++at.x) {
+        const Extent extent{side(0, at.x), side(1, at.y), side(2, at.z)};
+        if (!out->put(at, uniform_chunk(extent, number))) return nullptr;
+      }
+    }
   }
-  auto made = out.finish();
+  auto made = out->finish();
   return made ? *std::move(made) : nullptr;
 }
 
@@ -120,13 +152,15 @@ Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton butt
 }
 
 ToolEdits ToolBox::plan(const Replica& replica, const Aim& aim, ToolButton button,
-                        std::span<const VoxelPos> points, VoxelPos target) const {
-  auto edits = tool().plan({replica, aim, button, points, target, selection_, clipboard_});
-  if (!edits) return edits;
-  for (const EditDescriptor& edit : *edits) {
+                        std::span<const VoxelPos> points, VoxelPos target) {
+  auto made = tool().plan({replica, aim, button, points, target, selection_, clipboard_});
+  if (!made) return made;
+  for (const EditDescriptor& edit : made->edits) {
+    // A box may be longer than one descriptor has it: then it is cut.
+    if (std::holds_alternative<FillBox>(edit.shape)) continue;
     if (const auto ok = validate(edit); !ok) return failure(ok.error().what);
   }
-  return with_copies(*std::move(edits), symmetry_);
+  return with_copies(*std::move(made), symmetry_, mirrored_);
 }
 
 ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton button) {
@@ -179,7 +213,7 @@ std::array<std::size_t, 2> ToolBox::typed_count() const {
   return {tool().points_before() + 1, tool().points_before() + 1};
 }
 
-ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) const {
+ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) {
   if (!typed_) return failure("no places are typed");
   const std::span<const VoxelPos> places = typed_->places;
   const auto [least, most] = typed_count();
@@ -249,15 +283,35 @@ Result<void, std::string> ToolBox::shift(Direction direction, std::int32_t steps
 Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
   const auto box = selected();
   if (!box) return failure(box.error());
-  auto copied = copy_box(replica, *box, copy_empty(is_solid));
+  auto copied = copy_box(replica, *box);
   if (!copied) return cannot_copy(copied.error());
-  clipboard_ = {*std::move(copied), {}};
-  clipboard_names_.clear();
-  for (const Material material : clipboard_.content->palette()) {
-    clipboard_names_.push_back(materials_.knows(material) ? materials_[material].name : "");
+  if (is_solid && (*copied)->solid() == 0) return failure("the selection is empty");
+  clipboard_rows_.clear();
+  for (const Material material : (*copied)->palette()) {
+    clipboard_rows_.push_back(materials_.knows(material) ? row_of(materials_[material])
+                                                         : MaterialRow{});
   }
-  ++revision_;
+  hold_clipboard(*std::move(copied), empty_cells(is_solid));
+  ++clipboard_changes_;
   return {};
+}
+
+std::string ToolBox::set_clipboard(BuildPtr build, EmptyCells empty,
+                                   std::vector<MaterialRow> rows) {
+  RUNSTONE_ASSERT(build && rows.size() == build->palette().size());
+  clipboard_rows_ = std::move(rows);
+  hold_clipboard(std::move(build), empty);
+  // Before a world is open there is only air. The names wait for its table.
+  return materials_.size() > 1 ? fit_clipboard() : std::string();
+}
+
+void ToolBox::hold_clipboard(BuildPtr build, EmptyCells empty) {
+  PasteLimits any_volume;
+  any_volume.volume_max = UINT64_MAX;
+  auto whole = whole_clipboard(*build, empty, any_volume);
+  clipboard_ = {std::move(build), empty, std::move(whole)};
+  mirrored_.forget();
+  ++revision_;
 }
 
 ToolEdits ToolBox::cut(const Replica& replica, bool is_solid) {
@@ -280,14 +334,25 @@ ToolEdits ToolBox::replace(Material from, Material to) const {
 ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32_t times) const {
   const auto box = selected();
   if (!box) return failure(box.error());
-  if (times < 1 || times > kStackMax) return failure("a stack has 1 to 64 copies");
-  const auto copied = copy_box(replica, *box, CopyEmpty::as_empty);
+  if (times < 1 || times > kStackMax)
+    return failure("a stack has 1 to " + std::to_string(kStackMax) + " copies");
+  const auto copied = copy_box(replica, *box);
   if (!copied) return cannot_copy(copied.error());
   const std::int32_t side = side_along(*box, axis_of(direction));
-  std::vector<EditDescriptor> edits;
-  for (std::int32_t i = 1; i <= times; ++i)
-    edits.push_back({Paste{moved(box->min, direction, i * side), *copied, {}}, {}, kEmpty});
-  return merge_edits(std::move(edits));
+  // The first copy lies beside the selection; the selection itself is not pasted.
+  const VoxelPos step = moved(VoxelPos{}, direction, side);
+  BuildPtr copies = *copied;
+  VoxelPos corner;
+  if (times > 1) {
+    auto made = stacked(*copies, step, times - 1);
+    if (!made) return failure("cannot stack: " + words_of(made.error()));
+    corner = stack_corner(step, times - 1);
+    copies = *std::move(made);
+  }
+  const VoxelPos first = moved(box->min, direction, side);
+  const VoxelPos at{first.x + corner.x, first.y + corner.y, first.z + corner.z};
+  if (!is_in_world(at, copies->sides())) return failure("the stack reaches outside the world");
+  return paste_of_build({std::move(copies), at, {}, EmptyCells::pasted}, replica.edit_limits());
 }
 
 ToolEdits ToolBox::move(const Replica& replica, Direction direction, std::int32_t steps) {
@@ -297,30 +362,42 @@ ToolEdits ToolBox::move(const Replica& replica, Direction direction, std::int32_
   if (steps == 0) return failure("the selection moves by one voxel or more");
   const Direction towards = steps > 0 ? direction : opposite(direction);
   const MoveParts parts = parts_of_move(*box, towards, std::abs(steps));
+  if (!is_in_world(moved(box->min, direction, steps), sides_of(*box)))
+    return failure("the selection would reach outside the world");
   // The place that is left is cleared last: if an edit is refused, nothing is lost.
-  std::vector<EditDescriptor> edits;
-  for (const auto& [part, how] : {std::pair{parts.entering, CopyEmpty::as_untouched},
-                                  std::pair{parts.staying, CopyEmpty::as_empty}}) {
+  ToolAction out;
+  for (const auto& [part, empty] : {std::pair{parts.entering, EmptyCells::skipped},
+                                    std::pair{parts.staying, EmptyCells::pasted}}) {
     if (part.empty()) continue;
-    auto copied = copy_box(replica, part, how);
-    if (!copied && copied.error().code == ErrorCode::bad_value) continue;  // nothing is in it
+    const auto copied = copy_box(replica, part);
     if (!copied) return cannot_copy(copied.error());
-    edits.push_back({Paste{moved(part.min, direction, steps), *std::move(copied), {}}, {}, kEmpty});
+    if (empty == EmptyCells::skipped && (*copied)->solid() == 0) continue;  // nothing is in it
+    ToolAction paste = paste_of_build({*copied, moved(part.min, direction, steps), {}, empty},
+                                      replica.edit_limits());
+    append(out.pastes, std::move(paste.pastes));
+    append(out.edits, std::move(paste.edits));
   }
-  if (edits.empty()) return failure("the selection is empty");
-  edits.push_back({FillBox{parts.left}, {}, kEmpty});
+  if (out.empty()) return failure("the selection is empty");
+  out.edits.push_back({FillBox{parts.left}, {}, kEmpty});
   select(moved(*box, direction, steps));
-  return merge_edits(std::move(edits));
+  if (out.pastes.empty()) out.edits = merge_edits(std::move(out.edits));
+  return out;
 }
 
-void ToolBox::rotate(int quarters) {
-  clipboard_.orientation = clipboard_.orientation.rotated_about_y(quarters);
-  ++revision_;
+Result<void, std::string> ToolBox::rotate(int quarters) {
+  return turn(Orientation{}.rotated_about_y(quarters));
 }
 
-void ToolBox::mirror(Axis axis) {
-  clipboard_.orientation = clipboard_.orientation.mirrored(axis);
-  ++revision_;
+Result<void, std::string> ToolBox::mirror(Axis axis) { return turn(Orientation{}.mirrored(axis)); }
+
+Result<void, std::string> ToolBox::turn(const Orientation& orientation) {
+  if (!clipboard_.build || orientation == Orientation{}) return {};
+  auto made = turned(*clipboard_.build, orientation);
+  if (!made) return failure("cannot turn the clipboard: " + words_of(made.error()));
+  // The palette of a turned build has the same order, and so have the rows.
+  hold_clipboard(*std::move(made), clipboard_.empty);
+  ++clipboard_changes_;
+  return {};
 }
 
 void ToolBox::set_symmetry(const Symmetry& symmetry) {
@@ -335,24 +412,37 @@ void ToolBox::show_preview(bool is_shown) {
 
 std::string ToolBox::set_materials(const MaterialTable& materials) {
   materials_ = materials;
-  preview_.set_visibility(VisibilityTable(visibilities(materials)));
+  const VisibilityTable visibility(visibilities(materials));
+  preview_.set_visibility(visibility);
+  build_preview_.set_visibility(visibility);
   points_.clear();
   typed_.reset();  // an open window gives its places again
   ++revision_;
-  if (!clipboard_.content) return {};
+  return fit_clipboard();
+}
+
+std::string ToolBox::fit_clipboard() {
+  if (!clipboard_.build) return {};
   std::vector<std::optional<Material>> palette;
-  std::vector<std::string> names;
+  std::vector<MaterialRow> rows;
   std::string lacking;
-  for (const std::string& name : clipboard_names_) {
-    palette.push_back(materials.find(name));
-    if (palette.back()) continue;
-    lacking += (lacking.empty() ? "" : ", ") + name;
+  for (const MaterialRow& row : clipboard_rows_) {
+    palette.push_back(materials_.find(row.name));
+    if (palette.back()) {
+      rows.push_back(row);
+      continue;
+    }
+    lacking += (lacking.empty() ? "" : ", ") + row.name;
   }
-  clipboard_.content = with_materials(*clipboard_.content, palette);
-  clipboard_names_.clear();
-  if (clipboard_.content) {
-    for (const Material material : clipboard_.content->palette())
-      clipboard_names_.push_back(materials[material].name);
+  auto made = with_materials(*clipboard_.build, palette);
+  clipboard_rows_ = std::move(rows);
+  const bool is_nothing =
+      !made || (clipboard_.empty == EmptyCells::skipped && (*made)->solid() == 0);
+  if (is_nothing) {
+    clipboard_ = {};
+    clipboard_rows_.clear();
+  } else {
+    hold_clipboard(*std::move(made), clipboard_.empty);
   }
   if (lacking.empty()) return {};
   return "the clipboard lost materials that this world lacks: " + lacking;
@@ -373,20 +463,43 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
   if (previewed_ != wanted || is_planned_again || preview_.is_outdated(replica)) {
     previewed_ = wanted;
     preview_refusal_.clear();
-    std::vector<EditDescriptor> edits;
+    ToolAction made;
     if (is_preview_shown_ && !tool().selects()) {
       auto planned = typed_   ? plan_typed(replica, aim.held)
                      : target ? plan(replica, aim, button, points_, *target)
                               : ToolEdits(failure(target.error()));
       if (planned) {
-        edits = *std::move(planned);
+        made = *std::move(planned);
       } else {
         preview_refusal_ = planned.error();
       }
     }
-    preview_.set(std::move(edits));
+    show(std::move(made), replica.chunk_edge());
   }
-  return preview_.step(replica, chunks_max);
+  const bool has_edits_changed = preview_.step(replica, chunks_max);
+  // A cube of 64 cells is as much work as several chunks.
+  const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
+  if (!has_edits_changed && !has_builds_changed) return false;
+  ghosts_ = preview_.ghosts();
+  ghosts_.insert(ghosts_.end(), build_preview_.ghosts().begin(), build_preview_.ghosts().end());
+  return true;
+}
+
+void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
+  std::vector<ShownBuild> builds;
+  for (const BuildPaste& paste : made.pastes) builds.push_back({paste.build, paste.at});
+  // A box of more chunks than a preview compares is drawn as a build of its material.
+  std::erase_if(made.edits, [&](const EditDescriptor& edit) {
+    const auto* const fill = std::get_if<FillBox>(&edit.shape);
+    if (fill == nullptr || chunks_of(fill->box, chunk_edge) <= EditPreview::kChunksMax)
+      return false;
+    const bool is_removed = edit.material == kEmpty;
+    if (auto build = block_of(fill->box, is_removed ? Material{1} : edit.material))
+      builds.push_back({std::move(build), fill->box.min, is_removed});
+    return true;
+  });
+  preview_.set(std::move(made.edits));
+  build_preview_.set(std::move(builds));
 }
 
 }  // namespace runstone

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/tools/build_preview.hpp"
 #include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
 #include "client/tools/symmetry.hpp"
@@ -67,8 +68,8 @@ class ToolBox {
   /// Moves the selected box, not its voxels.
   Result<void, std::string> shift(Direction direction, std::int32_t steps);
 
-  /// Copies the selected voxels. With `is_solid`, a paste changes no voxel where the copy is empty.
-  /// Fails with words for the player, as do the functions below.
+  /// Copies the selected voxels, of a box of any size. With `is_solid`, a paste changes no voxel where
+  /// the copy is empty. Fails with words for the player, as do the functions below.
   Result<void, std::string> copy(const Replica& replica, bool is_solid);
   /// Copies the selected voxels and returns the edit that clears them.
   ToolEdits cut(const Replica& replica, bool is_solid);
@@ -76,17 +77,26 @@ class ToolBox {
   ToolEdits fill(Material material) const;
   /// Returns the edit that replaces a material in the selection.
   ToolEdits replace(Material from, Material to) const;
-  /// Returns the edits that repeat the selected voxels `times` times in a direction.
+  /// Returns the paste that repeats the selected voxels `times` times in a direction.
   ToolEdits stack(const Replica& replica, Direction direction, std::int32_t times) const;
   /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move
   /// and leave empty ones behind.
   ToolEdits move(const Replica& replica, Direction direction, std::int32_t steps);
 
   const ToolClipboard& clipboard() const { return clipboard_; }
+  /// Returns the rows of the materials of the clipboard, by palette entry, as the world from which they
+  /// were copied has them.
+  std::span<const MaterialRow> clipboard_rows() const { return clipboard_rows_; }
+  /// Returns a number that rises when the player copies something or turns the clipboard.
+  std::uint64_t clipboard_changes() const { return clipboard_changes_; }
+  /// Sets the clipboard to a build of another world or of a file: `rows` are the materials of its
+  /// palette. Its materials are found by their names; returns what set_materials() returns. Before
+  /// set_materials() they are found when it is called. Requires one row for each palette entry.
+  std::string set_clipboard(BuildPtr build, EmptyCells empty, std::vector<MaterialRow> rows);
   /// Turns the clipboard by quarter turns about the vertical axis.
-  void rotate(int quarters);
+  Result<void, std::string> rotate(int quarters);
   /// Mirrors the clipboard along an axis of the world.
-  void mirror(Axis axis);
+  Result<void, std::string> mirror(Axis axis);
 
   const Symmetry& symmetry() const { return symmetry_; }
   /// Sets the symmetry. It applies to the edits of tools, not to those of the selection.
@@ -103,7 +113,11 @@ class ToolBox {
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
   /// aim, the tool or the chunks changed, and EditPreview::step().
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
+  /// Returns the preview of the edits, and that of the builds that are too large for one edit.
   const EditPreview& preview() const { return preview_; }
+  const BuildPreview& build_preview() const { return build_preview_; }
+  /// Returns the ghosts of both.
+  const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
@@ -111,9 +125,15 @@ class ToolBox {
   /// Returns the voxel that a click chooses. Fails with words for the player.
   Result<VoxelPos, std::string> target_of(const Aim& aim, ToolButton button) const;
   ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
-                 std::span<const VoxelPos> points, VoxelPos target) const;
-  ToolEdits plan_typed(const Replica& replica, Material held) const;
+                 std::span<const VoxelPos> points, VoxelPos target);
+  ToolEdits plan_typed(const Replica& replica, Material held);
   Result<VoxelBox, std::string> selected() const;
+  Result<void, std::string> turn(const Orientation& orientation);
+  /// Sets the clipboard, whose rows are set already.
+  void hold_clipboard(BuildPtr build, EmptyCells empty);
+  /// Gives the clipboard the materials of this world, by the names in its rows.
+  std::string fit_clipboard();
+  void show(ToolAction made, std::int32_t chunk_edge);
 
   /// The facts on which the present preview depends, besides the chunks.
   struct Previewed {
@@ -132,10 +152,14 @@ class ToolBox {
   std::optional<TypedPlaces> typed_;
   std::optional<VoxelBox> selection_;
   ToolClipboard clipboard_;
-  std::vector<std::string> clipboard_names_;  // by palette entry of the clipboard
+  std::vector<MaterialRow> clipboard_rows_;  // by palette entry of the clipboard
+  std::uint64_t clipboard_changes_ = 0;
   Symmetry symmetry_;
+  MirroredBuilds mirrored_;
   MaterialTable materials_;
   EditPreview preview_;
+  BuildPreview build_preview_;
+  std::vector<GhostChunk> ghosts_;
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   std::optional<Previewed> previewed_;

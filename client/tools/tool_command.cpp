@@ -57,9 +57,8 @@ struct Carrier {
     return without_edits({});
   }
   ToolEdits operator()(const ClipboardTurn& c) const {
-    box.rotate(c.quarters);
-    if (c.mirror) box.mirror(*c.mirror);
-    return without_edits({});
+    if (const auto done = box.rotate(c.quarters); !done || !c.mirror) return without_edits(done);
+    return without_edits(box.mirror(*c.mirror));
   }
   ToolEdits operator()(const SymmetryChange& c) const {
     box.set_symmetry(c.symmetry);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "client/tools/build_words.hpp"
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
 #include "common/materials/readable_name.hpp"
@@ -78,6 +79,7 @@ void build_parameters(const Tool& tool, std::vector<ToolCommand>& out) {
 void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
   const ToolBox& box = *state.tools;
   const EditPreview& preview = box.preview();
+  const BuildPreview& builds = box.build_preview();
   bool is_shown = box.is_preview_shown();
   if (ImGui::Checkbox("preview of the next click", &is_shown))
     out.emplace_back(PreviewChange{is_shown});
@@ -88,13 +90,18 @@ void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
     ImGui::TextColored(kToolWarning, "%s", box.preview_refusal().c_str());
   } else if (box.tool().selects()) {
     ImGui::TextDisabled("changes no voxel");
-  } else if (!preview.is_complete()) {
+  } else if (!preview.is_complete() || !builds.is_complete()) {
     ImGui::TextDisabled("...");
   } else {
-    ImGui::TextUnformatted(fmt::format("sets {} and removes {} voxels", preview.placed_voxels(),
-                                       preview.removed_voxels())
+    const std::uint64_t set = preview.placed_voxels() + builds.placed_voxels();
+    const std::uint64_t removed = preview.removed_voxels() + builds.removed_voxels();
+    // The builds are not compared with the world, so their numbers are upper bounds.
+    ImGui::TextUnformatted(fmt::format("sets {}{} and removes {} voxels",
+                                       builds.builds().empty() ? "" : "up to ", set, removed)
                                .c_str());
   }
+  if (builds.cell_voxels() > 1)
+    ImGui::TextDisabled("shown in cells of %d voxels", int{builds.cell_voxels()});
   if (preview.missing_chunks() != 0) {
     ImGui::TextColored(kToolWarning, "%zu chunks of it are not loaded", preview.missing_chunks());
   }
@@ -326,9 +333,8 @@ void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
 
 void ToolWindow::build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out) {
   const ToolClipboard& clipboard = box.clipboard();
-  if (!clipboard.content) return ImGui::TextDisabled("nothing was copied");
-  const Extent sides = clipboard.orientation.rotated(clipboard.content->extent());
-  ImGui::Text("clipboard %d x %d x %d", int{sides.x}, int{sides.y}, int{sides.z});
+  if (!clipboard.build) return ImGui::TextDisabled("nothing was copied");
+  ImGui::TextUnformatted(("clipboard " + size_text(*clipboard.build)).c_str());
   if (button_beside("Turn left")) out.emplace_back(ClipboardTurn{1, std::nullopt});
   if (button_beside("right")) out.emplace_back(ClipboardTurn{-1, std::nullopt});
   constexpr std::array<std::pair<const char*, Axis>, 3> kAxes = {

@@ -13,6 +13,7 @@ Result<Message> BodyReader::read(const wire::EditRequest& t) const {
   if (m.client_seq == 0) return bad("client sequences start at 1");
   if (m.client_seq > kSequenceMax) return bad("client sequence exceeds 63 bits");
   m.action = t.action();
+  m.is_optional = t.optional();
   if (m.action > m.client_seq) return bad("an action begins with a later edit");
   auto edit = decode_voxel_edit(view_of(t.edit()));
   if (edit) {

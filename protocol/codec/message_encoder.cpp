@@ -55,7 +55,8 @@ struct BodyBuilder {
                                m.heights.y_min, m.heights.y_max, &spawn, materials, server_key,
                                challenge, signature, static_cast<std::uint8_t>(m.encoding),
                                m.edit_volume_max, m.edit_budget.per_second, m.edit_budget.burst,
-                               m.view_radius_max, m.features, salt, m.tile_levels_max);
+                               m.view_radius_max, m.features, salt, m.tile_levels_max,
+                               m.waiting_edits_max, m.waiting_edit_bytes_max);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     const auto signature = bytes_of(b, m.signature);
@@ -105,7 +106,8 @@ struct BodyBuilder {
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     const Bytes edit = m.fault ? Bytes{} : encode(m.edit);
-    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit), m.action);
+    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit), m.action,
+                                   m.is_optional);
   }
   Offset<wire::Commit> operator()(const Commit& m) {
     const CommitEncoder encoder(m);

@@ -35,6 +35,10 @@ const char* to_string(RejectReason reason) {
       return "bad_edit";
     case RejectReason::outside_world:
       return "outside_world";
+    case RejectReason::unknown_action:
+      return "unknown_action";
+    case RejectReason::action_ended:
+      return "action_ended";
   }
   return "unknown";
 }

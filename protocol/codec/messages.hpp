@@ -80,6 +80,9 @@ struct Welcome {
   std::uint64_t features = 0;                 // in force for this session; a subset of Hello's
   std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
   std::uint8_t tile_levels_max = kTileLevelMax;
+  /// With the feature large actions: the edits of actions that the session may have under way, and
+  /// the bytes of their descriptors. Otherwise 0.
+  std::uint32_t waiting_edits_max = 0, waiting_edit_bytes_max = 0;
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {
@@ -273,11 +276,15 @@ struct EditRequest {
   /// The first edit of the action to which this one belongs, at most client_seq. 0: the edit is an
   /// action by itself.
   ClientSequence action = 0;
+  /// The action goes on without this edit if it is rejected. Otherwise its rejection ends the
+  /// action. Only with the feature large actions.
+  bool is_optional = false;
   /// Two requests with faults are equal whatever the faults are: encode_message() does not keep the
   /// bytes.
   friend bool operator==(const EditRequest& a, const EditRequest& b) {
     return a.client_seq == b.client_seq && a.submitted_us == b.submitted_us && a.edit == b.edit &&
-           a.fault.has_value() == b.fault.has_value() && a.action == b.action;
+           a.fault.has_value() == b.fault.has_value() && a.action == b.action &&
+           a.is_optional == b.is_optional;
   }
 };
 struct OrderedEdit {
@@ -312,8 +319,11 @@ enum class RejectReason : std::uint8_t {
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
   outside_world = 9,  // a voxel lies above or below the height limits
+  // With the feature large actions.
+  unknown_action = 10,  // the log does not have the first edit of the action: begin another one
+  action_ended = 11,    // the player has undone the action
 };
-inline constexpr std::uint8_t kRejectReasonMax = 9;
+inline constexpr std::uint8_t kRejectReasonMax = 11;
 /// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(RejectReason reason);
 

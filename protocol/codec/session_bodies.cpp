@@ -55,6 +55,8 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   m.view_radius_max = t.view_radius_max();
   m.features = t.features();
   m.tile_levels_max = t.tile_levels_max();
+  m.waiting_edits_max = t.waiting_edits_max();
+  m.waiting_edit_bytes_max = t.waiting_edit_bytes_max();
   if (!take_exact(t.world_id(), m.world_id)) return bad("welcome.world_id is not 16 bytes");
   if (!take_exact(t.server_key(), m.server_key)) return bad("welcome.server_key is not 32 bytes");
   if (!take_exact(t.challenge(), m.challenge)) return bad("welcome.challenge is not 32 bytes");
@@ -70,6 +72,9 @@ Result<Message> BodyReader::read(const wire::Welcome& t) const {
   if ((m.edit_budget.per_second == 0) != (m.edit_budget.burst == 0))
     return bad("welcome.edits_per_second and edit_burst are not both 0 or both above");
   if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
+  if ((m.features & kFeatureLargeActions) != 0 &&
+      (m.waiting_edits_max == 0 || m.waiting_edit_bytes_max < kDescriptorBytesMax))
+    return bad("welcome.waiting_edits_max and waiting_edit_bytes_max have no room for an edit");
   if (m.tile_levels_max > kTileLevelMax) return bad("welcome.tile_levels_max exceeds 8");
   if (t.password_salt() != nullptr && !take_exact(t.password_salt(), m.password_salt.emplace()))
     return bad("welcome.password_salt is not 16 bytes");

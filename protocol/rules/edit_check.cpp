@@ -17,6 +17,32 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
   return std::nullopt;
 }
 
+std::string refusal_words(RejectReason reason, const EditDescriptor& edit,
+                          const EditLimits& limits) {
+  constexpr const char* kCut = ": fill, replace or paste a selection, which is sent in parts";
+  switch (reason) {
+    case RejectReason::too_large:
+      if (counted_voxels(edit) > limits.volume_max) {
+        return "the edit has " + std::to_string(counted_voxels(edit)) +
+               " voxels, and one edit may have " + std::to_string(limits.volume_max) + kCut;
+      }
+      return "the edit touches " + std::to_string(touched_chunks_bound(edit, limits.chunk_edge)) +
+             " chunks, and one edit may touch " + std::to_string(limits.touched_chunks_max) + kCut;
+    case RejectReason::outside_world: {
+      const VoxelBox box = bounding_box(edit);
+      return "the edit reaches from y = " + std::to_string(box.min.y) + " to " +
+             std::to_string(box.max.y - 1) + ", and the world takes edits from " +
+             std::to_string(limits.heights.y_min) + " to " +
+             std::to_string(limits.heights.y_max - 1);
+    }
+    case RejectReason::unknown_material:
+      return "the edit uses material " + std::to_string(material_max(edit)) +
+             ", and the world has those below " + std::to_string(limits.material_count);
+    default:
+      return {};
+  }
+}
+
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
                                               const EditLimits& limits) {
   EditLimits wider = limits;

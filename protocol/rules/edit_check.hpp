@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
@@ -23,6 +24,11 @@ struct EditLimits {
 /// first reason of: bad_edit, unknown_material (the materials of mask and clipboard included),
 /// outside_world, too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
+
+/// Returns words for the player about a reason of check_edit(): they name the limit, its value, and
+/// what to do. They are empty for a reason that has none.
+std::string refusal_words(RejectReason reason, const EditDescriptor& edit,
+                          const EditLimits& limits);
 
 /// Checks an edit that the server makes: to restore voxels, to change rights or to add materials.
 /// The limits of height and volume do not apply, because they may have been wider when the voxels

@@ -8,15 +8,15 @@
 namespace runstone {
 
 std::uint64_t edit_price(const EditDescriptor& edit, std::uint16_t chunk_edge,
-                         const EditBudget& budget) {
+                         const EditBudget& budget, std::size_t clipboard_bytes) {
   const std::uint64_t chunks =
       std::min<std::uint64_t>(touched_chunks_bound(edit, chunk_edge), kTouchedChunksMax);
   std::uint64_t price = std::max<std::uint64_t>(1, chunks * EditPrices::kChunk);
   if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
-    const std::uint64_t bytes = paste->clipboard->byte_size() + EditPrices::kClipboardBytes - 1;
-    price += bytes / EditPrices::kClipboardBytes * EditPrices::kClipboardPart;
+    const std::uint64_t bytes = paste->clipboard->byte_size() + clipboard_bytes - 1;
+    price += bytes / clipboard_bytes * EditPrices::kClipboardPart;
   }
-  if (rights_change_of(edit) != nullptr) price += encode(edit).size() / EditPrices::kClipboardBytes;
+  if (rights_change_of(edit) != nullptr) price += encode(edit).size() / EditPrices::kRightsBytes;
   return budget.is_limited() ? std::min(price, budget.burst) : price;
 }
 

@@ -6,6 +6,9 @@
 
 namespace runstone {
 
+/// Of an edit of an action of which another edit was refused.
+inline constexpr const char* kActionRefused = "an earlier edit of the same action was refused";
+
 inline std::string refused_by_box(const std::string& box) {
   return "the ground is protected: " + box;
 }

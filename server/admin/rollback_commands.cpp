@@ -15,7 +15,8 @@
 #include "server/draw/preview_pictures.hpp"
 #include "server/history/edit_text.hpp"
 #include "server/names/name_reference.hpp"
-#include "server/rollback/newest_edits.hpp"
+#include "server/rollback/count_text.hpp"
+#include "server/rollback/newest_actions.hpp"
 #include "server/rollback/preview_edits.hpp"
 
 namespace runstone {
@@ -149,19 +150,32 @@ Result<LogCommand, std::string> parse_log(WordReader& reader) {
   return reader.result(log, "log ");
 }
 
-/// Returns the lines of the newest edits that the filter selects. Blocks on the disk.
+/// Returns what follows the line of an action of several edits: their number, and the box around them.
+std::string action_tail(const LogAction& action) {
+  if (action.edits < 2) return {};
+  const VoxelBox& box = action.box;
+  const auto place = [](std::int32_t x, std::int32_t y, std::int32_t z) {
+    return std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
+  };
+  return " (the newest of " + counted(action.edits, "edit") + " of one action, from " +
+         std::to_string(action.first) + " on, in box " + place(box.min.x, box.min.y, box.min.z) +
+         " to " + place(box.max.x - 1, box.max.y - 1, box.max.z - 1) + ")";
+}
+
+/// Returns a line for each of the newest actions that the filter selects. Blocks on the disk.
 Result<std::string, std::string> read_log_lines(WorldReader& reader, const SelectionFilter& filter,
                                                 std::uint64_t limit) {
   const auto names = read_builders(reader);
-  const auto newest = newest_edits(reader, filter, limit);
+  const auto newest = newest_actions(reader, filter, limit);
   const auto materials = reader.materials();
   if (!materials) return failure(materials.error().message());
   if (!newest) return failure(newest.error().message());
   if (!names) return failure(names.error().message());
   std::string text;
-  for (const EditRecord& record : *newest) {
-    text +=
-        (text.empty() ? "" : "\n") + log_line(record, names->text_of(record.op.author), *materials);
+  for (const LogAction& action : *newest) {
+    const EditRecord& record = action.newest;
+    text += (text.empty() ? "" : "\n") +
+            log_line(record, names->text_of(record.op.author), *materials) + action_tail(action);
   }
   return text.empty() ? std::string("no edit matches") : text;
 }
@@ -264,7 +278,7 @@ void list_rollbacks(const CommandCall& call) { call.services.rollback.list(call.
 constexpr CommandRule kRollback = needs(Right::roll_back);
 
 constexpr std::array<CommandRow, 6> kRollbackRows = {{
-    {"log", kRollback, "log FILTERS [limit N]     the newest edits, the last one at the bottom",
+    {"log", kRollback, "log FILTERS [limit N]     the newest actions, the last one at the bottom",
      parsed_by<parse_log, list_log>()},
     {"rollback preview", kRollback,
      "rollback preview FILTERS [picture]\n"

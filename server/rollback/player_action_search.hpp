@@ -18,10 +18,9 @@ inline constexpr std::size_t kUndoActionsMax = 256;
 /// The number of actions without effect that one undo or redo skips. Each may cost a plan for every
 /// chunk that the action touched.
 inline constexpr std::size_t kPassedActionsMax = 16;
-/// Bounds of what is read of the author's log: records, and chunks that they touch, counted once
-/// for each record.
-inline constexpr std::size_t kPlayerRecordsMax = 16'384;
-inline constexpr std::size_t kPlayerTouchesMax = 1'000'000;
+/// Bounds the memory of what is read of the author's log: ranges (PlayerRange) of 32 bytes. An action
+/// may have any number of edits. What it touches is bounded by kSelectionTouchesMax.
+inline constexpr std::size_t kPlayerRangesMax = 1'000'000;
 
 struct PlayerChange {
   Sequence action = 0;  // the edit that is undone or redone
@@ -32,11 +31,15 @@ struct PlayerActionSearch {
   bool has_given_up = false;  // kPassedActionsMax actions were skipped, and there are more
 };
 /// Returns the next undo (or redo): the first of PlayerActions::undoable() (redoable()) that
-/// changes a voxel. An action is skipped if others have built over all of it. Reads the log once,
-/// up to `end`. Requires that `end` is durable. Fails as the reader, and with cancelled once
-/// `should_continue` returns false.
+/// changes a voxel. An action is skipped if others have built over all of it. If the player's newest
+/// record is an undo (or redo) of an earlier epoch than `epoch`, that of this start, the server may have
+/// ended in the middle of it: it comes first. Reads the log up to `end`. Requires that `end` is durable.
+/// Fails as the reader, with bad_request if the action touches more than kSelectionTouchesMax chunks,
+/// and with cancelled once `should_continue` returns false. Cost: O(records of the author back to the
+/// first edit of the action + edits of the action).
 StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Generator& generator,
                                                    AuthorId author, Cause cause, Sequence end,
+                                                   Epoch epoch,
                                                    const ShouldContinue& should_continue = {});
 
 }  // namespace runstone

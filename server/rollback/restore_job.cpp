@@ -64,6 +64,13 @@ void RestoreJob::end_if_done() {
   state_ = progress_.chunks_failed == 0 ? State::done : State::failed;
 }
 
+std::size_t RestoreJob::work_of(const RestoredChunk& chunk) const {
+  std::size_t work = 0;
+  for (const EditDescriptor& edit : chunk.edits)
+    work += edit_work(edit, order_.selection->chunk_edge);
+  return work;
+}
+
 bool RestoreJob::is_careful(const ChunkKey& key) const {
   const auto hits = collisions_.find(key);
   return hits != collisions_.end() && hits->second >= kCollisionsMax;
@@ -137,10 +144,10 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
   world.commit(now);  // no version changes from here to Changes::order_edits()
   std::vector<EditOffer> offers;
   std::vector<RestoredChunk> slice;
-  std::uint64_t voxels = 0;
+  std::size_t work = 0;
   ClientSequence seq = next_seq_;
   while (!planned_.empty() && slice.size() < limits_.slice_chunks &&
-         (slice.empty() || voxels + planned_.front().voxels <= limits_.slice_voxels)) {
+         (slice.empty() || work + work_of(planned_.front()) <= limits_.slice_work)) {
     RestoredChunk chunk = std::move(planned_.front());
     planned_.pop_front();
     if (!is_careful(chunk.key) &&
@@ -155,7 +162,7 @@ void RestoreJob::step(WorldServer& world, const Clocks& now) {
       ++progress_.chunks_done;
       continue;
     }
-    voxels += chunk.voxels;
+    work += work_of(chunk);
     for (const EditDescriptor& edit : chunk.edits) {
       const Sequence subject = order_.subject != 0 ? order_.subject : chunk.subject;
       offers.push_back(

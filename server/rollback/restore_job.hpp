@@ -65,9 +65,9 @@ std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& 
                                           const ShouldContinue& should_continue = {});
 
 struct RestoreLimits {
-  std::size_t slice_chunks = 16;         // written per step
-  std::uint64_t slice_voxels = 200'000;  // written per step; a single chunk may have more
-  std::size_t work_chunks = 32;          // in one order to a worker
+  std::size_t slice_chunks = 64;       // written per step
+  std::size_t slice_work = 64 * 1024;  // edit_work() written per step; a single chunk may have more
+  std::size_t work_chunks = 128;       // in one order to a worker
 };
 
 class RestoreJob {
@@ -116,6 +116,7 @@ class RestoreJob {
   /// written next.
   void take_written(std::vector<RestoredChunk> slice, std::size_t count, const WorldServer& world);
   bool is_careful(const ChunkKey& key) const;
+  std::size_t work_of(const RestoredChunk& chunk) const;
 
   RestoreOrder order_;
   RestoreLimits limits_;

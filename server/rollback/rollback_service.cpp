@@ -21,6 +21,19 @@ constexpr TimeUs kFirstReportUs = 300'000, kReportIntervalUs = 2'000'000;
 constexpr const char* kNotNow =
     "not now: the server stops, its log cannot be written, or another server owns the world";
 
+/// Returns how far a job is, such as "is at 40 percent: 1200 voxels a second, 30 s left".
+std::string progress_text(const RestoreJob::Progress& p, TimeUs elapsed_us) {
+  const auto seconds = static_cast<std::uint64_t>(std::max<TimeUs>(1, elapsed_us / 1'000'000));
+  std::string text = "is at " +
+                     std::to_string(p.chunks_done * 100 / std::max<std::size_t>(1, p.chunks)) +
+                     " percent: " + counted(p.voxels / seconds, "voxel") + " a second";
+  if (p.chunks_done > 0) {
+    const std::uint64_t left = seconds * (p.chunks - p.chunks_done) / p.chunks_done;
+    text += ", " + std::to_string(left) + " s left";
+  }
+  return text;
+}
+
 std::string name_of(Cause cause) { return cause == Cause::undo ? "undo" : "redo"; }
 
 }  // namespace
@@ -35,6 +48,8 @@ struct RollbackService::Job {
   std::shared_ptr<RollbackPreview> preview;  // of a rollback
   std::optional<AuthorId> player_change_of;  // of an undo or redo
   bool has_reported_wait = false;
+  // Of an undo or redo, steady clock: when it began, and when it next answers how far it is.
+  TimeUs began_us = 0, report_us = 0;
   /// Returns what the job waits for, or an empty string if it does not wait.
   std::string wait_text() const {
     const std::string& limit = job.progress().waits_for;
@@ -81,55 +96,88 @@ std::string RollbackService::busy_text(AuthorId author) const {
 
 void RollbackService::change_player_actions(AuthorId author, Cause cause, const Clocks& now,
                                             CommandReply reply) {
-  const std::string name = name_of(cause);
-  if (player_changes_.contains(author)) return refuse(reply, name + ": " + busy_text(author));
+  if (player_changes_.contains(author))
+    return refuse(reply, name_of(cause) + ": " + busy_text(author));
   world_.commit(now);
-  if (world_.order().has_waiting_edit(author))
-    return refuse(
-        reply,
-        name + ": an edit of yours still waits for its turn; it is large, or behind a large one");
-  when_durable(now, reply, [this, author, cause, name, reply] {
-    if (!player_changes_.insert(author).second)
-      return refuse(reply, name + ": " + busy_text(author));
+  player_changes_.insert(author);
+  player_orders_.push_back(
+      {author, cause, world_.order().authority().queue().newest_of(author), std::move(reply)});
+  step_player_changes(now);
+}
+
+void RollbackService::step_player_changes(const Clocks& now) {
+  const bool is_closed = !world_.order().accepts_edits();
+  std::vector<PlayerChangeOrder> ready;
+  std::erase_if(player_orders_, [&](PlayerChangeOrder& order) {
+    const EditQueue& queue = world_.order().authority().queue();
+    std::erase_if(order.before, [&](const OperationId& op) { return !queue.has(op); });
+    if (!order.before.empty() && !is_closed) return false;
+    ready.push_back(std::move(order));
+    return true;
+  });
+  for (PlayerChangeOrder& order : ready) find_player_change(std::move(order), now);
+}
+
+void RollbackService::find_player_change(PlayerChangeOrder order, const Clocks& now) {
+  // The author is free for another one if the log cannot be written any more.
+  CommandReply reply = [this, author = order.author,
+                        inner = order.reply](const CommandAnswer& answer) {
+    player_changes_.erase(author);
+    inner(answer);
+  };
+  when_durable(now, reply, [this, order = std::move(order)] {
     auto found = std::make_shared<SearchResult>(PlayerActionSearch());
+    const Sequence end = world_.order().durable();
     workers_.run(
-        [found, author, cause, end = world_.order().durable(), should_continue = should_continue()](
-            WorldReader& reader, const Generator& generator) {
-          *found = next_player_change(reader, generator, author, cause, end, should_continue);
+        [found, author = order.author, cause = order.cause, end, epoch = world_.order().epoch(),
+         should_continue = should_continue()](WorldReader& reader, const Generator& generator) {
+          *found =
+              next_player_change(reader, generator, author, cause, end, epoch, should_continue);
         },
-        [this, found, author, cause, name, reply](const std::string& error) {
-          player_changes_.erase(author);
-          if (!error.empty()) return refuse(reply, name + ": " + error);
-          start_player_change(author, cause, *found, reply);
+        [this, found, order, end](const std::string& error) {
+          player_changes_.erase(order.author);
+          if (!error.empty()) return refuse(order.reply, name_of(order.cause) + ": " + error);
+          start_player_change(order, *found, end);
         });
   });
 }
 
-void RollbackService::start_player_change(AuthorId author, Cause cause, SearchResult& found,
-                                          const CommandReply& reply) {
-  const std::string name = name_of(cause);
+void RollbackService::start_player_change(const PlayerChangeOrder& asked, SearchResult& found,
+                                          Sequence end) {
+  const std::string name = name_of(asked.cause);
   if (!found) {
-    return refuse(reply, found.error().kind == StoreError::Kind::cancelled
-                             ? name + ": not now: the server stops"
-                             : name + ": " + found.error().message());
+    return refuse(asked.reply, found.error().kind == StoreError::Kind::cancelled
+                                   ? name + ": not now: the server stops"
+                                   : name + ": " + found.error().message());
   }
   if (!found->change && found->has_given_up) {
-    return refuse(reply, name + ": nothing is left of the " + std::to_string(kPassedActionsMax) +
-                             " edits that are next: others have built over them, "
-                             "or they changed nothing; it looks no further back");
+    return refuse(asked.reply, name + ": nothing is left of the " +
+                                   std::to_string(kPassedActionsMax) +
+                                   " edits that are next: others have built over them, "
+                                   "or they changed nothing; it looks no further back");
   }
-  if (!found->change) return refuse(reply, "nothing to " + name);
+  if (!found->change) return refuse(asked.reply, "nothing to " + name);
   PlayerChange& change = *found->change;
+  player_changes_.insert(asked.author);
+  if (asked.cause == Cause::undo && !asked.has_ended_action) {
+    const Sequence newest = world_.people().edits().end_action(asked.author, change.action);
+    const auto before = world_.order().authority().queue().newest_of(asked.author);
+    // Edits of the action that came after the search, or are still to be ordered, are undone, too.
+    if (newest > end || (newest != 0 && !before.empty())) {
+      player_orders_.push_back({asked.author, asked.cause, before, asked.reply, true});
+      return;
+    }
+  }
   RestoreOrder order;
-  order.author = author;
+  order.author = asked.author;
   order.instance = player_instance_;
-  order.first_seq = std::max(world_.order().resolved(author, player_instance_), kGroupBegins) + 1;
-  order.payer = author;
-  order.cause = cause;
+  order.first_seq =
+      std::max(world_.order().resolved(asked.author, player_instance_), kGroupBegins) + 1;
+  order.payer = asked.author;
+  order.cause = asked.cause;
   order.subject = change.action;
   order.selection = std::make_shared<const Selection>(std::move(change.selection));
-  player_changes_.insert(author);
-  start_job(std::move(order), name, reply).player_change_of = author;
+  start_job(std::move(order), name, asked.reply).player_change_of = asked.author;
 }
 
 void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
@@ -371,10 +419,20 @@ void RollbackService::report_previews(const Clocks& now) {
   }
 }
 
-void RollbackService::report_wait(Job& job) const {
-  if (!job.player_change_of || job.has_reported_wait || job.wait_text().empty()) return;
-  job.has_reported_wait = true;
-  job.reply(CommandAnswer::progress(job.name + " " + job.wait_text()));
+void RollbackService::report_player_change(Job& job, const Clocks& now) const {
+  if (!job.player_change_of || job.job.state() != RestoreJob::State::applying) return;
+  if (!job.has_reported_wait && !job.wait_text().empty()) {
+    job.has_reported_wait = true;
+    job.reply(CommandAnswer::progress(job.name + " " + job.wait_text()));
+  }
+  if (job.report_us == 0) {
+    job.began_us = now.steady_us;
+    job.report_us = now.steady_us + kReportIntervalUs;
+  }
+  if (now.steady_us < job.report_us) return;
+  job.report_us = now.steady_us + kReportIntervalUs;
+  job.reply(CommandAnswer::progress(
+      job.name + " " + progress_text(job.job.progress(), now.steady_us - job.began_us)));
 }
 
 bool RollbackService::answer_if_ended(Job& job) {
@@ -415,6 +473,7 @@ bool RollbackService::answer_if_ended(Job& job) {
 }
 
 void RollbackService::tick(const Clocks& now) {
+  step_player_changes(now);
   std::vector<Waiting> ready;
   const bool is_closed = !world_.order().accepts_edits();
   std::erase_if(waiting_, [&](Waiting& w) {
@@ -433,7 +492,7 @@ void RollbackService::tick(const Clocks& now) {
   const std::vector<std::shared_ptr<Job>> jobs(jobs_.begin(), jobs_.end());
   for (const auto& job : jobs) {
     step(*job, now);
-    report_wait(*job);
+    report_player_change(*job, now);
   }
   std::erase_if(jobs_, [this](const auto& job) { return answer_if_ended(*job); });
 }

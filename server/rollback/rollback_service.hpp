@@ -43,7 +43,8 @@ class RollbackService {
   RollbackService(const RollbackService&) = delete;
   RollbackService& operator=(const RollbackService&) = delete;
 
-  /// Undoes or redoes the author's next action. An author has at most one of both under way.
+  /// Undoes or redoes the author's next action. An author has at most one of both under way. An action
+  /// under way is ended first: it takes no more edits.
   void undo(AuthorId author, const Clocks& now, CommandReply reply) {
     change_player_actions(author, Cause::undo, now, std::move(reply));
   }
@@ -82,6 +83,14 @@ class RollbackService {
     std::function<void()> begin;
     CommandReply reply;
   };
+  /// An undo or redo that waits until the edits of its author are ordered that were accepted before.
+  struct PlayerChangeOrder {
+    AuthorId author = 0;
+    Cause cause = Cause::undo;
+    std::vector<OperationId> before;
+    CommandReply reply;
+    bool has_ended_action = false;  // the action was found before, and was ended
+  };
   /// A preview that a worker computes, and the caller who waits for it.
   struct Computing {
     std::shared_ptr<RollbackPreview> preview;
@@ -91,8 +100,11 @@ class RollbackService {
   using SearchResult = StoreResult<PlayerActionSearch>;
 
   void change_player_actions(AuthorId author, Cause cause, const Clocks& now, CommandReply reply);
-  void start_player_change(AuthorId author, Cause cause, SearchResult& found,
-                           const CommandReply& reply);
+  /// Looks for the action as soon as the edits before are ordered and durable.
+  void find_player_change(PlayerChangeOrder order, const Clocks& now);
+  void start_player_change(const PlayerChangeOrder& order, SearchResult& found, Sequence end);
+  /// Begins the undos and redos whose edits before are ordered.
+  void step_player_changes(const Clocks& now);
   void answer_preview(RollbackPreview& preview, const std::string& reader_error,
                       const CommandReply& reply);
   /// Returns the first edit of the rollback that `id` names, or 0 after it has refused the command.
@@ -104,8 +116,8 @@ class RollbackService {
   void step(Job& job, const Clocks& now);
   /// Answers the callers of previews that take long with the progress.
   void report_previews(const Clocks& now);
-  /// Answers once that an undo or redo waits.
-  void report_wait(Job& job) const;
+  /// Answers once that an undo or redo waits, and now and then how far it is.
+  void report_player_change(Job& job, const Clocks& now) const;
   bool answer_if_ended(Job& job);
   /// Returns the reason why the author cannot have another undo or redo now.
   std::string busy_text(AuthorId author) const;
@@ -123,7 +135,8 @@ class RollbackService {
   std::vector<Computing> computing_;
   std::list<std::shared_ptr<Job>> jobs_;
   std::vector<Waiting> waiting_;
-  std::set<AuthorId> player_changes_;  // authors with an undo or redo under way
+  std::vector<PlayerChangeOrder> player_orders_;  // that wait for edits to be ordered
+  std::set<AuthorId> player_changes_;             // authors with an undo or redo under way
   /// The client instance of every undo and redo of this run. Each author counts its own sequences
   /// in it. There is one for all, because an instance leaves a watermark in the world for good
   /// (OperationWatermarks).

@@ -2,6 +2,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/os/thread_cpu_ns.hpp"
+#include "server/history/find_action.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "server/runtime/recovery.hpp"
 #include "server/runtime/visit_line.hpp"
@@ -87,6 +88,16 @@ void ServerEnvironment::read_log(Sequence first) {
   readers_.read_log(work, [this, found](const std::string& error) {
     if (!error.empty()) *found = failure(error);
     world_->cluster().log_read(*found, read_clocks());
+  });
+}
+
+void ServerEnvironment::find_action(const OperationId& first_op) {
+  const auto found = std::make_shared<std::optional<FoundAction>>();
+  const auto work = [found, first_op](WorldReader& reader, const Generator& /*generator*/) {
+    if (const auto action = runstone::find_action(reader, first_op)) *found = *action;
+  };
+  readers_.read_log(work, [this, found, first_op](const std::string& /*error*/) {
+    world_->people().edits().action_found(first_op, *found, read_clocks());
   });
 }
 

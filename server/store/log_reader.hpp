@@ -53,9 +53,19 @@ struct LogQuery {
   Sequence first = 1, last = kSequenceMax;  // both included
 };
 
+/// A record of the log without its edit.
+struct LogRow {
+  Version version;
+  OperationId op;
+  Cause cause = Cause::player;
+  Sequence subject = 0;
+  friend bool operator==(const LogRow&, const LogRow&) = default;
+};
+
 class LogReader : public virtual WorldInfo {
  public:
   using EachRecord = std::function<bool(const EditRecord&)>;
+  using EachRow = std::function<bool(const LogRow&)>;
 
   /// Returns the extent of the log. All of it is durable.
   virtual StoreResult<LogRange> log_range() = 0;
@@ -77,6 +87,10 @@ class LogReader : public virtual WorldInfo {
   virtual StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) = 0;
   /// Calls `each` for the records that answer the query, in order, until it returns false.
   virtual StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) = 0;
+  /// Calls `each` for the records of an author up to `last`, the newest first, until it returns false.
+  /// It reads neither edits nor checksums, so it serves to find records: whoever acts by one reads it
+  /// with read_log() or query_log(). Cost: O(log edits) for each.
+  virtual StoreResult<void> rows_of_author(AuthorId author, Sequence last, const EachRow& each) = 0;
   /// Calls `each` for all changes of rights, in order, until it returns false. They include those
   /// that a compaction moved out of the log.
   virtual StoreResult<void> read_rights(const EachRecord& each) = 0;

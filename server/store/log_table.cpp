@@ -20,6 +20,8 @@ std::string select_text() {
          " FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
 }
 
+// The rows that rows_of_author() finds with one statement. PostgreSQL returns all of them at once.
+constexpr std::size_t kRowsPortion = 16'384;
 constexpr int kColumns = 16;  // of a row, but for `log`
 // The rows that one statement inserts. PostgreSQL takes less than half the time for a row then; with
 // SQLite the time does not change.
@@ -192,6 +194,38 @@ StoreResult<std::vector<AuthorId>> LogTable::authors_without(
     });
     if (!has_row) missing.push_back(static_cast<AuthorId>(author));
   }
+}
+
+StoreResult<void> LogTable::rows_of_author(const LogRange& range, AuthorId author, Sequence last,
+                                           const std::function<bool(const LogRow&)>& each) {
+  auto rows = database_->prepare(
+      "SELECT seq, epoch, instance, client_seq, cause, subject FROM edit_log" +
+      indexed_by(*database_, "edit_log_author") +
+      " WHERE log = 0 AND author = ?1 AND seq BETWEEN ?2 AND ?3 ORDER BY seq DESC LIMIT " +
+      std::to_string(kRowsPortion));
+  if (!rows) return failed(rows.error());
+  rows->bind(1, std::int64_t{author}).bind(2, static_cast<std::int64_t>(range.first));
+  Sequence until = std::min(last, range.last.version.seq);
+  for (std::size_t found = kRowsPortion; found == kRowsPortion;) {
+    rows->rewind();
+    rows->bind(3, static_cast<std::int64_t>(until));
+    for (found = 0;; ++found) {
+      const auto more = rows->step();
+      if (!more) return failed(more.error());
+      if (!*more) break;
+      LogRow row;
+      row.version = {static_cast<Epoch>(rows->integer(1)), static_cast<Sequence>(rows->integer(0))};
+      row.op = {author, static_cast<ClientInstance>(rows->integer(2)),
+                static_cast<ClientSequence>(rows->integer(3))};
+      if (!in_range(rows->integer(4), kCauseMax))
+        return corrupt(row.version.seq, "has an unknown cause");
+      row.cause = static_cast<Cause>(rows->integer(4));
+      row.subject = static_cast<Sequence>(rows->integer(5));
+      until = row.version.seq - 1;
+      if (!each(row)) return {};
+    }
+  }
+  return {};
 }
 
 StoreResult<sql::Statement> LogTable::reader() {

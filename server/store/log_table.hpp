@@ -28,6 +28,9 @@ class LogTable {
   StoreResult<void> read(const LogRange& range, Sequence first, Sequence last,
                          const std::function<bool(const EditRecord&)>& each);
 
+  /// Calls `each` as LogReader::rows_of_author().
+  StoreResult<void> rows_of_author(const LogRange& range, AuthorId author, Sequence last,
+                                   const std::function<bool(const LogRow&)>& each);
   /// Returns the authors of edits in the log that `players` lacks, ascending. Cost: O(authors
   /// (log rows + players)), because an index skips from author to author.
   StoreResult<std::vector<AuthorId>> authors_without(const std::vector<PlayerRow>& players);

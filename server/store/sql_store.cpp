@@ -357,6 +357,16 @@ StoreResult<void> SqlStore::query_log(const LogQuery& query, const EachRecord& e
   });
 }
 
+StoreResult<void> SqlStore::rows_of_author(AuthorId author, Sequence last, const EachRow& each) {
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto head = meta_table_.log_head();
+    if (!head) return failed(head.error());
+    const auto range = log_.range(*head);
+    if (!range) return failed(range.error());
+    return log_.rows_of_author(*range, author, last, each);
+  });
+}
+
 StoreResult<Sequence> SqlStore::sequence_at(TimeUs time_us) {
   return at_one_moment<Sequence>([&]() -> StoreResult<Sequence> {
     const auto head = meta_table_.log_head();

@@ -46,6 +46,7 @@ class SqlStore final : public Store {
   StoreResult<Sequence> sequence_at(TimeUs time_us) override;
   StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) override;
   StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) override;
+  StoreResult<void> rows_of_author(AuthorId author, Sequence last, const EachRow& each) override;
   StoreResult<void> read_rights(const EachRecord& each) override;
   using LogReader::materials;
   StoreResult<MaterialTable> materials(Sequence at) override;

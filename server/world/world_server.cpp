@@ -250,6 +250,7 @@ void WorldServer::tick(const Clocks& now) {
   Cluster& cluster = rooms_->cluster;
   Ground& ground = rooms_->ground;
   People& people = rooms_->people;
+  people.edits().step(now, [&](const Session& session) { cluster.count_edit(session); });
   commit_one(now);
   if (!cluster.is_following()) {
     const auto news = rooms_->changes.follow_kept_jump(cluster.correction_refusal(), now);

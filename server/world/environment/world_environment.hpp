@@ -47,6 +47,12 @@ struct FoundLogMarks {
   std::vector<LogMark> marks;  // as in LogMarks
 };
 
+/// What the log has of an action.
+struct FoundAction {
+  Sequence first = 0;      // its first edit; 0: the log does not have it
+  bool is_undone = false;  // its last toggle is an undo
+};
+
 /// Why a chunk could not be loaded.
 enum class LoadFailure : std::uint8_t {
   damaged,  // its row does not decode, or contradicts the log
@@ -174,6 +180,10 @@ class WorldEnvironment {
   /// Reads durable records from `first` on, on a reader. Called at most once until it is answered.
   /// Answer: Cluster::log_read().
   virtual void read_log(Sequence /*first*/) {}
+
+  /// Looks an action up in the log, on a reader, by the operation of its first edit. Answer:
+  /// EditRequests::action_found().
+  virtual void find_action(const OperationId& /*first_op*/) {}
 
   /// Carries out a client's command. The key of the player decides its permissions. Called at most
   /// once for a session until it is answered. Answers: Commands::answer(), the last one

@@ -47,6 +47,12 @@ Result<void, RejectReason> Authority::enqueue(const EditOffer& offer) {
   return {};
 }
 
+Sequence Authority::subject_of(const EditOffer& offer, Sequence seq) {
+  if (offer.cause != Cause::player) return offer.subject;
+  return offer.is_of_large_action ? large_actions_.order(offer.op, offer.action, seq)
+                                  : actions_.order(offer.op, offer.action, seq);
+}
+
 std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t large_room) {
   log_clock_.advance(now);
   const std::vector<EditOffer> offers = queue_.take(large_room);
@@ -63,9 +69,7 @@ std::optional<OrderedBatch> Authority::commit(const Clocks& now, std::uint64_t l
     ordered.ordered_us = now.steady_us;
     if (offer.cause == Cause::player) edit_waits_.add(now.steady_us - offer.arrived_us);
     ordered.edit = offer.edit;
-    ordered.subject = offer.cause == Cause::player
-                          ? actions_.order(offer.op, offer.action, version.seq)
-                          : offer.subject;
+    ordered.subject = subject_of(offer, version.seq);
     const Sequence subject = ordered.subject;
     push(std::move(ordered), version, batch);
     EditRecord& record = batch.records.emplace_back(

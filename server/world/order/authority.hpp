@@ -20,6 +20,7 @@
 #include "server/world/environment/clocks.hpp"
 #include "server/world/environment/world_start.hpp"
 #include "server/world/order/edit_queue.hpp"
+#include "server/world/order/large_actions.hpp"
 #include "server/world/order/log_clock.hpp"
 #include "server/world/order/open_actions.hpp"
 #include "server/world/order/operation_watermarks.hpp"
@@ -52,6 +53,8 @@ class Authority {
   std::optional<RejectReason> check(const EditDescriptor& edit) const {
     return check_edit(edit, limits_);
   }
+  /// Returns the limits of players' edits.
+  const EditLimits& limits() const { return limits_; }
   /// Queues an edit, so that the next commit() orders it. Fails if the edit is rejected. Either way
   /// the operation is resolved: a second call for it fails in the same way, or as already_resolved.
   /// An edit of a player must pass check_edit(), any other edit check_server_edit(). Requires that
@@ -62,6 +65,8 @@ class Authority {
   /// Resolves an operation that was rejected by a check outside of Authority.
   void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
+  /// The actions of the clients with the feature large actions.
+  LargeActions& large_actions() { return large_actions_; }
   const EditQueue& queue() const { return queue_; }
   /// Returns how long the edits of players waited to be ordered.
   const WaitHistogram& edit_waits() const { return edit_waits_; }
@@ -95,6 +100,8 @@ class Authority {
   Sequence head() const { return head_; }
 
  private:
+  /// Returns the subject of an edit that gets the sequence `seq`.
+  Sequence subject_of(const EditOffer& offer, Sequence seq);
   /// Puts an edit on the stacks of the chunks that it touches, and adds it to the commit.
   void push(OrderedEdit ordered, Version version, OrderedBatch& batch);
   /// Makes all_touched a set, and publishes its chunks.
@@ -110,6 +117,7 @@ class Authority {
   EditQueue queue_;
   WaitHistogram edit_waits_;
   OpenActions actions_;
+  LargeActions large_actions_;
 };
 
 }  // namespace runstone

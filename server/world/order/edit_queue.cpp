@@ -66,6 +66,15 @@ bool EditQueue::has(const OperationId& op) const {
   return found != lane->second.end() && seq_of(*found) == op.seq;
 }
 
+std::vector<OperationId> EditQueue::newest_of(AuthorId author) const {
+  std::vector<OperationId> out;
+  for (auto lane = lanes_.lower_bound(Client{author, 0, false});
+       lane != lanes_.end() && std::get<AuthorId>(lane->first) == author; ++lane) {
+    if (std::get<bool>(lane->first)) out.push_back(lane->second.back().offer.op);
+  }
+  return out;
+}
+
 bool EditQueue::has_of(AuthorId author) const {
   const auto lane = lanes_.lower_bound(Client{author, 0, false});
   return lane != lanes_.end() && std::get<AuthorId>(lane->first) == author;

@@ -28,6 +28,7 @@ struct EditOffer {
   /// For an edit of a player: the client sequence of the first edit of its action; 0: none.
   ClientSequence action = 0;
   TimeUs arrived_us = 0;  // an edit of a player: when it was accepted, by the server's steady clock
+  bool is_of_large_action = false;  // `action` is remembered by LargeActions
 };
 
 /// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its
@@ -69,6 +70,8 @@ class EditQueue {
   /// Returns true if the operation waits. Requires that the operations of a client were pushed in
   /// ascending order. Cost: O(log edits).
   bool has(const OperationId& op) const;
+  /// Returns the newest waiting edit of each client of the author. Cost: O(log clients).
+  std::vector<OperationId> newest_of(AuthorId author) const;
   /// Returns true if an edit of the author waits. Cost: O(log clients).
   bool has_of(AuthorId author) const;
   std::size_t size() const { return size_; }

@@ -311,6 +311,10 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   Welcome welcome = welcome_of(session.key);
   welcome.encoding = choose_encoding(config, hello.encodings);
   welcome.features = session.features;
+  if (session.has(kFeatureLargeActions)) {
+    welcome.waiting_edits_max = kWaitingEditsMax;
+    welcome.waiting_edit_bytes_max = kWaitingEditBytesMax;
+  }
   // A client sends what it makes of the password on encrypted connections only.
   const std::optional<JoinPassword>& password = world_.rights.state().password().value;
   if (password && session.binding) welcome.password_salt = password->salt;

@@ -17,8 +17,8 @@ People::People(const World& world, const WorldStart& start, const RandomBytes& r
       chat_(world.config, start, world.environment, world.sessions, world.order, world.rights),
       commands_(world.environment, world.sessions, world.ground),
       previews_(world.config, world.sessions, world.order, world.receipts, world.ground),
-      edits_(world.config, world.counters, world.sessions, world.order, world.receipts,
-             world.rights, world.quotas),
+      edits_(world.config, world.environment, world.counters, world.sessions, world.order,
+             world.receipts, world.rights, world.quotas),
       joining_({world.config, world.environment, world.sessions, world.order, world.receipts,
                 world.rights, world.quotas, world.ground, world.changes, names_, presence_, chat_},
                random) {}

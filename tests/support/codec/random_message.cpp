@@ -150,6 +150,8 @@ Welcome any_welcome(SplitMix64& rng) {
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);
   if (rng.below(2) == 0) draw(rng, m.password_salt.emplace());
+  m.waiting_edits_max = 1 + rng.below(1'000);
+  m.waiting_edit_bytes_max = kWaitingEditBytesMax + rng.below(1'000);
   return m;
 }
 
@@ -592,6 +594,7 @@ EditRequest any_edit_request(SplitMix64& rng) {
     request.edit = any_edit(rng);
   }
   if (rng.below(2) == 0) request.action = 1 + any64(rng) % request.client_seq;
+  request.is_optional = request.action != 0 && rng.below(2) == 0;
   return request;
 }
 

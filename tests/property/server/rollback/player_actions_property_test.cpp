@@ -63,18 +63,30 @@ class ChunkLog {
     oracle_apply(now_, kOrigin, entry.edits);
     log_.push_back(std::move(entry));
   }
-  std::vector<PlayerRecord> player_records() const {
-    std::vector<PlayerRecord> out;
+  PlayerRanges player_records() const {
+    PlayerRanges out;
     for (std::size_t i = 0; i < log_.size(); ++i) {
-      if (log_[i].author == kMe) out.push_back({i + 1, log_[i].cause, log_[i].subject});
+      if (log_[i].author != kMe) continue;
+      const bool continues = !out.empty() && log_[i].subject != 0 &&
+                             out.back().cause == log_[i].cause &&
+                             out.back().subject == log_[i].subject;
+      if (continues) {
+        out.back().last = i + 1;
+      } else {
+        out.push_back({i + 1, i + 1, log_[i].cause, log_[i].subject});
+      }
     }
     return out;
   }
-  bool restore(const std::vector<Sequence>& selected, Cause cause, Sequence subject) {
+  bool restore(const PlayerRanges& selected, Cause cause, Sequence subject) {
     ApplyScratch scratch;
     ChunkRestore chunk(start_, kOrigin);
     for (std::size_t i = 0; i < log_.size(); ++i) {
-      const bool is_selected = std::binary_search(selected.begin(), selected.end(), i + 1);
+      const bool is_selected =
+          log_[i].author == kMe &&
+          std::any_of(selected.begin(), selected.end(), [i](const PlayerRange& range) {
+            return range.first <= i + 1 && i + 1 <= range.last;
+          });
       for (const EditDescriptor& edit : log_[i].edits) chunk.add(edit, is_selected, scratch);
     }
     chunk.flush(scratch);

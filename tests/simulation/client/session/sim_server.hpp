@@ -15,6 +15,7 @@
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/message_table.hpp"
+#include "server/history/find_action.hpp"
 #include "server/history/missing_edits.hpp"
 #include "server/runtime/recovery.hpp"
 #include "server/store/store.hpp"
@@ -294,6 +295,13 @@ class SimServer : public WorldEnvironment {
     later(500, 30'000, [this, saved = std::move(chunks), checkpoint] {
       done(store_->save_snapshots(saved, checkpoint));
       world_->snapshots_saved(now());
+    });
+  }
+  void find_action(const OperationId& first_op) override {
+    later(100, 20'000, [this, first_op] {
+      const auto found = runstone::find_action(*store_, first_op);
+      world_->people().edits().action_found(first_op, found ? std::optional(*found) : std::nullopt,
+                                            now());
     });
   }
   void report(OperatorLogLevel level, const std::string& line) override {

@@ -43,6 +43,15 @@ class ModelStore final : public Store {
       return !overlaps(bounding_box(record.edit), *query.box) || each(record);
     });
   }
+  StoreResult<void> rows_of_author(AuthorId author, Sequence last, const EachRow& each) override {
+    const auto& log = database_.log();
+    for (Sequence seq = std::min<Sequence>(last, log.size()); seq > 0; --seq) {
+      const EditRecord& record = log[seq - 1];
+      if (record.op.author != author) continue;
+      if (!each({record.version, record.op, record.cause, record.subject})) break;
+    }
+    return {};
+  }
   StoreResult<void> read_rights(const EachRecord& each) override {
     for (const EditRecord& record : database_.log()) {
       if (rights_change_of(record.edit) != nullptr && !each(record)) break;

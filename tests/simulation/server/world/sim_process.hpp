@@ -489,6 +489,13 @@ class SimProcess final : public SimServer {
       world_->cluster().log_read(read, now());
     });
   }
+  void find_action(const OperationId& first_op) override {
+    ask([this, first_op] {
+      const auto found = runstone::find_action(*store_, first_op);
+      world_->people().edits().action_found(first_op, found ? std::optional(*found) : std::nullopt,
+                                            now());
+    });
+  }
   void report(OperatorLogLevel level, const std::string& line) override {
     tell(line);
     if (level == OperatorLogLevel::error) throw SimFault(address_ + " logs an error: " + line);

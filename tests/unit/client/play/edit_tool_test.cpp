@@ -203,3 +203,38 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
   }
   CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
 }
+
+TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one action",
+                 "[client_app]") {
+  box.select(VoxelBox{{0, 0, 0}, {30, 30, 30}});  // 27,000 voxels; an edit has 1,000
+  REQUIRE(tool.propose(box.fill(1), kNow).has_value());
+  CHECK(tool.is_building());
+  CHECK(session.replica().local_edits().all().empty());
+  REQUIRE_FALSE(tool.step_build(kNow).has_value());
+  const auto& edits = session.replica().local_edits().all();
+  REQUIRE(edits.size() == 1);  // the first one names the action
+  CHECK(edits.begin()->second.action == edits.begin()->first);
+  CHECK(edits.begin()->second.is_optional);
+  CHECK(tool.build_text().starts_with("fill: 0 percent"));
+  CHECK(tool.propose(box.fill(2), kNow).error() ==
+        "a fill is under way: wait for it, or stop it first");
+  REQUIRE(tool.stop_building());
+  const ClientSequence first = edits.begin()->first;
+  receive(Reject{first, RejectReason::not_permitted, "the ground is protected: spawn", 0});
+  tool.take(session.replica().drain_changes(), kNow);
+  const auto ended = tool.step_build(kNow);
+  REQUIRE(ended.has_value());
+  CHECK(
+      ended->starts_with("fill: 0 voxels; left out 512 voxels in 1 part: the ground is protected: "
+                         "spawn; it ended early: you have stopped it"));
+  CHECK_FALSE(tool.is_building());
+  CHECK_FALSE(tool.stop_building());
+}
+
+TEST_CASE_METHOD(Fixture, "a clear of any size begins where the selection was copied",
+                 "[client_app]") {
+  box.select(VoxelBox{{0, 0, 0}, {8, 8, 8}});
+  REQUIRE(tool.propose(box.fill(kEmpty), kNow).has_value());
+  CHECK_FALSE(tool.is_building());  // one edit suffices
+  CHECK(session.replica().local_edits().all().size() == 1);
+}

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "common/builds/paste_source.hpp"
 #include "common/core/hash.hpp"
-#include "common/runs/reorder.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "tests/support/builds/cell_grid.hpp"
 #include "tests/support/codec/authority_model.hpp"
 #include "tests/support/codec/chunks_message.hpp"
 #include "tests/support/edits/edit_oracle.hpp"
@@ -37,7 +39,7 @@ struct CopyFixture {
     }
   }
   std::string error_of(const VoxelBox& box) const {
-    const auto copied = copy_box(replica, box, CopyEmpty::as_untouched);
+    const auto copied = copy_box(replica, box);
     return copied ? "copied" : copied.error().what;
   }
   SplitMix64 rng{51};
@@ -46,8 +48,7 @@ struct CopyFixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(CopyFixture, "a copy has the shown voxels of its box, and empty ones as chosen",
-                 "[replica]") {
+TEST_CASE_METHOD(CopyFixture, "a copy has the shown voxels of its box", "[replica]") {
   load();
   for (int round = 0; round < 60; ++round) {
     const auto low = [&] { return rng.between(-32, 31); };
@@ -56,59 +57,59 @@ TEST_CASE_METHOD(CopyFixture, "a copy has the shown voxels of its box, and empty
       return rng.between(from + 1, std::min(from + 40, 32));
     };
     const VoxelBox box{min, {end(min.x), end(min.y), end(min.z)}};
-    const CopyEmpty empty = round % 2 == 0 ? CopyEmpty::as_empty : CopyEmpty::as_untouched;
-    const auto copied = copy_box(replica, box, empty);
-    bool any = false;
+    const auto copied = copy_box(replica, box);
+    REQUIRE(copied);
+    REQUIRE(broken_invariant(**copied) == "");
+    REQUIRE((*copied)->volume() == (*copied)->touched());
     for (VoxelPos p = box.min; p.x < box.max.x; ++p.x) {
       for (p.y = box.min.y; p.y < box.max.y; ++p.y) {
-        for (p.z = box.min.z; p.z < box.max.z; ++p.z) {
-          const Material shown = *replica.shown_at(p);
-          const bool leaves = shown == kEmpty && empty == CopyEmpty::as_untouched;
-          any = any || !leaves;
-          if (!copied) continue;
-          const LocalPos cell{static_cast<std::uint8_t>(p.x - min.x),
-                              static_cast<std::uint8_t>(p.y - min.y),
-                              static_cast<std::uint8_t>(p.z - min.z)};
-          REQUIRE((*copied)->at(cell) == (leaves ? std::nullopt : std::optional<Material>(shown)));
-        }
+        for (p.z = box.min.z; p.z < box.max.z; ++p.z)
+          REQUIRE((*copied)->at({p.x - min.x, p.y - min.y, p.z - min.z}) == replica.shown_at(p));
       }
     }
-    REQUIRE(copied.has_value() == any);
   }
 }
 
 TEST_CASE_METHOD(CopyFixture, "a copy pasted where it was changes nothing", "[replica]") {
   load();
   const VoxelBox box{{-20, -7, -30}, {25, 30, 31}};
-  for (const CopyEmpty empty : {CopyEmpty::as_empty, CopyEmpty::as_untouched}) {
-    const auto copied = copy_box(replica, box, empty);
+  PasteLimits limits;
+  limits.chunk_edge = kCopyEdge;
+  limits.clipboard_bytes_max = 2000;
+  for (const EmptyCells empty : {EmptyCells::pasted, EmptyCells::skipped}) {
+    const auto copied = copy_box(replica, box);
     REQUIRE(copied.has_value());
-    const EditDescriptor edit{Paste{box.min, *copied, {}}, {}, kEmpty};
+    PasteSource source(*copied, box.min, {}, empty, limits);
     ApplyScratch scratch;
-    for (const ChunkCoord at : touched_chunks(edit, kCopyEdge)) {
-      RunChunk chunk = *replica.shown({0, at});
-      Digest digest;
-      CHECK_FALSE(
-          apply_stack(chunk, digest, origin_of(at, kCopyEdge), {&edit, 1}, scratch).changed);
+    int edits = 0;
+    while (const auto edit = source.next()) {
+      ++edits;
+      for (const ChunkCoord at : touched_chunks(*edit, kCopyEdge)) {
+        RunChunk chunk = *replica.shown({0, at});
+        Digest digest;
+        CHECK_FALSE(
+            apply_stack(chunk, digest, origin_of(at, kCopyEdge), {&*edit, 1}, scratch).changed);
+      }
     }
+    CHECK(edits > 1);
   }
 }
 
 TEST_CASE_METHOD(CopyFixture, "a copy that cannot be made returns the reason", "[replica]") {
-  CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}, CopyEmpty::as_empty).error().what ==
+  CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}).error().what ==
         std::string("no world is open"));
   load();
   CHECK(error_of({{0, 0, 0}, {32, 32, 33}}) == "a chunk of the box to copy is not loaded");
   CHECK(error_of({{-33, 0, 0}, {1, 1, 1}}) == "a chunk of the box to copy is not loaded");
-  CHECK(error_of({{0, 0, 0}, {129, 1, 1}}) == "box to copy is longer than 128 voxels");
   CHECK(error_of({{0, 0, 0}, {0, 1, 1}}) == "box to copy is empty");
   CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) ==
         "box to copy reaches outside the world");
-  ChunkSnapshot air;
-  air.key = {0, {0, 2, 0}};
-  air.chunk.voxels = uniform_chunk(Extent::cube(kCopyEdge), kEmpty);
-  replica.receive(test::chunks_of(std::move(air)), kNow);
-  CHECK(error_of({{0, 32, 0}, {4, 36, 4}}) == "clipboard has no material");
+  CHECK(error_of({{-kWorldLimit, 0, 0}, {kWorldLimit, 64, 64}}) ==
+        "build is longer than 1,048,576 voxels");
+  CHECK(error_of({{0, 0, 0}, {1 << 20, 1 << 10, 1 << 20}}) == "build takes too much memory");
+  const auto small = copy_box(replica, {{-20, -7, -30}, {25, 30, 31}}, 2000);
+  REQUIRE_FALSE(small);
+  CHECK(small.error().code == ErrorCode::limit_exceeded);
 }
 
 }  // namespace runstone::test

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "client/script/script_runner.hpp"
+#include "common/builds/paste_source.hpp"
 #include "common/edits/clipboard/clipboard_builder.hpp"
 
 namespace runstone::test {
@@ -59,7 +60,7 @@ struct FakeScriptHost final : ScriptHost {
     const auto it = voxels.find(pos);
     return it == voxels.end() ? kEmpty : it->second;
   }
-  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+  Result<BuildPtr> copy(const VoxelBox& box) const override {
     copied.push_back(box);
     if (box.min.x > 1000) return runstone::fail(ErrorCode::not_found, "it is far");
     const auto side = [](std::int32_t low, std::int32_t high) {
@@ -71,9 +72,9 @@ struct FakeScriptHost final : ScriptHost {
     while (cells.filled() < static_cast<std::uint32_t>(box.max.x - box.min.x) *
                                 static_cast<std::uint32_t>(box.max.y - box.min.y) *
                                 static_cast<std::uint32_t>(box.max.z - box.min.z)) {
-      cells.append(1, solid ? std::nullopt : std::optional<Material>(kEmpty));
+      cells.append(1, kEmpty);
     }
-    return cells.finish();
+    return build_of(**cells.finish());
   }
   std::optional<RayHit> pick() const override { return hit; }
   ToolBox tools;
@@ -108,6 +109,21 @@ struct FakeScriptHost final : ScriptHost {
     if (!takes) return failure("the past cannot be edited");
     return {};
   }
+  std::uint64_t build_from_voxels = 1'000'000;  // edits of more voxels are actions
+  std::vector<ToolAction> actions;
+  std::optional<Result<void, std::string>> ended_action;
+  bool needs_build(const ToolAction& action) const override {
+    return !action.pastes.empty() ||
+           std::any_of(action.edits.begin(), action.edits.end(), [&](const EditDescriptor& edit) {
+             return counted_voxels(edit) > build_from_voxels;
+           });
+  }
+  Result<void, std::string> build(const ToolAction& action) override {
+    actions.push_back(action);
+    if (!takes) return failure("another action is under way");
+    return {};
+  }
+  std::optional<Result<void, std::string>> built() const override { return ended_action; }
   bool loaded() const override { return is_loaded; }
   bool sees_horizon() const override { return is_horizon_seen; }
   bool durable() const override { return is_durable; }

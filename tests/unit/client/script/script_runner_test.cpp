@@ -38,23 +38,48 @@ TEST_CASE_METHOD(ScriptBench, "a stroke has the points of its command", "[bots]"
   CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
 }
 
-TEST_CASE_METHOD(ScriptBench, "a paste has the copied voxels and the orientation of the command",
+TEST_CASE_METHOD(ScriptBench, "a paste has the copied voxels, turned as the command says",
                  "[bots]") {
-  run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 1 0 0\ncopy a 0 0 0 0 0 0\n"
+  run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 0 0 1\ncopy a 0 0 0 0 0 0\n"
       "paste b ~ 7 -2 rotate 1 mirror x rotate -1 only:sand\npaste a 1 2 3\n");
   CHECK(runner->failures().empty());
   REQUIRE(host.copied.size() == 3);
   CHECK(host.copied[0] == VoxelBox{{1, 2, 3}, {6, 5, 31}});
   REQUIRE(host.edits.size() == 2);
-  const auto b = *host.copy({{0, 0, 0}, {2, 1, 1}}, false);
   // A quarter turn, a mirror along x and the quarter turn back are a mirror along z.
-  CHECK(host.edits[0].edit ==
-        EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
-                       {MaskKind::only_material, 2},
-                       kEmpty});
-  const auto a = *host.copy({{0, 0, 0}, {1, 1, 1}}, false);  // the newer one of that name
-  CHECK(host.edits[1].edit == EditDescriptor{runstone::Paste{{1, 2, 3}, a, {}}, {}, kEmpty});
-  CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
+  CHECK(host.edits[0].edit.mask == Mask{MaskKind::only_material, 2});
+  const auto& b = std::get<runstone::Paste>(host.edits[0].edit.shape);
+  CHECK(b.at == VoxelPos{10, 7, -2});
+  CHECK(b.clipboard->extent() == Extent{1, 1, 2});
+  CHECK(b.clipboard->at({0, 0, 0}) == kEmpty);
+  CHECK(b.clipboard->at({0, 0, 1}) == Material{5});
+  const auto& a = std::get<runstone::Paste>(host.edits[1].edit.shape);  // the newer one
+  CHECK(a.at == VoxelPos{1, 2, 3});
+  CHECK(a.clipboard->extent() == Extent{1, 1, 1});
+}
+
+TEST_CASE_METHOD(ScriptBench, "a solid copy leaves the voxels alone where it is empty", "[bots]") {
+  run("copy a 0 0 0 1 0 0 solid\npaste a 1 2 3\n");
+  REQUIRE(host.edits.size() == 1);
+  CHECK(std::get<runstone::Paste>(host.edits[0].edit.shape).clipboard->touched() == 1);
+}
+
+TEST_CASE_METHOD(ScriptBench, "a box of any size is a large action, for whose end the script waits",
+                 "[bots]") {
+  load("box 0 0 0 199 99 199 stone\nset 1 2 3 stone");
+  runner->step(0);
+  REQUIRE(host.actions.size() == 1);
+  CHECK(host.edits.empty());
+  CHECK_FALSE(runner->finished());
+  host.ended_action = Result<void, std::string>();
+  runner->step(1'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 1);
+  host.ended_action = Result<void, std::string>(failure("cancelled"));
+  run("box 0 0 0 199 99 199 stone");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:1: edit refused: cancelled");
 }
 
 TEST_CASE_METHOD(ScriptBench,

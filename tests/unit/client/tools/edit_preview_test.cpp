@@ -117,8 +117,8 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
     }
     bench.box.set_symmetry(
         {static_cast<SymmetryKind>(rng.between(0, 4)), rng.between(-9, 9), rng.between(-9, 9)});
-    bench.box.rotate(rng.between(0, 3));
-    if (rng.between(0, 1) == 0) bench.box.mirror(Axis::x);
+    REQUIRE(bench.box.rotate(rng.between(0, 3)));
+    if (rng.between(0, 1) == 0) REQUIRE(bench.box.mirror(Axis::x));
     const auto place = [&] { return rng.between(-12, 11); };
     const auto aim = [&] {
       return bench.aim_at({place(), place(), place()}, static_cast<Direction>(rng.between(0, 5)),

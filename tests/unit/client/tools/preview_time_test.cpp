@@ -9,6 +9,7 @@
 
 #include "client/replica/copy_box.hpp"
 #include "client/tools/edit_preview.hpp"
+#include "common/builds/paste_source.hpp"
 #include "common/generate/generator.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/os/thread_cpu_ns.hpp"
@@ -75,18 +76,20 @@ void measure(const std::string& name, const Replica& replica,
 TEST_CASE("the time of a preview after the aim moved by a voxel", "[.time]") {
   Replica replica;
   show_terrain(replica);
-  const auto hill = copy_box(replica, {{-60, -32, -60}, {4, 32, 4}}, CopyEmpty::as_untouched);
+  const auto copied = copy_box(replica, {{-60, -32, -60}, {4, 32, 4}});
+  REQUIRE(copied);
+  const auto hill = whole_clipboard(**copied, EmptyCells::skipped, {});
+  const auto block = whole_clipboard(**copied, EmptyCells::pasted, {});
   REQUIRE(hill);
-  const auto block = copy_box(replica, {{-60, -32, -60}, {4, 32, 4}}, CopyEmpty::as_empty);
   REQUIRE(block);
-  std::printf("clipboards of 64 voxels a side: %zu and %zu runs\n", (*hill)->cells().runs.size(),
-              (*block)->cells().runs.size());
+  std::printf("clipboards of 64 voxels a side: %zu and %zu runs\n", hill->cells().runs.size(),
+              block->cells().runs.size());
   measure("paste 64^3 of terrain, without its air", replica,
-          [&](VoxelPos at) { return EditDescriptor{Paste{at, *hill, {}}, {}, kEmpty}; });
+          [&](VoxelPos at) { return EditDescriptor{Paste{at, hill, {}}, {}, kEmpty}; });
   measure("paste 64^3 of terrain, with its air", replica,
-          [&](VoxelPos at) { return EditDescriptor{Paste{at, *block, {}}, {}, kEmpty}; });
+          [&](VoxelPos at) { return EditDescriptor{Paste{at, block, {}}, {}, kEmpty}; });
   measure("paste 64^3 of terrain, turned by a quarter", replica, [&](VoxelPos at) {
-    return EditDescriptor{Paste{at, *hill, Orientation{}.rotated_about_y(1)}, {}, kEmpty};
+    return EditDescriptor{Paste{at, hill, Orientation{}.rotated_about_y(1)}, {}, kEmpty};
   });
   measure("sphere of radius 32", replica, [](VoxelPos at) {
     return EditDescriptor{FillSphere{{at.x + 32, at.y + 32, at.z + 32}, 32}, {}, 2};

@@ -14,7 +14,7 @@ constexpr std::int32_t kHalf = 24;  // voxels that are read on each side of the 
 std::vector<EditDescriptor> edits_of_each_kind(ToolBench& bench) {
   bench.box.select(VoxelBox{{-3, -2, -5}, {4, 3, 6}});
   REQUIRE(bench.box.copy(bench.replica, true));
-  const auto clipboard = bench.box.clipboard().content;
+  const auto clipboard = bench.box.clipboard().whole;
   const Orientation turned = Orientation{}.rotated_about_y(1);
   return {{SetVoxel{{3, 1, 2}}, {}, 2},
           {FillBox{{{1, 0, -4}, {6, 3, 2}}}, {}, 3},

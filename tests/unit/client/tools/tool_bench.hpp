@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/tools/action_source.hpp"
 #include "client/tools/tool_box.hpp"
 #include "common/core/hash.hpp"
 #include "tests/support/codec/chunks_message.hpp"
@@ -50,6 +51,15 @@ class ToolBench {
   }
   void predict(const std::vector<EditDescriptor>& edits) {
     for (const EditDescriptor& edit : edits) REQUIRE(replica.predict(edit, 0, 0));
+  }
+  /// Submits the edits of an action, with those of its pastes.
+  void predict(const ToolAction& action) {
+    for (const BuildPaste& paste : action.pastes) {
+      PasteSource source(paste.build, paste.at, paste.mask, paste.empty,
+                         paste_limits(replica.edit_limits()));
+      while (const auto edit = source.next()) predict({*edit});
+    }
+    predict(action.edits);
   }
   Material at(VoxelPos voxel) const { return replica.shown_at(voxel).value_or(kEmpty); }
 

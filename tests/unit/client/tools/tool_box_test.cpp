@@ -2,6 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "client/tools/action_source.hpp"
+#include "common/materials/material_table.hpp"
+#include "common/runs/dense.hpp"
+#include "common/runs/run_builder.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone::test {
@@ -16,7 +20,7 @@ struct FlatBench : ToolBench {
     const auto edits = box.press(replica, aim_at(voxel, Direction::pos_y, held), button);
     REQUIRE(edits);
     predict(*edits);
-    return edits->size();
+    return edits->edits.size();
   }
   std::string refusal(VoxelPos voxel, ToolButton button) {
     const auto edits = box.press(replica, aim_at(voxel, Direction::pos_y), button);
@@ -62,7 +66,7 @@ TEST_CASE_METHOD(FlatBench, "the second corner may lie in the air, as far away a
   aim.look = {1, 0, 0};
   const auto edits = box.press(replica, aim, ToolButton::place);
   REQUIRE(edits);
-  CHECK(edits->front() ==
+  CHECK(edits->edits.front() ==
         EditDescriptor{FillBox{box_between({3, 0, 3}, voxel_on_ray(aim, 4))}, {}, 2});
   CHECK(box.press(replica, aim, ToolButton::place).error() == "nothing is in reach");
 }
@@ -72,12 +76,12 @@ TEST_CASE_METHOD(FlatBench, "a sphere has a typed radius, or a dragged one if th
   REQUIRE(box.choose("sphere"));
   const auto typed = box.press(replica, aim_at(kGround, Direction::pos_y), ToolButton::clear);
   REQUIRE(typed);
-  CHECK(typed->front() == EditDescriptor{FillSphere{kGround, 4}, {}, kEmpty});
+  CHECK(typed->edits.front() == EditDescriptor{FillSphere{kGround, 4}, {}, kEmpty});
   REQUIRE(box.set_parameter("radius", 0));
   CHECK(press(kGround) == 0);
   const auto dragged = box.press(replica, aim_at({6, -1, 7}, Direction::pos_y), ToolButton::place);
   REQUIRE(dragged);
-  CHECK(dragged->front() == EditDescriptor{FillSphere{{3, 0, 3}, 5}, {}, 2});
+  CHECK(dragged->edits.front() == EditDescriptor{FillSphere{{3, 0, 3}, 5}, {}, 2});
 }
 
 TEST_CASE_METHOD(FlatBench, "a stroke is one edit along the places of the held button", "[tools]") {
@@ -87,8 +91,9 @@ TEST_CASE_METHOD(FlatBench, "a stroke is one edit along the places of the held b
   box.drag(aim_at({5, -1, 3}, Direction::pos_y));  // the same place counts once
   const auto edits = box.release(replica, aim_at({5, -1, 8}, Direction::pos_y));
   REQUIRE(edits);
-  REQUIRE(edits->size() == 1);
-  CHECK(edits->front() == EditDescriptor{FillStroke{{{3, 0, 3}, {5, 0, 3}, {5, 0, 8}}, 2}, {}, 2});
+  REQUIRE(edits->edits.size() == 1);
+  CHECK(edits->edits.front() ==
+        EditDescriptor{FillStroke{{{3, 0, 3}, {5, 0, 3}, {5, 0, 8}}, 2}, {}, 2});
   CHECK(box.release(replica, aim_at(kGround, Direction::pos_y))->empty());
 }
 
@@ -172,23 +177,23 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   press({10, -1, 10});
   CHECK(at({9, 0, 10}) == 2);
   CHECK(at({11, 0, 10}) == 3);
-  box.rotate(1);  // +x turns to -z
+  REQUIRE(box.rotate(1));  // +x turns to -z
   press({10, -1, 5});
   CHECK(at({10, 0, 6}) == 2);
   CHECK(at({10, 0, 4}) == 3);
-  box.mirror(Axis::z);
+  REQUIRE(box.mirror(Axis::z));
   press({-10, -1, 5});
   CHECK(at({-10, 0, 4}) == 2);
 
   box.select(VoxelBox{{9, 0, 10}, {12, 1, 11}});
   const auto stack = box.stack(replica, Direction::pos_y, 3);
   REQUIRE(stack);
-  CHECK(stack->size() == 1);  // one record
+  CHECK(stack->edits.size() == 1);  // one record
   predict(*stack);
   CHECK(at({9, 3, 10}) == 2);
   const auto moved_voxels = box.move(replica, Direction::pos_z, 2);
   REQUIRE(moved_voxels);
-  CHECK(moved_voxels->size() == 1);
+  CHECK(moved_voxels->edits.size() == 1);
   predict(*moved_voxels);
   CHECK(at({9, 0, 10}) == kEmpty);
   CHECK(at({9, 0, 12}) == 2);
@@ -197,7 +202,7 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   REQUIRE(filled);
   predict(*filled);
   CHECK(at({10, 0, 12}) == 1);
-  CHECK(box.stack(replica, Direction::pos_y, 65).error() == "a stack has 1 to 64 copies");
+  CHECK(box.stack(replica, Direction::pos_y, 4097).error() == "a stack has 1 to 4096 copies");
 }
 
 TEST_CASE_METHOD(FlatBench, "a selection that moves onto a part of itself keeps its gaps",
@@ -251,13 +256,159 @@ TEST_CASE_METHOD(FlatBench, "the clipboard keeps its materials by name from worl
   box.select(VoxelBox{{0, 0, 0}, {3, 1, 1}});
   REQUIRE(box.copy(replica, true));
   CHECK(box.set_materials(table({"clay", "stone", "sand", "ice"})).empty());
-  CHECK(box.clipboard().content->palette() == std::vector<Material>{3, 4});
+  CHECK(box.clipboard().whole->palette() == std::vector<Material>{3, 4});
   CHECK(box.set_materials(table({"sand"})) ==
         "the clipboard lost materials that this world lacks: ice");
-  CHECK(box.clipboard().content->palette() == std::vector<Material>{1});
-  CHECK(box.clipboard().content->touched() == 1);
+  CHECK(box.clipboard().whole->palette() == std::vector<Material>{1});
+  CHECK(box.clipboard().build->solid() == 1);
   static_cast<void>(box.set_materials(table({"clay"})));
-  CHECK(box.clipboard().content == nullptr);
+  CHECK(box.clipboard().build == nullptr);
+  CHECK(box.clipboard_rows().empty());
+}
+
+namespace {
+
+/// A replica with ground that no descriptor can hold: 64 voxels a side, in 64 chunks.
+struct RichBench : ToolBench {
+  RichBench() {
+    for (std::int32_t x = -2; x < 2; ++x) {
+      for (std::int32_t y = -2; y < 2; ++y) {
+        for (std::int32_t z = -2; z < 2; ++z) {
+          RunBuilder voxels(Extent::cube(kEdge), AxisOrder::xyz);
+          for (int i = 0; i < kEdge * kEdge * kEdge; ++i)
+            voxels.append(1, static_cast<Material>(rng.between(0, 3)));
+          show({x, y, z}, voxels.finish());
+        }
+      }
+    }
+    box.select(kAll);
+  }
+  static constexpr VoxelBox kAll{{-32, -32, -32}, {32, 32, 32}};
+
+  std::vector<Material> voxels() const {
+    std::vector<Material> out;
+    for (VoxelPos p{-32, -32, -32}; p.z < 32; ++p.z) {
+      for (p.y = -32; p.y < 32; ++p.y) {
+        for (p.x = -32; p.x < 32; ++p.x) out.push_back(at(p));
+      }
+    }
+    return out;
+  }
+  static std::size_t slot(VoxelPos p) {
+    return static_cast<std::size_t>(p.x + 32 + 64 * (p.y + 32 + 64 * (p.z + 32)));
+  }
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(RichBench, "a selection that no descriptor holds is copied, turned and pasted",
+                 "[tools]") {
+  const std::uint64_t dense = dense_expansions();
+  REQUIRE(box.copy(replica, false));
+  CHECK(box.clipboard().whole == nullptr);
+  CHECK(box.clipboard().build->volume() == 64 * 64 * 64);
+  const std::vector<Material> before = voxels();
+  REQUIRE(box.rotate(1));
+  REQUIRE(box.choose("paste"));
+  const auto made = box.press(replica, aim_at({0, -33, 0}, Direction::pos_y), ToolButton::place);
+  REQUIRE(made);
+  CHECK(made->edits.empty());
+  REQUIRE(made->pastes.size() == 1);
+  CHECK_FALSE(is_small(*made, replica.edit_limits()));
+  predict(*made);
+  const std::vector<Material> after = voxels();
+  std::size_t wrong = 0;
+  for (VoxelPos p{-32, -32, -32}; p.z < 32; ++p.z) {
+    for (p.y = -32; p.y < 32; ++p.y) {
+      // A quarter turn takes +z to +x and +x to -z.
+      for (p.x = -32; p.x < 32; ++p.x)
+        wrong += after[slot({p.z, p.y, -1 - p.x})] != before[slot(p)];
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(dense_expansions() == dense);
+}
+
+TEST_CASE_METHOD(RichBench, "a large selection moves by pastes, and is cleared after all of them",
+                 "[tools]") {
+  box.select(VoxelBox{{-32, -32, -32}, {30, 32, 32}});
+  const std::vector<Material> before = voxels();
+  const auto made = box.move(replica, Direction::pos_x, 2);
+  REQUIRE(made);
+  CHECK(made->pastes.size() + made->edits.size() == 3);
+  CHECK(made->pastes.back().empty == EmptyCells::pasted);
+  REQUIRE(made->edits.back() ==
+          EditDescriptor{FillBox{{{-32, -32, -32}, {-30, 32, 32}}}, {}, kEmpty});
+  const auto source = source_of(*made, replica.edit_limits());
+  std::vector<SourceStep::Kind> kinds;
+  for (SourceStep step = source->next(); step.kind != SourceStep::Kind::end;
+       step = source->next()) {
+    if (kinds.empty() || kinds.back() != step.kind) kinds.push_back(step.kind);
+  }
+  using Kind = SourceStep::Kind;
+  CHECK(kinds == std::vector<Kind>{Kind::edit, Kind::barrier, Kind::edit});
+  predict(*made);
+  std::size_t wrong = 0;
+  for (VoxelPos p{-32, -32, -32}; p.z < 32; ++p.z) {
+    for (p.y = -32; p.y < 32; ++p.y) {
+      for (p.x = -32; p.x < 28; ++p.x) wrong += at({p.x + 2, p.y, p.z}) != before[slot(p)];
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(at({-31, 0, 0}) == kEmpty);
+}
+
+TEST_CASE_METHOD(RichBench, "symmetry mirrors a large paste, and a stack of it shares its sections",
+                 "[tools]") {
+  REQUIRE(box.copy(replica, true));
+  REQUIRE(box.choose("paste"));
+  box.set_symmetry({SymmetryKind::x, 201, 0});
+  const auto made = box.press(replica, aim_at({0, 40, 0}, Direction::pos_y), ToolButton::place);
+  REQUIRE(made);
+  REQUIRE(made->pastes.size() == 2);
+  CHECK(made->pastes[0].at == VoxelPos{-32, 41, -32});
+  CHECK(made->pastes[1].at == VoxelPos{201 - 31, 41, -32});
+  for (const std::int32_t x : {0, 13, 63})
+    CHECK(made->pastes[0].build->at({x, 5, 9}) == made->pastes[1].build->at({63 - x, 5, 9}));
+  const auto again = box.press(replica, aim_at({0, 40, 0}, Direction::pos_y), ToolButton::place);
+  CHECK(again->pastes[1].build == made->pastes[1].build);  // it is mirrored once
+  const auto stack = box.stack(replica, Direction::neg_y, 100);
+  REQUIRE(stack);
+  REQUIRE(stack->pastes.size() == 1);
+  CHECK(stack->pastes[0].box() == VoxelBox{{-32, -32 - 6400, -32}, {32, -32, 32}});
+  CHECK(stack->pastes[0].build->distinct_sections().size() == 64);
+}
+
+TEST_CASE_METHOD(RichBench, "a large paste is previewed by coarse cells within the bound of quads",
+                 "[tools]") {
+  static_cast<void>(box.set_materials(default_material_table()));
+  REQUIRE(box.copy(replica, false));
+  REQUIRE(box.choose("paste"));
+  const std::uint64_t dense = dense_expansions();
+  const auto finish = [&](VoxelPos voxel) {
+    int steps = 0;
+    while (!box.step_preview(replica, aim_at(voxel, Direction::pos_y), 4)) REQUIRE(++steps < 1000);
+    return steps;
+  };
+  finish({0, -33, 0});
+  REQUIRE(box.build_preview().is_complete());
+  const std::int32_t cell = box.build_preview().cell_voxels();
+  CHECK(cell > 1);  // three of four voxels are set: too many faces at full detail
+  std::size_t quads = 0;
+  for (const GhostChunk& ghost : box.ghosts()) {
+    CHECK(ghost.shift == VoxelPos{-32, -32, -32});
+    CHECK(ghost.edge == 64 * cell);
+    CHECK(1 << ghost.key.lod == cell);
+    quads += ghost.placed->quad_count();
+  }
+  CHECK(quads > 100);
+  CHECK(quads <= BuildPreview::kQuadsMax);
+  CHECK(box.build_preview().placed_voxels() == box.clipboard().build->solid());
+  const auto mesh = box.ghosts().front().placed;
+  CHECK(finish({5, 7, -3}) == 0);  // a moved paste keeps its meshes
+  CHECK(box.ghosts().front().placed == mesh);
+  CHECK(box.ghosts().front().shift == VoxelPos{-27, 8, -35});
+  CHECK(dense_expansions() == dense);
 }
 
 TEST_CASE_METHOD(FlatBench, "parameters have ranges, and steps stay inside them", "[tools]") {

@@ -15,7 +15,7 @@ struct CommandBench : ToolBench {
     const ToolEdits made = run(command);
     INFO((made ? "" : made.error()));
     REQUIRE(made.has_value());
-    return *made;
+    return made->edits;
   }
   void type(std::vector<VoxelPos> places, ToolButton button = ToolButton::place,
             Direction face = Direction::pos_y) {
@@ -128,7 +128,8 @@ TEST_CASE_METHOD(CommandBench, "commands change the selection, the clipboard and
   CHECK(on_selection(Kind::shift, Direction::pos_z, 4).empty());
   CHECK(box.selection() == VoxelBox{{0, -2, 4}, {3, 0, 6}});
   CHECK(on_selection(Kind::copy).empty());
-  REQUIRE(box.clipboard().content);
+  REQUIRE(box.clipboard().build);
+  const BuildPtr copied = box.clipboard().build;
   CHECK(on_selection(Kind::replace).front().mask == Mask{MaskKind::only_material, 1});
   CHECK(on_selection(Kind::fill).front().material == 1);
   CHECK(on_selection(Kind::clear).front().material == kEmpty);
@@ -136,7 +137,8 @@ TEST_CASE_METHOD(CommandBench, "commands change the selection, the clipboard and
   CHECK(on_selection(Kind::stack, Direction::pos_y, 2).size() == 1);
   CHECK(on_selection(Kind::move, Direction::pos_y, 2).size() == 1);
   edits(ClipboardTurn{1, Axis::x});
-  CHECK(box.clipboard().orientation == Orientation{}.rotated_about_y(1).mirrored(Axis::x));
+  CHECK(box.clipboard().build->sides() == VoxelPos{2, 2, 3});
+  CHECK(box.clipboard().build->at({1, 1, 0}) == copied->at({2, 1, 1}));
   edits(SymmetryChange{{SymmetryKind::point, 3, 5}});
   CHECK(box.symmetry() == Symmetry{SymmetryKind::point, 3, 5});
   edits(PreviewChange{false});

@@ -76,6 +76,33 @@ TEST_CASE("an edit that reaches above or below the world is rejected as a whole"
   CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
 }
 
+TEST_CASE("words about a refusal name the limit, its value and what to do", "[rules]") {
+  EditLimits l;
+  l.chunk_edge = 16;
+  l.heights = {-64, 200};
+  l.volume_max = 1'000'000;
+  l.material_count = 5;
+  const auto words = [&](const EditDescriptor& edit) {
+    const auto reason = check_edit(edit, l);
+    REQUIRE(reason.has_value());
+    std::string text = refusal_words(*reason, edit, l);
+    CHECK(text.size() <= kTextBytesMax);
+    return text;
+  };
+  CHECK(words({FillBox{{{0, 0, 0}, {128, 128, 128}}}, {}, 1}) ==
+        "the edit has 2097152 voxels, and one edit may have 1000000: fill, replace or paste a "
+        "selection, which is sent in parts");
+  l.volume_max = 10'000'000;
+  CHECK(words({FillBox{{{0, 0, 0}, {4'096, 1, 2'048}}}, {}, 1}) ==
+        "the edit touches 32768 chunks, and one edit may touch 4096: fill, replace or paste a "
+        "selection, which is sent in parts");
+  CHECK(words({FillBox{{{0, 190, 0}, {1, 210, 1}}}, {}, 1}) ==
+        "the edit reaches from y = 190 to 209, and the world takes edits from -64 to 199");
+  CHECK(words({SetVoxel{{0, 0, 0}}, {}, 9}) ==
+        "the edit uses material 9, and the world has those below 5");
+  CHECK(refusal_words(RejectReason::bad_edit, {SetVoxel{{0, 0, 0}}, {}, 9}, l).empty());
+}
+
 TEST_CASE("reach is measured to the farthest voxel of the bounding box", "[rules]") {
   const EditDescriptor voxel{SetVoxel{{10, 0, 0}}, {}, 1};
   CHECK(within_reach(voxel, {10.5, 0.5, 0.5}, 0));

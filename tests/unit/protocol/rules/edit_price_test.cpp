@@ -23,7 +23,7 @@ TEST_CASE("an edit costs a unit for each chunk that its box touches", "[rules]")
   CHECK(price(FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}) == kTouchedChunksMax);
 }
 
-TEST_CASE("a paste costs more for each started 64 bytes of its clipboard", "[rules]") {
+TEST_CASE("a paste costs more for each started 512 bytes of its clipboard", "[rules]") {
   const auto paste = [](std::uint32_t runs) {
     ClipboardBuilder cells({128, 1, 128});
     for (std::uint32_t i = 0; i < runs; ++i) cells.append(1, static_cast<Material>(1 + i % 2));
@@ -34,9 +34,21 @@ TEST_CASE("a paste costs more for each started 64 bytes of its clipboard", "[rul
     const Paste shape = paste(runs);
     const EditDescriptor edit{shape, {}, kEmpty};
     const std::uint64_t chunks = edit_price({FillBox{{{0, 0, 0}, {128, 1, 128}}}, {}, 1}, 16, {});
-    CHECK(price(shape) <= chunks + (shape.clipboard->byte_size() + 63) / 64);
-    CHECK(price(shape) > (shape.clipboard->byte_size() - 1) / 64);
+    const std::size_t bytes = shape.clipboard->byte_size();
+    CHECK(price(shape) <= chunks + (bytes + 511) / 512);
+    CHECK(price(shape) > (bytes - 1) / 512);
+    const std::uint64_t before = edit_price(edit, 16, {}, EditPrices::kClipboardBytesBefore);
+    CHECK(before - price(shape) == (bytes + 63) / 64 - (bytes + 511) / 512);
   }
+}
+
+TEST_CASE("the normal budget carries a town of 200 x 100 x 200 voxels in a minute", "[rules]") {
+  // Eight KB a chunk is twice what dense ground of real worlds takes.
+  constexpr std::uint64_t kChunks = 8 * 5 * 8, kBytes = 8 * 1024;
+  constexpr std::uint64_t kPrice =
+      kChunks * (EditPrices::kChunk + kBytes / EditPrices::kClipboardBytes);
+  constexpr std::uint64_t kPerSecond = 100, kBurst = 4'000;
+  STATIC_REQUIRE(kPrice <= kBurst + 60 * kPerSecond);
 }
 
 TEST_CASE("an edit costs at most the whole budget", "[rules]") {

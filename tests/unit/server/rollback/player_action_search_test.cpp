@@ -18,6 +18,8 @@ struct BuiltOver : RollbackBench {
   AuthorId ana = 0;
 };
 
+constexpr std::size_t kCalls = 16 + 16 + 31 + 16;
+
 }  // namespace
 
 TEST_CASE("an undo skips sixteen edits with nothing left, and reports if there are more",
@@ -34,26 +36,27 @@ TEST_CASE("an undo skips sixteen edits with nothing left, and reports if there a
   }
 }
 
-TEST_CASE("an undo reads the log once for all edits that it considers", "[rollback][undo]") {
+TEST_CASE("an undo reads the log of a chunk once for all actions that it considers",
+          "[rollback][undo]") {
   BuiltOver bench(16);
   std::size_t calls = 0;
   const auto found =
       next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                         bench.bench.server.order().durable(), [&] { return ++calls > 0; });
+                         bench.bench.server.order().durable(), 1, [&] { return ++calls > 0; });
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
-  // should_continue is called for 16 records of the player, for 31 of the chunk, and once for each
-  // of 16 plans.
-  CHECK(calls == 16 + 31 + 16);
+  // should_continue is called for 16 rows of the player, for the edit of each of 16 actions, for 31
+  // edits of the chunk, and once for each of 16 plans.
+  CHECK(calls == kCalls);
 }
 
 TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
   BuiltOver bench(16);
-  for (std::size_t allowed = 0; allowed < 16 + 31 + 16; ++allowed) {
+  for (std::size_t allowed = 0; allowed < kCalls; ++allowed) {
     std::size_t calls = 0;
     const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                                          bench.bench.server.order().durable(),
+                                          bench.bench.server.order().durable(), 1,
                                           [&] { return ++calls <= allowed; });
     REQUIRE_FALSE(found.has_value());
     CHECK(found.error().kind == StoreError::Kind::cancelled);
@@ -110,6 +113,104 @@ TEST_CASE("the log of a chunk is the same read once, in parts, or each time", "[
     read_to_keep += read - before;
   }
   CHECK(read_to_keep == 23);
+}
+
+namespace {
+
+/// A world whose log the test writes, with one player.
+struct WrittenLog {
+  static constexpr AuthorId kAna = 1, kBob = 2;
+
+  WrittenLog() {
+    REQUIRE(create_world(folder.path(), sample_meta()).has_value());
+    store = *open_world(folder.path(), StoreAccess::read_write);
+    epoch = *store->raise_epoch();
+    GeneratorPin pin;
+    pin.name = "empty";
+    generator = *make_generator(pin, sample_meta().materials);
+  }
+  Sequence add(AuthorId author, VoxelPos at, Material material, Sequence subject = 0,
+               Cause cause = Cause::player) {
+    EditRecord record;
+    record.version = {epoch, ++last};
+    record.op = {author, 7, last};
+    record.time_us = static_cast<TimeUs>(last);
+    record.cause = cause;
+    record.edit = {SetVoxel{at}, {}, material};
+    record.subject = subject;
+    records.push_back(record);
+    return last;
+  }
+  void write() {
+    const std::vector<PlayerRow> players = {sample_player(kAna), sample_player(kBob)};
+    REQUIRE(store->append(players, records).has_value());
+    records.clear();
+  }
+  PlayerActionSearch find(Cause cause) {
+    auto found = next_player_change(*store, *generator, kAna, cause, last, epoch);
+    REQUIRE(found.has_value());
+    return *std::move(found);
+  }
+  TempFolder folder;
+  std::unique_ptr<Store> store;
+  std::unique_ptr<Generator> generator;
+  Epoch epoch = 0;
+  Sequence last = 0;
+  std::vector<EditRecord> records;
+};
+
+}  // namespace
+
+TEST_CASE("an action of 40,000 edits is found whole, with clicks and others between its edits",
+          "[rollback][undo]") {
+  WrittenLog log;
+  const Sequence first = log.add(log.kAna, {0, 0, 0}, 1);
+  Sequence newest = first;
+  for (std::int32_t i = 1; i < 40'000; ++i) {
+    if (i % 4'000 == 0) {  // nine clicks, which begin later than the action; others build over them
+      log.add(log.kAna, {i / 4'000, 100, 0}, 2);
+      log.add(log.kBob, {i / 4'000, 100, 0}, 3);
+    }
+    newest = log.add(log.kAna, {i % 64, i / 64 % 64, i / 4096}, 1, first);
+  }
+  log.write();
+  const auto found = log.find(Cause::undo).change;
+  REQUIRE(found.has_value());
+  CHECK(found->action == first);
+  CHECK(found->selection.edits == 40'000);
+  CHECK(found->selection.first == first);
+  CHECK(found->selection.last == newest);
+  CHECK(found->selection.chunks.size() == 4 * 4);
+}
+
+TEST_CASE("an undo that ended with its server is finished by the next undo, and a redo by a redo",
+          "[rollback][undo]") {
+  WrittenLog log;
+  const Sequence before = log.add(log.kAna, {0, 50, 0}, 1);
+  const Sequence action = log.add(log.kAna, {0, 0, 0}, 1);
+  log.add(log.kAna, {20, 0, 0}, 1, action);  // another chunk
+  log.add(log.kAna, {0, 0, 0}, kEmpty, action, Cause::undo);
+  log.write();
+  CHECK(log.find(Cause::undo).change->action == before);  // this server has not ended
+  log.epoch = *log.store->raise_epoch();
+  const auto undo = log.find(Cause::undo).change;
+  REQUIRE(undo.has_value());
+  CHECK(undo->action == action);
+
+  log.add(log.kAna, {20, 0, 0}, kEmpty, action, Cause::undo);
+  log.write();
+  log.epoch = *log.store->raise_epoch();
+  CHECK(log.find(Cause::undo).change->action == before);  // it is complete
+  REQUIRE(log.find(Cause::redo).change.has_value());
+
+  log.add(log.kAna, {0, 0, 0}, 1, action, Cause::redo);
+  log.write();
+  CHECK_FALSE(log.find(Cause::redo).change.has_value());
+  log.epoch = *log.store->raise_epoch();
+  const auto redo = log.find(Cause::redo).change;
+  REQUIRE(redo.has_value());
+  CHECK(redo->action == action);
+  CHECK(log.find(Cause::undo).change->action == action);
 }
 
 }  // namespace runstone::test

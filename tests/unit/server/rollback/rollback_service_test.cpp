@@ -1,5 +1,7 @@
 #include "server/rollback/rollback_service.hpp"
 
+#include <algorithm>
+
 #include "tests/support/edits/hostile_edits.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
 
@@ -320,7 +322,7 @@ TEST_CASE("a rollback that is cancelled midway can be undone", "[rollback]") {
   Night night;
   const auto griefed = night.digests();
   // The rollback touches more chunks than a slice has.
-  night.fill(kGriefer, {{-60, 0, -60}, {60, 1, 60}}, 1);
+  night.fill(kGriefer, {{-60, -9, -60}, {60, 1, 60}}, 1);
   night.write_log();
   const std::string id = night.preview_id();
   night.service.apply(id, 0, night.reply());
@@ -332,7 +334,7 @@ TEST_CASE("a rollback that is cancelled midway can be undone", "[rollback]") {
   night.run_all();
   CHECK_FALSE(night.answer().is_ok);
   CHECK(night.answer().text.find(
-            "was cancelled after 16 of 64 chunks; `rollback undo 4` takes it back") !=
+            "was cancelled after 64 of 128 chunks; `rollback undo 4` takes it back") !=
         std::string::npos);
   night.service.undo_rollback(id, 0, night.bench.now(), night.reply());
   night.run_all();
@@ -459,21 +461,64 @@ TEST_CASE("a player has one undo at a time, and it waits until the edit is on di
   CHECK(bench.at({1, 1, 1}) == kEmpty);
 }
 
-TEST_CASE("an undo is refused while an edit of the player waits, not done to an older edit",
+TEST_CASE("an undo waits for the edits of the player that wait, and takes back the newest of them",
           "[rollback][undo]") {
   WorldConfig without_budget = config();
   without_budget.edit_budget = {};
   RollbackBench bench(without_budget);
   const AuthorId ana = bench.join(kBuilder);
-  for (ClientSequence seq = 1; seq <= 100; ++seq)
+  bench.set(kBuilder, {1, 1, 1}, 1);
+  for (ClientSequence seq = 2; seq <= 100; ++seq)
     bench.bench.edit(kBuilder, seq, Paste{{0, 0, 0}, long_clipboard(), {}}, kEmpty);
   bench.service.undo(ana, bench.bench.now(), bench.reply());
-  CHECK_FALSE(bench.answer().is_ok);
-  CHECK(bench.answer().text ==
-        "undo: an edit of yours still waits for its turn; it is large, or behind a large one");
-  while (bench.bench.server.order().has_waiting_edit(ana)) bench.tick();
+  REQUIRE(bench.bench.server.order().has_waiting_edit(ana));
+  bench.write_log();
+  bench.tick();
+  CHECK(bench.answers.empty());
+  CHECK(bench.works.empty());
   bench.service.undo(ana, bench.bench.now(), bench.reply());
-  CHECK(bench.answers.size() == 1);  // it waits for the log, as an undo does
+  CHECK(bench.answer().text == "undo: one of yours is still under way");
+  while (bench.bench.server.order().has_waiting_edit(ana)) bench.tick();
+  CHECK(bench.works.empty());
+  bench.write_log();
+  bench.tick();
+  CHECK(bench.works.size() == 1);
+  CHECK_FALSE(bench.service.is_idle());
+}
+
+TEST_CASE("an undo ends an action under way, and takes back all of it", "[rollback][undo]") {
+  RollbackBench bench;
+  const AuthorId ana = bench.bench.join(kBuilder, kBuilder, 1, {}, kFeatureLargeActions).author;
+  bench.bench.view(kBuilder, View{1, {0, 0, 0}, 4, 1});
+  const auto send = [&](ClientSequence seq) {
+    EditRequest request{
+        seq, 0, {SetVoxel{{static_cast<std::int32_t>(seq) % 64 - 32, 1, 1}}, {}, 1}};
+    request.action = 1;
+    request.is_optional = true;
+    bench.bench.server.received(kBuilder, request, bench.bench.now());
+    bench.bench.server.commit(bench.bench.now());
+    bench.bench.answer_loads();
+  };
+  ClientSequence seq = 0;
+  while (seq < 300) send(++seq);
+  bench.write_log();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  REQUIRE(bench.works.size() == 1);
+  while (seq < 310) send(++seq);  // after the search has begun
+  REQUIRE(bench.work());
+  while (seq < 320) send(++seq);  // after the action has ended
+  const auto rejects = bench.bench.environment.messages<Reject>(kBuilder, kEdge);
+  REQUIRE(rejects.size() == 10);
+  CHECK(rejects[0].client_seq == 311);
+  CHECK(rejects[0].reason == RejectReason::action_ended);
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.digests().empty());
+  bench.service.redo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  for (ClientSequence i = 247; i <= 310; ++i)
+    CHECK(bench.at({static_cast<std::int32_t>(i) % 64 - 32, 1, 1}) == 1);
 }
 
 TEST_CASE("a rollback continues if the log has room for fewer edits than a slice", "[rollback]") {
@@ -519,11 +564,15 @@ TEST_CASE("undo and redo are paid from the player's edit budget, and report when
   bench.work();
   CHECK(bench.answers.back().text.find("(waits: the player's edit budget is used up") !=
         std::string::npos);
-  const std::size_t answers_before = bench.answers.size();
   const TimeUs began = bench.bench.time_us;
   bench.run_all();
   CHECK(bench.answer().text == "undo: 6400 voxels in 16 chunks");
-  CHECK(bench.answers.size() == answers_before + 1);  // it reports once that it waits
+  const auto answers_with = [&](const std::string& begin) {
+    return std::count_if(bench.answers.begin(), bench.answers.end(),
+                         [&](const CommandAnswer& a) { return a.text.starts_with(begin); });
+  };
+  CHECK(answers_with("undo waits") == 1);   // it reports once that it waits
+  CHECK(answers_with("undo is at ") >= 1);  // and every two seconds how far it is
   CHECK(bench.bench.time_us - began >= 1'500'000);
   CHECK(bench.at({-1, 0, 0}) == kEmpty);
 }

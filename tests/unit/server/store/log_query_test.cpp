@@ -117,6 +117,21 @@ TEST_CASE("queries of the log find the same records as a naive scan", "[store][q
   CHECK(compare(*store, records, rng, 400) > 150);
   CHECK(ask(*store, {}) == records);
   CHECK(store->check().has_value());
+  for (AuthorId author = 0; author <= 6; ++author) {
+    const Sequence last = 1 + rng.below(static_cast<std::uint32_t>(records.size()));
+    std::vector<LogRow> rows, naive;
+    const auto read = store->rows_of_author(author, last, [&](const LogRow& row) {
+      rows.push_back(row);
+      return rows.size() < 100;
+    });
+    REQUIRE(read.has_value());
+    for (Sequence seq = last; seq > 0 && naive.size() < 100; --seq) {
+      const EditRecord& record = records[seq - 1];
+      if (record.op.author == author)
+        naive.push_back({record.version, record.op, record.cause, record.subject});
+    }
+    CHECK(rows == naive);
+  }
   std::size_t seen = 0;
   REQUIRE(store->query_log({}, [&](const EditRecord&) { return ++seen < 7; }).has_value());
   CHECK(seen == 7);

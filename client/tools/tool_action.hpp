@@ -1,0 +1,41 @@
+// ToolAction: what a click or a command of the tools makes. All of it is one action. It is a value:
+// a preview shows it, and source_of() (action_source.hpp) makes its edits.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "common/builds/build.hpp"
+#include "common/builds/paste_source.hpp"
+#include "common/core/coords.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+/// A paste of a build that is too large for one descriptor.
+struct BuildPaste {
+  BuildPtr build;
+  VoxelPos at;  // of the corner of the build
+  Mask mask;
+  EmptyCells empty = EmptyCells::pasted;
+  friend bool operator==(const BuildPaste&, const BuildPaste&) = default;
+
+  VoxelBox box() const {
+    const VoxelPos s = build->sides();
+    return {at, {at.x + s.x, at.y + s.y, at.z + s.z}};
+  }
+};
+
+struct ToolAction {
+  ToolAction() = default;
+  ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
+
+  std::vector<BuildPaste> pastes;
+  /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
+  /// chunks than the world allows in one: then it is cut.
+  std::vector<EditDescriptor> edits;
+  friend bool operator==(const ToolAction&, const ToolAction&) = default;
+
+  bool empty() const { return pastes.empty() && edits.empty(); }
+};
+
+}  // namespace runstone

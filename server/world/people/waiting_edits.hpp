@@ -1,0 +1,54 @@
+// WaitingEdits: edits of players that arrived and are not decided yet: those of actions that wait for
+// a budget, for room, or until the log has told whether it has their action, and the edits of their
+// sessions behind them. The edits of a session keep their order, because one number tells which of
+// them are resolved (OperationWatermarks). Sessions take turns.
+// Bounds: of a session, has_room_for(). The edits of a session that ends are dropped: they are not
+// resolved, so the client offers them again.
+// Thread: the world strand.
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+class WaitingEdits {
+ public:
+  bool has_any() const { return !of_.empty(); }
+  bool has_any(SessionId session) const { return of_.contains(session); }
+  /// Requires that the edits of the session were pushed in ascending order. Cost: O(log edits).
+  bool has(SessionId session, ClientSequence seq) const;
+  /// Returns false if the session has too many edits here: of actions, more than kWaitingEditsMax or
+  /// kWaitingEditBytesMax, by window_bytes(); others, more than kWaitingClicksMax or as many bytes.
+  bool has_room_for(SessionId session, const EditRequest& request) const;
+  void push(SessionId session, const EditRequest& request);
+  /// Returns the session's oldest edit. Requires has_any(session).
+  const EditRequest& front(SessionId session) const { return of_.at(session).edits.front(); }
+  void pop(SessionId session);
+  /// Returns the sessions with edits, in the order of their turns.
+  std::vector<SessionId> sessions() const;
+  /// The next turn begins with this session, or the one behind it.
+  void begin_turn_at(SessionId session) { turn_ = session; }
+  void forget(SessionId session) { of_.erase(session); }
+  void clear() { of_.clear(); }
+  /// Returns the number of edits. Cost: O(sessions).
+  std::size_t size() const;
+
+ private:
+  struct Counts {
+    std::size_t edits = 0, bytes = 0;
+  };
+  struct Of {
+    std::deque<EditRequest> edits;
+    Counts of_actions, others;
+    Counts& of(const EditRequest& request) { return request.action != 0 ? of_actions : others; }
+  };
+  std::map<SessionId, Of> of_;  // none is empty
+  SessionId turn_ = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,122 @@
+#include "client/app/clipboard_file.hpp"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "common/materials/material_table.hpp"
+#include "tests/unit/client/tools/tool_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+MaterialTable table_of_names(const std::vector<std::string>& names) {
+  MaterialTable out;
+  for (const std::string& name : names) {
+    MaterialInfo info;
+    info.name = name;
+    REQUIRE(out.add(std::move(info)));
+  }
+  return out;
+}
+
+/// A folder that is removed at the end.
+struct ClipboardFolder {
+  ClipboardFolder()
+      : folder(std::filesystem::temp_directory_path() /
+               ("runstone-clipboard-" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(folder);
+  }
+  ~ClipboardFolder() { std::filesystem::remove_all(folder); }
+  ClipboardFolder(const ClipboardFolder&) = delete;
+  ClipboardFolder& operator=(const ClipboardFolder&) = delete;
+  std::string file() const { return (folder / "sub" / "clipboard.rsb").string(); }
+  std::filesystem::path folder;
+};
+
+/// A bench that copied a voxel of each of two materials.
+struct CopiedBench : ToolBench {
+  CopiedBench() {
+    show_flat();
+    static_cast<void>(box.set_materials(table_of_names({"stone", "sand", "ice"})));
+    predict({{SetVoxel{{0, 0, 0}}, {}, 2}, {SetVoxel{{2, 0, 0}}, {}, 3}});
+    box.select(VoxelBox{{0, 0, 0}, {3, 1, 1}});
+    REQUIRE(box.copy(replica, true));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the clipboard of a program is that of the next one, in another world, by names",
+          "[client_app]") {
+  const ClipboardFolder place;
+  {
+    CopiedBench bench;
+    ClipboardFile file(place.file());
+    REQUIRE(file.load(bench.box));  // there is no file yet
+    REQUIRE(bench.box.clipboard().build);
+    CHECK(file.step(bench.box).empty());
+    REQUIRE(bench.box.rotate(1));
+    CHECK(file.step(bench.box).empty());  // the newest one is written, at the latest at the end
+  }
+  CHECK(std::distance(std::filesystem::directory_iterator(place.folder / "sub"), {}) == 1);
+  ToolBox box;
+  ClipboardFile file(place.file());
+  REQUIRE(file.load(box));
+  CHECK(box.clipboard_changes() == 0);  // nothing new to write
+  REQUIRE(box.set_materials(table_of_names({"clay", "ice", "sand"})).empty());
+  const BuildPtr build = box.clipboard().build;
+  REQUIRE(build);
+  CHECK(build->sides() == VoxelPos{1, 1, 3});
+  CHECK(build->at({0, 0, 2}) == Material{3});  // sand; a quarter turn takes +x to -z
+  CHECK_FALSE(build->at({0, 0, 1}));           // the air was not copied
+  CHECK(build->at({0, 0, 0}) == Material{2});  // ice
+}
+
+TEST_CASE("a world without a material of the clipboard does not change the file", "[client_app]") {
+  const ClipboardFolder place;
+  CopiedBench bench;
+  {
+    ClipboardFile file(place.file());
+    CHECK(file.step(bench.box).empty());
+  }
+  ClipboardFile file(place.file());
+  ToolBox poor;
+  REQUIRE(file.load(poor));
+  CHECK(poor.set_materials(table_of_names({"sand"})) ==
+        "the clipboard lost materials that this world lacks: ice");
+  CHECK(file.step(poor).empty());
+  ToolBox rich;
+  REQUIRE(file.load(rich));
+  CHECK(rich.set_materials(table_of_names({"ice", "sand"})).empty());
+}
+
+TEST_CASE("a damaged clipboard is refused and stays on disk, and a bad folder is said",
+          "[client_app]") {
+  const ClipboardFolder place;
+  std::filesystem::create_directories(place.folder / "sub");
+  std::ofstream(place.file()) << "no build";
+  CopiedBench bench;
+  {
+    ClipboardFile file(place.file());
+    ToolBox box;
+    const auto loaded = file.load(box);
+    REQUIRE_FALSE(loaded);
+    CHECK(loaded.error().find(place.file()) == 0);
+    CHECK_FALSE(box.clipboard().build);
+  }
+  CHECK(std::filesystem::file_size(place.file()) == 8);
+  ClipboardFile nowhere((place.folder / "sub" / "clipboard.rsb" / "no" / "folder").string());
+  CHECK(nowhere.step(bench.box).empty());
+  std::string failed;
+  while (failed.empty()) failed = nowhere.step(bench.box);
+  CHECK(failed.find("the clipboard is not kept: ") == 0);
+  ClipboardFile none("");
+  CHECK(none.load(bench.box));
+  CHECK(none.step(bench.box).empty());
+}
+
+}  // namespace runstone::test
