@@ -224,8 +224,9 @@ TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one 
   tool.take(session.replica().drain_changes(), kNow);
   const auto ended = tool.step_build(kNow);
   REQUIRE(ended.has_value());
-  CHECK(ended->starts_with("fill: 0 voxels; left out 512 voxels in 1 part: the ground is protected: "
-                           "spawn; it ended early: you have stopped it"));
+  CHECK(
+      ended->starts_with("fill: 0 voxels; left out 512 voxels in 1 part: the ground is protected: "
+                         "spawn; it ended early: you have stopped it"));
   CHECK_FALSE(tool.is_building());
   CHECK_FALSE(tool.stop_building());
 }

@@ -568,11 +568,10 @@ TEST_CASE("undo and redo are paid from the player's edit budget, and report when
   bench.run_all();
   CHECK(bench.answer().text == "undo: 6400 voxels in 16 chunks");
   const auto answers_with = [&](const std::string& begin) {
-    return std::count_if(bench.answers.begin(), bench.answers.end(), [&](const CommandAnswer& a) {
-      return a.text.starts_with(begin);
-    });
+    return std::count_if(bench.answers.begin(), bench.answers.end(),
+                         [&](const CommandAnswer& a) { return a.text.starts_with(begin); });
   };
-  CHECK(answers_with("undo waits") == 1);  // it reports once that it waits
+  CHECK(answers_with("undo waits") == 1);   // it reports once that it waits
   CHECK(answers_with("undo is at ") >= 1);  // and every two seconds how far it is
   CHECK(bench.bench.time_us - began >= 1'500'000);
   CHECK(bench.at({-1, 0, 0}) == kEmpty);
