@@ -113,14 +113,12 @@ inline constexpr std::int32_t kGroundPriorityMax = 1000;
 
 // Actions. Without the feature large actions, an action has so many edits at most.
 inline constexpr std::size_t kActionEditsMax = 256;
-// Edits of actions that one session may have under way, that is sent and not answered, and the
-// bytes of their descriptors. A server tells its bounds in Welcome. They pay for a round trip of
+// Edits that one session with large actions may have under way, that is sent and not answered, and
+// the bytes of their descriptors. A server tells its bounds in Welcome. They pay for a round trip of
 // 100 ms at 1,280 edits and 5 MB a second, and bound what waits at the server for the budgets.
 inline constexpr std::uint32_t kWaitingEditsMax = 128;
 inline constexpr std::uint32_t kWaitingEditBytesMax = 512 * 1024;
 static_assert(kDescriptorBytesMax * 8 <= kWaitingEditBytesMax, "eight of the largest edits fit");
-// Other edits of a session that may wait behind those of an action.
-inline constexpr std::size_t kWaitingClicksMax = 64;
 
 // Previews of others.
 inline constexpr std::size_t kPreviewEditsMax = 4;         // of one player

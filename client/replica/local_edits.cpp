@@ -101,7 +101,7 @@ void LocalEdits::set(LocalEdit& local, TimeUs sent_us, LocalEditState state) {
 }
 
 void LocalEdits::count_under_way(const LocalEdit& local, bool is_added) {
-  if (local.action == 0 || local.sent_us == LocalEdit::kNever || !local.needs_answer()) return;
+  if (local.sent_us == LocalEdit::kNever || !local.needs_answer()) return;
   const std::size_t bytes = window_bytes(local.edit);
   under_way_.edits += is_added ? 1 : std::size_t{0} - 1;
   under_way_.bytes += is_added ? bytes : std::size_t{0} - bytes;

@@ -121,7 +121,7 @@ class LocalEdits {
     bytes_ = 0;
     under_way_ = {};
   }
-  /// The edits of actions that were sent and have no answer, and the bytes that they count for
+  /// The edits that were sent and have no answer, and the bytes that they count for
   /// (window_bytes()).
   struct UnderWay {
     std::size_t edits = 0, bytes = 0;

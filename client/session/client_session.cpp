@@ -223,7 +223,7 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
     const ClientSequence seq = waiting_[done];
     const LocalEdit* local = replica_->local_edits().find(seq);
     if (local == nullptr || !local->needs_answer()) continue;
-    const bool is_counted = local->action != 0 && local->sent_us == LocalEdit::kNever;
+    const bool is_counted = local->sent_us == LocalEdit::kNever;
     // The edits behind it keep their order: the server takes ascending client sequences.
     if (is_counted && has_large_actions() && !fits_window(local->edit)) break;
     connection_.send_edit(seq, *local);

@@ -74,8 +74,8 @@ class ClientSession {
 
   /// Shows an edit and offers it to the server. `submitted_us`: the click or the scheduled time;
   /// latency is measured from there. `in_action` is as in LocalEdits::add(): the edits of an action
-  /// are undone as one. With the feature large actions, edits of actions beyond the window of the
-  /// session are sent when earlier ones are answered, and later edits behind them. Fails as
+  /// are undone as one. With the feature large actions, edits beyond the window of the session
+  /// are sent when earlier ones are answered. Fails as
   /// Replica::predict() does, and with limit_exceeded if edit_wait_us() is not 0.
   Result<ClientSequence> offer(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us,
                                InAction in_action = {});

@@ -80,8 +80,8 @@ struct Welcome {
   std::uint64_t features = 0;                 // in force for this session; a subset of Hello's
   std::optional<PasswordSalt> password_salt;  // nullopt: the world has no password
   std::uint8_t tile_levels_max = kTileLevelMax;
-  /// With the feature large actions: the edits of actions that the session may have under way, and
-  /// the bytes of their descriptors. Otherwise 0.
+  /// With the feature large actions: the edits that the session may have under way, and the bytes of
+  /// their descriptors. Otherwise 0.
   std::uint32_t waiting_edits_max = 0, waiting_edit_bytes_max = 0;
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };

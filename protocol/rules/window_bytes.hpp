@@ -1,4 +1,4 @@
-// window_bytes(): the bytes that an edit of an action counts for while it is under way. Client and
+// window_bytes(): the bytes that an edit counts for while it is under way. Client and
 // server count alike, so that a client keeps within Welcome::waiting_edit_bytes_max.
 #pragma once
 #include <cstddef>

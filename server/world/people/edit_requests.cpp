@@ -210,9 +210,9 @@ void EditRequests::keep_waiting(Session& session, const EditRequest& request) {
   if (waiting_.has_room_for(session.id, request)) return waiting_.push(session.id, request);
   sessions_.close(
       session, GoodbyeReason::flooding,
-      fmt::format("more than {} edits of actions, or {} KiB of them, are under way: keep "
-                  "to waiting_edits_max of Welcome",
-                  kWaitingEditsMax, kWaitingEditBytesMax / 1024));
+      fmt::format(
+          "more than {} edits, or {} KiB of them, are under way: keep to waiting_edits_max of Welcome",
+          kWaitingEditsMax, kWaitingEditBytesMax / 1024));
 }
 
 bool EditRequests::on_edit(Session& session, const EditRequest& request, const Clocks& now) {

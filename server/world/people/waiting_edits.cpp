@@ -16,28 +16,20 @@ bool WaitingEdits::has(SessionId session, ClientSequence seq) const {
 
 bool WaitingEdits::has_room_for(SessionId session, const EditRequest& request) const {
   const auto of = of_.find(session);
-  if (of == of_.end()) return true;
-  const bool is_of_action = request.action != 0;
-  const Counts& counts = is_of_action ? of->second.of_actions : of->second.others;
-  const std::size_t edits_max = is_of_action ? kWaitingEditsMax : kWaitingClicksMax;
-  return counts.edits < edits_max &&
-         counts.bytes + window_bytes(request.edit) <= kWaitingEditBytesMax;
+  return of == of_.end() || (of->second.edits.size() < kWaitingEditsMax &&
+                             of->second.bytes + window_bytes(request.edit) <= kWaitingEditBytesMax);
 }
 
 void WaitingEdits::push(SessionId session, const EditRequest& request) {
   Of& of = of_[session];
   of.edits.push_back(request);
-  Counts& counts = of.of(request);
-  ++counts.edits;
-  counts.bytes += window_bytes(request.edit);
+  of.bytes += window_bytes(request.edit);
 }
 
 void WaitingEdits::pop(SessionId session) {
   const auto at = of_.find(session);
   Of& of = at->second;
-  Counts& counts = of.of(of.edits.front());
-  --counts.edits;
-  counts.bytes -= window_bytes(of.edits.front().edit);
+  of.bytes -= window_bytes(of.edits.front().edit);
   of.edits.pop_front();
   if (of.edits.empty()) of_.erase(at);
 }

@@ -22,8 +22,8 @@ class WaitingEdits {
   bool has_any(SessionId session) const { return of_.contains(session); }
   /// Requires that the edits of the session were pushed in ascending order. Cost: O(log edits).
   bool has(SessionId session, ClientSequence seq) const;
-  /// Returns false if the session has too many edits here: of actions, more than kWaitingEditsMax or
-  /// kWaitingEditBytesMax, by window_bytes(); others, more than kWaitingClicksMax or as many bytes.
+  /// Returns false if the session would have more than kWaitingEditsMax edits here, or more than
+  /// kWaitingEditBytesMax by window_bytes().
   bool has_room_for(SessionId session, const EditRequest& request) const;
   void push(SessionId session, const EditRequest& request);
   /// Returns the session's oldest edit. Requires has_any(session).
@@ -39,13 +39,9 @@ class WaitingEdits {
   std::size_t size() const;
 
  private:
-  struct Counts {
-    std::size_t edits = 0, bytes = 0;
-  };
   struct Of {
     std::deque<EditRequest> edits;
-    Counts of_actions, others;
-    Counts& of(const EditRequest& request) { return request.action != 0 ? of_actions : others; }
+    std::size_t bytes = 0;
   };
   std::map<SessionId, Of> of_;  // none is empty
   SessionId turn_ = 0;

@@ -143,9 +143,9 @@ TEST_CASE("a session with more edits under way than its window ends, with words"
   bench.send(1, kWaitingEditsMax + 2, 1);
   REQUIRE(bench.environment.closed.size() == 1);
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::flooding);
-  CHECK(bench.environment.closed[0].text ==
-        "more than 128 edits of actions, or 512 KiB of them, are under way: keep to "
-        "waiting_edits_max of Welcome");
+  CHECK(
+      bench.environment.closed[0].text ==
+      "more than 128 edits, or 512 KiB of them, are under way: keep to waiting_edits_max of Welcome");
   CHECK(bench.server.people().edits().waiting() == 0);
 }
 
