@@ -7,6 +7,7 @@ namespace runstone::test {
 
 TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") {
   CHECK(kFeatureTimeCorrections == 1 << 14);
+  CHECK(kFeatureLibrary == 1 << 16);
 }
 
 }  // namespace runstone::test
