@@ -2,12 +2,15 @@
 
 #include <xxhash.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "common/core/utc_text.hpp"
 #include "common/formats/rsb_reader.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
+#include "server/map/build_picture.hpp"
 
 namespace runstone {
 namespace {
@@ -32,6 +35,12 @@ std::string tags_text(const BuildInfo& info) {
 }  // namespace
 
 Result<BuildFile, std::string> read_build_file(const std::string& file, std::uint64_t bytes_max) {
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown && size > bytes_max) {
+    return failure(file + ": takes " + file_size_text(size) + ", and one of at most " +
+                   file_size_text(bytes_max) + " is allowed (build_mib): divide it");
+  }
   const auto read = read_file(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
   if (!read) return failure(read.error());
   BuildFile out;
@@ -59,6 +68,22 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
   if (!read) return failure(read.error().message());
   if (const auto done = out->finish(); !done) return failure(file + ": " + done.error());
   return {};
+}
+
+Result<void, std::string> write_build_picture(LibraryReader& reader, const StoredBuild& build,
+                                              const std::string& file) {
+  Bytes bytes;
+  bytes.reserve(static_cast<std::size_t>(build.build().file_bytes));
+  const auto read = reader.read_build(build, [&](ByteView part) {
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    return true;
+  });
+  if (!read) return failure(read.error().message());
+  auto sections = RsbReader::open(rsb_source(bytes));
+  if (!sections) return failure(sections.error().message());
+  const auto png = build_picture(*sections);
+  if (!png) return failure(png.error().message());
+  return write_output_file(file, *png);
 }
 
 std::string build_line(Sequence number, const AddBuild& build) {

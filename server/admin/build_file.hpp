@@ -27,6 +27,11 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
 Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBuild& build,
                                            const std::string& file);
 
+/// Draws a build from above (build_picture()), and writes the picture to a PNG file. The error is one
+/// line. Blocks on the disk.
+Result<void, std::string> write_build_picture(LibraryReader& reader, const StoredBuild& build,
+                                              const std::string& file);
+
 /// Returns a line such as `120 "Mill" by Ada, 70 x 30 x 20, 12 KiB, mill wood`.
 std::string build_line(Sequence number, const AddBuild& build);
 /// Returns lines with everything that the library knows of a build. `added_by`: the name of the

@@ -167,6 +167,21 @@ void export_build(const CommandCall& call, const ExportedBuild& wanted) {
       });
 }
 
+void draw_build(const CommandCall& call, const ExportedBuild& wanted) {
+  call.on_worker(
+      "builds picture: ",
+      [wanted](WorldReader& reader) -> Result<StoredBuild, std::string> {
+        auto build = stored_build(reader, wanted.number);
+        if (!build) return build;
+        if (const auto drawn = write_build_picture(reader, *build, wanted.file); !drawn)
+          return failure(drawn.error());
+        return build;
+      },
+      [call, wanted](const StoredBuild& build) {
+        call.answer("drawn to " + wanted.file + ": " + build_line(build.number(), build.build()));
+      });
+}
+
 void remove_build(const CommandCall& call, const Sequence& number) {
   const LibraryRow* row = call.world().order().library().find(number);
   if (row == nullptr) return call.refuse("builds remove: " + no_build(number));
@@ -181,7 +196,7 @@ void remove_build(const CommandCall& call, const Sequence& number) {
                                          std::to_string(*removed) + ")");
 }
 
-constexpr std::array<CommandRow, 5> kLibraryRows = {{
+constexpr std::array<CommandRow, 6> kLibraryRows = {{
     {"builds list", needs(Right::see),
      "builds list [name PART] [author PART] [tag TAG] [before NUMBER] [count N]\n"
      "                          the builds of the library, newest first",
@@ -195,6 +210,10 @@ constexpr std::array<CommandRow, 5> kLibraryRows = {{
     {"builds export NUMBER FILE", kLocal,
      "builds export NUMBER FILE write a build of the library to an .rsb file",
      parsed_by<parse_export, export_build>()},
+    {"builds picture NUMBER FILE", kLocal,
+     "builds picture NUMBER FILE\n"
+     "                          draw a build of the library from above to a PNG file",
+     parsed_by<parse_export, draw_build>()},
     {"builds remove", needs(Right::build, Right::administer),
      "builds remove NUMBER      remove a build from the library: your own one, or any if you may\n"
      "                          administer",

@@ -1,4 +1,4 @@
-// The commands of the library of builds: `builds list`, `show`, `import`, `export` and `remove`.
+// The commands of the library of builds: `builds list`, `show`, `import`, `export`, `picture` and `remove`.
 #pragma once
 #include <span>
 

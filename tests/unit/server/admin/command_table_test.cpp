@@ -139,7 +139,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "materials \"red\": at most one word comes after materials");
   CHECK(mistake("materials add my wool.toml") ==
         "materials add: one file comes after it, in quotes if it has blanks");
-  CHECK(mistake("builds") == "builds: list, show, import, export or remove is missing");
+  CHECK(mistake("builds") == "builds: list, show, import, export, picture or remove is missing");
   CHECK(mistake("builds list colour red") ==
         "builds list \"colour\": name, author, tag, before or count");
   CHECK(mistake("builds list count 51") == "builds list count \"51\": a number from 1 to 50");

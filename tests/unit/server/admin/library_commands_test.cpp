@@ -124,6 +124,10 @@ TEST_CASE("a build is imported, listed, shown, exported and removed", "[admin][l
   REQUIRE(bench.give("builds export 1 " + copy).is_ok);
   CHECK(bytes_in(copy) == bytes_in(file));
 
+  const std::string picture = bench.folder / "mill.png";
+  REQUIRE(bench.give("builds picture 1 " + picture).is_ok);
+  CHECK(bytes_in(picture).starts_with("\x89PNG"));
+
   answer = bench.give("builds remove 1");
   REQUIRE(answer.is_ok);
   CHECK(answer.text == "removed build 1 (record 3)");
