@@ -35,7 +35,9 @@ inline constexpr std::uint64_t kFeatureLargeActions = 32768;
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
-inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTimeCorrections;
+inline constexpr std::uint64_t kFeatureLibrary = 65536;          // LogPart may have a LibraryChange
+inline constexpr std::uint64_t kFeaturesOfServers =
+    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
@@ -136,6 +138,8 @@ inline constexpr std::size_t kSealedKeyBytesMax = 512;
 
 // Marks of the log.
 inline constexpr std::size_t kLogMarksMax = 128;  // per message
+// The greatest cause of a mark: Cause::materials, the last one of version 2.
+inline constexpr std::uint8_t kLogMarkCauseMax = 7;
 
 // Previews of rollbacks.
 inline constexpr std::size_t kPreviewIdBytesMax = 32;

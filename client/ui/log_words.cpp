@@ -16,6 +16,8 @@ std::string kind_words(EditKind kind) {
     case EditKind::materials:
     case EditKind::materials_with_looks:
       return "new materials";
+    case EditKind::library:
+      return "change of the library";
     default:
       return name_of(kind);
   }
@@ -37,6 +39,7 @@ std::string record_words(EditKind kind, Cause cause) {
     case Cause::console:
     case Cause::rights:
     case Cause::materials:
+    case Cause::library:
       return kind_words(kind);
   }
   return kind_words(kind);

@@ -48,13 +48,15 @@ enum class Cause : std::uint8_t {
   undo = 3,
   redo = 4,
   import = 5,
-  rights = 6,    // a change of rights, by a player or by the console (author 0)
-  materials = 7  // new materials, by the console
+  rights = 6,     // a change of rights, by a player or by the console (author 0)
+  materials = 7,  // new materials, by the console
+  library = 8     // a change of the library of builds, by a player or by the console (author 0)
 };
-inline constexpr std::uint8_t kCauseMax = 7;
-/// Returns true if the edits with this cause change voxels. The others change rights or materials.
+inline constexpr std::uint8_t kCauseMax = 8;
+/// Returns true if the edits with this cause change voxels. The others change rights, materials or the
+/// library of builds.
 constexpr bool changes_voxels(Cause cause) {
-  return cause != Cause::rights && cause != Cause::materials;
+  return cause != Cause::rights && cause != Cause::materials && cause != Cause::library;
 }
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs

@@ -9,7 +9,7 @@ namespace {
 Result<void> take_mark(const wire::LogMark& t, LogMark& mark) {
   if (t.seq() == 0 || t.seq() > kSequenceMax) return bad("log marks: seq is out of range");
   if (!is_time(t.utc_us())) return bad("log marks: time is out of range");
-  if (t.cause() > kCauseMax) return bad("log marks: cause is unknown");
+  if (t.cause() > kLogMarkCauseMax) return bad("log marks: cause is unknown");
   if (t.kind() == 0) return bad("log marks: kind is 0");
   mark = {t.seq(), t.utc_us(), t.author(), static_cast<Cause>(t.cause()),
           static_cast<EditKind>(t.kind())};

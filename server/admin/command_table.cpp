@@ -6,6 +6,7 @@
 #include "server/admin/clock_commands.hpp"
 #include "server/admin/ground_commands.hpp"
 #include "server/admin/host_commands.hpp"
+#include "server/admin/library_commands.hpp"
 #include "server/admin/moderation_commands.hpp"
 #include "server/admin/password_commands.hpp"
 #include "server/admin/player_commands.hpp"
@@ -22,7 +23,7 @@ constexpr const char* kBoxHelp =
 constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME or author #N (several: any of them), "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials";
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;
@@ -106,9 +107,9 @@ const CommandRow* find_text_command(std::string_view line, std::string_view& tex
 const std::vector<CommandRow>& command_table() {
   static const std::vector<CommandRow> table = [] {
     std::vector<CommandRow> rows;
-    for (const auto& part :
-         {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
-          role_commands(), password_commands(), clock_commands(), host_commands()})
+    for (const auto& part : {player_commands(), ground_commands(), moderation_commands(),
+                             rollback_commands(), role_commands(), password_commands(),
+                             clock_commands(), library_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

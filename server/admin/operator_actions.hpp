@@ -1,9 +1,12 @@
 // OperatorActions: commands that the program or the runtime around a world carries out.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
@@ -24,6 +27,12 @@ struct OperatorActions {
   /// Returns why a wall clock of this time (UTC), which is behind the time of the log, may be wrong, as
   /// a part of a sentence, or nullopt. The runtime sets it, because the world reads no clock.
   std::function<std::optional<std::string>(TimeUs wall_us)> doubt_clock;
+  /// Writes the file of a build, under a content number, before the record that adds the build. `done`
+  /// gets an empty text, or why it failed. Returns false if another file is being written, or if the
+  /// log cannot be written any more; `done` is not called then. The runtime sets it.
+  std::function<bool(std::uint64_t content, std::shared_ptr<const Bytes> file,
+                     std::function<void(const std::string&)> done)>
+      save_build_file;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

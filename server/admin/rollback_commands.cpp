@@ -9,6 +9,7 @@
 
 #include "common/core/hex.hpp"
 #include "common/core/utc_text.hpp"
+#include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/material_file.hpp"
 #include "server/admin/rights_change_text.hpp"
@@ -26,16 +27,17 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 8> kCauses = {{{"player", Cause::player},
+constexpr std::array<CauseName, 9> kCauses = {{{"player", Cause::player},
                                                {"console", Cause::console},
                                                {"rollback", Cause::rollback},
                                                {"undo", Cause::undo},
                                                {"redo", Cause::redo},
                                                {"import", Cause::import},
                                                {"rights", Cause::rights},
-                                               {"materials", Cause::materials}}};
+                                               {"materials", Cause::materials},
+                                               {"library", Cause::library}}};
 constexpr const char* kCauseNames =
-    "player, console, rollback, undo, redo, import, rights or materials";
+    "player, console, rollback, undo, redo, import, rights, materials or library";
 
 CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   if (word.starts_with('#')) {
@@ -208,6 +210,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"rights\": rights undo SEQ takes these records back");
   if (preview.filter.cause == Cause::materials)
     return failure("rollback preview cause \"materials\": added materials stay");
+  if (preview.filter.cause == Cause::library)
+    return failure("rollback preview cause \"library\": builds remove takes a build away");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(
@@ -318,6 +322,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " " + rights_change_text(*change);
   if (const AddedMaterials* added = added_materials_of(record.edit))
     return line + " " + added_materials_text(*added);
+  if (const LibraryChange* change = library_change_of(record.edit))
+    return line + " " + library_change_text(*change);
   return line + " " + edit_text(record, materials);
 }
 

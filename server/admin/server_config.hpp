@@ -102,6 +102,12 @@ struct ServerConfig {
   std::uint64_t speed_max = 0;
   EditBudget builder_budget{100, 4'000};  // of a player; kNamedBudgets has names
   std::uint64_t budgets_per_address = 4;  // of one address, times that of a player, 0: no limit
+  // The library of builds.
+  std::uint64_t build_mib = 64;               // MiB of the file of one build, 1..1024
+  std::uint64_t builds_max = 100'000;         // builds, 0..1000000
+  std::uint64_t builds_mib = 4'096;           // MiB of all files, 0..10^9
+  std::uint64_t builds_per_player = 200;      // builds that a player has added, 0..1000000
+  std::uint64_t builds_mib_per_player = 256;  // MiB of their files, 0..10^9
   // Chat.
   std::uint64_t chat_per_minute = 30;  // lines of a player, ten at once, 0: no limit .. 60000
   std::uint64_t chat_days = 30;        // for which lines stay on disk, 0: none is written .. 36500

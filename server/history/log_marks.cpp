@@ -20,6 +20,8 @@ StoreResult<FoundLogMarks> read_log_marks(LogReader& reader, const LogMarksReque
     if (seq == before) continue;
     before = seq;
     const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
+      // Clients of version 2 of the protocol know no later cause.
+      if (static_cast<std::uint8_t>(record.cause) > kLogMarkCauseMax) return true;
       out.marks.push_back({record.version.seq, record.time_us, record.op.author, record.cause,
                            kind_of(record.edit)});
       return true;

@@ -52,6 +52,16 @@ OperatorActions on_strand(WorldStrand& strand, const OperatorActions& actions) {
       hand_over(successor, posted(std::move(reply)));
     };
   }
+  if (actions.save_build_file) {
+    out.save_build_file = [&strand, save = actions.save_build_file](
+                              std::uint64_t content, std::shared_ptr<const Bytes> file,
+                              std::function<void(const std::string&)> done) {
+      return save(content, std::move(file),
+                  [&strand, done = std::move(done)](const std::string& why) {
+                    strand.post([done, why] { done(why); });
+                  });
+    };
+  }
   if (actions.list_chat) {
     out.list_chat = [posted, list = actions.list_chat](const ChatQuery& query, CommandReply reply) {
       list(query, posted(std::move(reply)));

@@ -71,6 +71,8 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.chunk_loads = chunk_load_budget(config.chunk_loads_per_second);
   world.budgets_per_address = config.budgets_per_address;
   world.chat_budget = chat_budget(config.chat_per_minute);
+  world.library = {config.builds_max, config.builds_mib << 20, config.build_mib << 20,
+                   config.builds_per_player, config.builds_mib_per_player << 20};
   world.message_of_the_day = config.message_of_the_day;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
   world.preferred_encoding = config.encoding;

@@ -90,6 +90,9 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto watermarks = store.high_waters();
   if (!watermarks) return failure(watermarks.error().message());
   start.resolved = *std::move(watermarks);
+  auto library = store.library_rows();
+  if (!library) return failure(library.error().message());
+  start.library = *std::move(library);
   if (const auto counted = store.check_counts(); !counted)
     return failure(counted.error().message());
   return start;

@@ -141,6 +141,15 @@ void ServerCore::make_log(Store& store, Sequence durable) {
       evidence.is_synchronised = is_clock_synchronised();
       return doubt_of_clock_behind(evidence);
     };
+    // The log writer is another one after each takeover.
+    actions.save_build_file = [this](std::uint64_t content, std::shared_ptr<const Bytes> file,
+                                     std::function<void(const std::string&)> done) {
+      return log_ != nullptr && log_->writer().save_build_file(
+                                    content, std::move(file),
+                                    [done = std::move(done)](const StoreResult<void>& saved) {
+                                      done(saved ? std::string() : saved.error().message());
+                                    });
+    };
     if (chat_log_) {
       actions.list_chat = [this](const ChatQuery& query, const CommandReply& reply) {
         runstone::list_chat(*chat_log_, query, reply);

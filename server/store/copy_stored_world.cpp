@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/postgres/postgres_database.hpp"
 #include "common/sqlite/sqlite_file.hpp"
+#include "server/store/build_table.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/postgres_backend.hpp"
 #include "server/store/sql_result.hpp"
@@ -44,6 +46,12 @@ constexpr std::array kCopiedTables = {
     CopiedTable{"tile", 4, kChunk},
     CopiedTable{"keyframe", 1, "seq, epoch, time_us, chunks, digest0, digest1, checksum"},
     CopiedTable{"keyframe_chunk", 5, "lod, x, y, z, seq, epoch, digest0, digest1, checksum, data"}};
+
+// The tables of a world that has a library.
+constexpr std::array kLibraryTables = {
+    CopiedTable{"build", 1,
+                "number, added_by, file_bytes, content, name, author, tags, record, checksum"},
+    CopiedTable{"build_part", 2, "content, part, checksum, data"}};
 
 constexpr std::int64_t kFormatCopied = 4;  // the first one with all tables
 // The rows of chunks, and of other tables, that PostgreSQL is asked for at a time.
@@ -109,7 +117,7 @@ class Copying {
       : from_(from), to_(to), progress_(progress) {}
 
   /// Counts the rows of all tables, for the progress.
-  StoreResult<void> count_all();
+  StoreResult<void> count_all(std::span<const CopiedTable> tables);
   StoreResult<void> table(const CopiedTable& table);
   StoreResult<void> meta();
   std::uint64_t rows() const { return rows_; }
@@ -178,8 +186,8 @@ StoreResult<void> Copying::meta() {
   return {};
 }
 
-StoreResult<void> Copying::count_all() {
-  for (const CopiedTable& table : kCopiedTables) {
+StoreResult<void> Copying::count_all(std::span<const CopiedTable> tables) {
+  for (const CopiedTable& table : tables) {
     const auto count = from_.integer(std::string("SELECT count(*) FROM ") + table.name);
     if (!count) return failed(count.error());
     all_ += static_cast<std::uint64_t>(*count);
@@ -190,6 +198,15 @@ StoreResult<void> Copying::count_all() {
 void Copying::count_row() {
   ++rows_;
   if (progress_ && rows_ % kRowsAtOnce == 0) progress_(rows_, std::max(rows_, all_));
+}
+
+/// Returns true if the world has the tables of a library.
+StoreResult<bool> has_library_in(sql::Database& database) {
+  auto meta = MetaTable::open(database);
+  if (!meta) return failed(meta.error());
+  const auto rows = meta->read_all();
+  if (!rows) return failed(rows.error());
+  return rows->contains(kBuildFoldKey);
 }
 
 /// Opens the tables of a world for reading. The store has checked its format and its meta rows.
@@ -224,9 +241,17 @@ StoreResult<CopiedWorld> copy_stored_world(const std::string& from, const std::s
     if (auto made = create_schema(database); !made) return made;
     if (const auto begun = tables->begin_reads(); !begun) return failed(begun.error());
     Copying copying(*tables, database, progress);
-    StoreResult<void> copied = copying.count_all();
+    const auto has_library = has_library_in(*tables);
+    StoreResult<void> copied;
+    if (!has_library) copied = failed(has_library.error());
+    std::vector<CopiedTable> copied_tables(kCopiedTables.begin(), kCopiedTables.end());
+    if (has_library && *has_library) {
+      copied_tables.insert(copied_tables.end(), kLibraryTables.begin(), kLibraryTables.end());
+      copied = add_tables_of_library(database);
+    }
+    if (copied) copied = copying.count_all(copied_tables);
     if (copied) copied = copying.meta();
-    for (const CopiedTable& table : kCopiedTables) {
+    for (const CopiedTable& table : copied_tables) {
       if (copied) copied = copying.table(table);
     }
     out.rows = copying.rows();

@@ -6,6 +6,7 @@
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/edit_memory.hpp"
 #include "common/os/steady_clock.hpp"
+#include "server/store/build_table.hpp"
 
 namespace runstone {
 namespace {
@@ -85,11 +86,43 @@ bool LogWriter::save_tiles(SnapshotChunks tiles, JobDone done) {
   return queue(Job{std::move(tiles), std::nullopt, 0, std::nullopt, std::move(done), true});
 }
 
+bool LogWriter::save_build_file(std::uint64_t content, std::shared_ptr<const Bytes> file,
+                                JobDone done) {
+  RUNSTONE_ASSERT(file != nullptr && !file->empty());
+  Job job;
+  job.done = std::move(done);
+  job.file = std::move(file);
+  job.content = content;
+  return queue(std::move(job));
+}
+
+std::size_t LogWriter::Job::size() const {
+  return file ? (file->size() + kBuildPartBytes - 1) / kBuildPartBytes : chunks.size();
+}
+
+void LogWriter::write_part(Job& job) {
+  const std::size_t begin = job.written * kBuildPartBytes;
+  const ByteView part =
+      ByteView(*job.file).subspan(begin, std::min(kBuildPartBytes, job.file->size() - begin));
+  const auto saved =
+      world_.save_build_part(job.content, static_cast<std::uint32_t>(job.written), part);
+  job.written = saved ? job.written + 1 : job.size();  // an error ends the job
+  if (!job.is_over()) return;
+  {
+    const std::lock_guard guard(mutex_);
+    has_file_job_ = false;
+  }
+  job.done(saved);
+}
+
 bool LogWriter::queue(Job job) {
   {
     const std::lock_guard guard(mutex_);
-    const std::size_t jobs = jobs_.size() + (job_is_running_ ? 1 : 0);
-    if (failed_ || stopping_ || jobs >= limits_.jobs_max) return false;
+    // The file of a build takes no place of the others, because these are not offered again.
+    const std::size_t jobs = jobs_.size() + (job_is_running_ ? 1U : 0U) - (has_file_job_ ? 1U : 0U);
+    const bool is_full = job.file ? has_file_job_ : jobs >= limits_.jobs_max;
+    if (failed_ || stopping_ || is_full) return false;
+    if (job.file) has_file_job_ = true;
     jobs_.push_back(std::move(job));
   }
   work_.notify_one();
@@ -200,6 +233,10 @@ StoreResult<void> LogWriter::write(Batch& group) {
 }
 
 StoreResult<void> LogWriter::write_slice(Job& job) {
+  if (job.file) {
+    write_part(job);
+    return {};
+  }
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
   const ChunkSpan slice(job.chunks.data() + job.written, count);
   const bool last = job.written + count == job.chunks.size();
@@ -282,6 +319,7 @@ void LogWriter::end_optional_jobs(const StoreError& error, std::optional<Job>& j
       job.reset();
       job_is_running_ = false;
     }
+    has_file_job_ = false;
   }
   for (const Job& one : ended) one.done(failure(error));
 }

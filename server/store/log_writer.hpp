@@ -1,25 +1,25 @@
 // LogWriter: the one thread that writes a world. It takes batches of records, and jobs for
-// snapshots, keyframes and tiles, from bounded queues.
+// snapshots, keyframes, tiles and files of builds, from bounded queues.
 //   - Group commit: all batches that were queued during the last fsync become one transaction, and
 //     one call of on_durable. A slow disk makes larger groups, and so does
 //     commit_interval, because a commit writes some pages of the database however small it is.
 //   - Full: has_room() returns false, and the world rejects edits as busy. The queue of jobs does
 //     not fill in a server: the checkpointer, the keyframe thread and the tiles each have at most
 //     one job under way. So a refused job means that the writer has failed or stopped. The job
-//     is not offered again.
+//     is not offered again. The file of a build has a place of its own, and may be offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
 //   - A full disk, or a database that takes no writes: what was to be written stays queued and is written again once a second, until
 //     it can be written. has_room() returns false meanwhile. It also returns false while less space is
-//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes and
-//     tiles end with an error meanwhile, because they hold nothing that the log does not.
+//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes,
+//     tiles and files of builds end with an error meanwhile, because they hold nothing that the log does not.
 //   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
 //     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
-//     log. A keyframe or a tile that cannot be written ends only its job.
-// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles() and has_room()
-// from any thread. The writer thread calls the callbacks, which must return soon. The mutex is a
+//     log. A keyframe, a tile or a file that cannot be written ends only its job.
+// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles(),
+// save_build_file() and has_room() from any thread. The writer thread calls the callbacks, which must return soon. The mutex is a
 // leaf: no callback and no disk access happens while it is locked.
 #pragma once
 #include <atomic>
@@ -28,6 +28,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -117,6 +118,10 @@ class LogWriter {
   /// Queues a job that calls WorldSink::save_tiles() for each slice of tiles. `done` and the result
   /// are as for save_keyframe().
   bool save_tiles(SnapshotChunks tiles, JobDone done);
+  /// Queues a job that calls WorldSink::save_build_part() for each part of the file of a build. `done`
+  /// is as for save_keyframe(). The file must not change. Returns false also if another file is being
+  /// written.
+  bool save_build_file(std::uint64_t content, std::shared_ptr<const Bytes> file, JobDone done);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
   /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.
   /// Snapshots without room do not keep it from writing records.
@@ -138,11 +143,14 @@ class LogWriter {
   struct Job {
     SnapshotChunks chunks;
     std::optional<Sequence> checkpoint;
-    std::size_t written = 0;           // chunks that are on disk
+    std::size_t written = 0;           // chunks or parts of the file that are on disk
     std::optional<Keyframe> keyframe;  // only in a job for a keyframe
     JobDone done;                      // in a job for a keyframe or for tiles
     bool is_of_tiles = false;
-    bool is_over() const { return written == chunks.size(); }
+    std::shared_ptr<const Bytes> file = nullptr;  // only in a job for the file of a build
+    std::uint64_t content = 0;
+    std::size_t size() const;
+    bool is_over() const { return written == size(); }
   };
 
   /// Requires mutex_.
@@ -160,6 +168,8 @@ class LogWriter {
   StoreResult<void> write(Batch& group);
   /// Writes the next slice of a job. The last slice moves the checkpoint, or writes the keyframe.
   StoreResult<void> write_slice(Job& job);
+  /// Writes the next part of the file of a build, and calls the job's `done` after the last one.
+  void write_part(Job& job);
   /// Looks at the free space, unless it was done less than space_interval ago.
   void check_space();
   void set_space(DiskSpace space, const std::string& reason);
@@ -185,6 +195,7 @@ class LogWriter {
   std::deque<Job> jobs_;
   std::size_t room_taken_ = 0;   // by batches queued or being written
   bool job_is_running_ = false;  // the writer thread has a job that is not in jobs_
+  bool has_file_job_ = false;    // one for the file of a build is queued or running
   bool stopping_ = false, failed_ = false;
   DiskSpace space_ = DiskSpace::enough;
   Counters counters_;

@@ -24,7 +24,7 @@ MetaRows rows_of(const WorldMeta& meta);
 Result<WorldMeta, std::string> meta_of(const MetaRows& rows);
 
 /// The number of rows of a table, and the sum of a hash of each row. `meta` holds one for each of
-/// the tables base, snapshot, player, player_instance and name_claim. It detects a row that
+/// the tables base, snapshot, player, player_instance, name_claim, build and build_part. It detects a row that
 /// vanished or changed its key, although every remaining row is sound. A change of one row costs
 /// O(1).
 struct RowFold {

@@ -201,6 +201,7 @@ StoreResult<void> SqlStore::raise_watermarks(const Watermarks& marks) {
 StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
   if (auto accepted = accept_lost_chunks(lost); !accepted) return accepted;
   if (auto accepted = accept_lost_counts(lost); !accepted) return accepted;
+  if (auto accepted = accept_lost_builds(lost); !accepted) return accepted;
   const auto players = player_table_.players();
   if (!players) return failed(players.error());
   if (auto sound = check_players(*players); !sound) {

@@ -65,6 +65,7 @@ StoreResult<void> SqlStore::transact(const std::function<StoreResult<void>()>& b
     broken_ = !can_be_repeated(committed.error());
     return committed;
   }
+  is_library_new_ = false;
   if (std::exchange(is_format_raised_, false)) {
     // An older program looks for the number in the main file alone, before it opens the database.
     const auto completed = backend_->complete_file(false);
@@ -92,7 +93,15 @@ StoreResult<Epoch> SqlStore::begin_branch(TimeUs now_us) {
 StoreResult<Epoch> SqlStore::set_epoch(Epoch epoch) {
   DurableState next = state_;
   next.epoch = epoch;
-  const auto written = transact([&] { return put_epoch(next.epoch); });
+  const auto written = transact([&]() -> StoreResult<void> {
+    if (library_) {
+      auto parts = meta_table_.fold(kBuildPartFoldKey);
+      if (!parts) return failed(parts.error());
+      if (auto removed = library_->remove_unused_parts(*parts); !removed) return removed;
+      if (auto put = meta_table_.put_fold(kBuildPartFoldKey, *parts); !put) return put;
+    }
+    return put_epoch(next.epoch);
+  });
   if (!written) return failed(written.error());
   state_ = next;
   // A world whose mark cannot be written is not started.
@@ -158,7 +167,7 @@ StoreResult<void> SqlStore::append(std::span<const PlayerRow> players,
   DurableState next;
   auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, false); !continues) return continues;
-    return insert(players, records, next);
+    return insert(players, records, false, next);
   });
   if (written) committed(next);
   return written;
@@ -169,7 +178,7 @@ StoreResult<void> SqlStore::append_history(std::span<const PlayerRow> players,
   DurableState next;
   auto written = write([&]() -> StoreResult<void> {
     if (auto continues = check_continues(records, true); !continues) return continues;
-    if (auto inserted = insert(players, records, next); !inserted) return inserted;
+    if (auto inserted = insert(players, records, true, next); !inserted) return inserted;
     if (!records.empty()) next.epoch = std::max(next.epoch, records.back().version.epoch);
     return put_epoch(next.epoch);
   });
@@ -178,7 +187,8 @@ StoreResult<void> SqlStore::append_history(std::span<const PlayerRow> players,
 }
 
 StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
-                                   std::span<const EditRecord> records, DurableState& next) {
+                                   std::span<const EditRecord> records, bool is_history,
+                                   DurableState& next) {
   next = state_;
   if (auto put = put_players(players); !put) return put;
   for (const PlayerRow& player : players)
@@ -193,6 +203,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
     next.seq = record.version.seq;
   }
   if (auto added = add_eras(records); !added) return added;
+  if (auto applied = apply_library(records, is_history); !applied) return applied;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
   const auto author_max = meta_table_.counter("author_max");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/sql/database.hpp"
+#include "server/store/build_table.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/claim_table.hpp"
 #include "server/store/durable_state.hpp"
@@ -64,6 +65,12 @@ class SqlStore final : public Store {
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() override;
   StoreResult<std::vector<std::string>> rows_of_no_tile() override;
 
+  // LibraryReader
+  StoreResult<std::vector<StoredBuild>> builds(const LibraryQuery& query) override;
+  StoreResult<std::optional<StoredBuild>> build(Sequence number) override;
+  StoreResult<void> read_build(const StoredBuild& build, const EachPart& each) override;
+  StoreResult<std::vector<LibraryRow>> library_rows() override;
+
   // WorldReader
   StoreResult<std::vector<Keyframe>> keyframes() override;
   StoreResult<std::vector<StoredChunk>> keyframe_chunks() override;
@@ -95,6 +102,8 @@ class SqlStore final : public Store {
   StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override;
+  StoreResult<void> save_build_part(std::uint64_t content, std::uint32_t part,
+                                    ByteView data) override;
   StoreResult<void> save_tiles(ChunkSpan tiles) override;
 
   // ImportSink
@@ -152,6 +161,7 @@ class SqlStore final : public Store {
     player_table_.forget();
     counts_.reset();
     is_format_raised_ = false;
+    if (std::exchange(is_library_new_, false)) library_.reset();
   }
   /// Calls `body` in one transaction and commits. If the disk is full, nothing is written, and the
   /// call may be repeated. After any other failed commit the state of the disk is unknown, so every
@@ -190,9 +200,20 @@ class SqlStore final : public Store {
   /// Inserts players, records and watermarks in the caller's transaction. Sets `next` to the state
   /// that follows.
   StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records,
-                           DurableState& next);
+                           bool is_history, DurableState& next);
   /// Lists the eras that begin at these records, in the caller's transaction.
   StoreResult<void> add_eras(std::span<const EditRecord> records);
+  /// Opens the tables of the library, if the world has them and they are not open. A reader of a
+  /// running server finds them when the first build is added.
+  StoreResult<void> open_library();
+  /// Makes the tables of the library if the world has none, in the caller's transaction.
+  StoreResult<void> make_library();
+  /// Follows the changes of the library among the records, in the caller's transaction. A build whose
+  /// file is not in the store is refused, or left out in a history: an .rlog has no files.
+  StoreResult<void> apply_library(std::span<const EditRecord> records, bool is_history);
+  StoreResult<void> put_library_folds(const RowFold& builds, const RowFold& parts);
+  StoreResult<void> check_library();
+  StoreResult<void> accept_lost_builds(std::vector<std::string>& lost);
   /// Makes the world one of this format unless it is of a later one, in the caller's transaction. The
   /// commit then moves the number into the main file.
   StoreResult<void> raise_format(std::uint32_t format);
@@ -248,6 +269,7 @@ class SqlStore final : public Store {
   KeyframeTable keyframes_;
   // nullopt: a world without the table, or with tiles of other rules, that is open for reading only
   std::optional<TileTable> tiles_;
+  std::optional<BuildTable> library_;  // nullopt: the world has no library, or it is not open yet
   StoreAccess access_;
   RowCheck row_check_ = RowCheck::voxels;
   WorldMeta meta_;
@@ -262,6 +284,7 @@ class SqlStore final : public Store {
   // format, is in the WAL alone still.
   bool is_reader_in_the_way_ = false;
   bool is_format_raised_ = false;  // by the present transaction
+  bool is_library_new_ = false;    // the present transaction makes its tables
   bool is_whole_ = false;          // this program may say so when it closes the world
   bool broken_ = false;
 };

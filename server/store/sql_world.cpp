@@ -125,6 +125,19 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
       if (!raised) return failed(raised.error());
     }
   }
+  if (rows->contains(kBuildFoldKey)) {
+    auto library = BuildTable::open(store->database());
+    if (!library) return failed(library.error());
+    store->library_ = *std::move(library);
+    // A copy is made as a world of the lowest format.
+    const auto format = store->backend_->format();
+    if (!format) return failed(format.error());
+    if (access != StoreAccess::read_only && !store->loss_ && *format < kWorldFormatOfLibrary) {
+      const auto raised =
+          store->transact([&] { return store->raise_format(kWorldFormatOfLibrary); });
+      if (!raised) return failed(raised.error());
+    }
+  }
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =
       rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};

@@ -152,6 +152,7 @@ StoreResult<void> SqlStore::check() {
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;
   if (auto keyframes = check_keyframes(); !keyframes) return keyframes;
+  if (auto library = check_library(); !library) return library;
   return check_counts();
 }
 

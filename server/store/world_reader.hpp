@@ -6,12 +6,13 @@
 
 #include "server/store/chunk_reader.hpp"
 #include "server/store/keyframe.hpp"
+#include "server/store/library_reader.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 
-class WorldReader : public LogReader, public ChunkReader {
+class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
  public:
   /// Returns all keyframes, ascending.
   virtual StoreResult<std::vector<Keyframe>> keyframes() = 0;

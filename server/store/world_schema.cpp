@@ -143,6 +143,29 @@ CREATE TABLE keyframe_chunk(
 CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
 )sql";
 
+// A file is written before the row of its build, so its parts have a number of their own. The blob is
+// the last column: checksums are read without its overflow pages.
+constexpr const char* kLibrary = R"sql(
+CREATE TABLE build(
+  number INTEGER NOT NULL PRIMARY KEY,
+  added_by INTEGER NOT NULL, file_bytes INTEGER NOT NULL, content INTEGER NOT NULL UNIQUE,
+  name TEXT NOT NULL, author TEXT NOT NULL, tags TEXT NOT NULL,
+  record BLOB NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE build_part(
+  content INTEGER NOT NULL, part INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY(content, part)
+) STRICT;
+)sql";
+// Builds are found without their records. PostgreSQL has no index of such long rows, and reads the
+// table.
+constexpr const char* kSqliteLibrary = R"sql(
+CREATE INDEX build_search ON build(number, name, author, tags);
+)sql";
+
 /// Replaces whole words that PostgreSQL writes otherwise.
 std::string in_postgres(std::string_view text) {
   constexpr std::pair<std::string_view, std::string_view> kWords[] = {
@@ -196,14 +219,20 @@ StoreResult<void> add_tables_of_format_4(sql::Database& database) {
   return make_chunk_table(database, "tile");
 }
 
+StoreResult<void> add_tables_of_library(sql::Database& database) {
+  if (auto made = run_in_dialect(database, kLibrary); !made) return made;
+  if (database.dialect() != sql::Dialect::sqlite) return {};
+  return run_in_dialect(database, kSqliteLibrary);
+}
+
 StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return failure(StoreError{kind, file, "", std::move(what)});
   };
-  if (version > kWorldFormatOfEras) {
+  if (version > kWorldFormatOfLibrary) {
     return fail_as(StoreError::Kind::newer_version,
                    "is of world format " + std::to_string(version) +
-                       "; this program knows format " + std::to_string(kWorldFormatOfEras) +
+                       "; this program knows format " + std::to_string(kWorldFormatOfLibrary) +
                        ". Nothing was changed.");
   }
   if (version == 1) {

@@ -21,13 +21,16 @@ inline constexpr std::uint32_t kWorldFormat = 5;
 /// Older programs refuse this number. If a later program changes the schema, its format is a greater
 /// number, because this program opens every world of format 6.
 inline constexpr std::uint32_t kWorldFormatOfEras = 6;
+/// The format of a world that has a library of builds (kBuildFoldKey): it has two tables more, and its
+/// log may have records that programs of format 6 do not know.
+inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Returns "world formats 5 and 6": those that this program makes, for --version.
+/// Returns "world formats 5, 6 and 7": those that this program makes, for --version.
 inline std::string world_formats_text() {
-  return "world formats " + std::to_string(kWorldFormat) + " and " +
-         std::to_string(kWorldFormatOfEras);
+  return "world formats " + std::to_string(kWorldFormat) + ", " +
+         std::to_string(kWorldFormatOfEras) + " and " + std::to_string(kWorldFormatOfLibrary);
 }
 
 /// Makes all tables in the caller's transaction.
@@ -36,6 +39,8 @@ StoreResult<void> create_schema(sql::Database& database);
 StoreResult<void> add_tables_of_format_3(sql::Database& database);
 /// Makes the table that format 4 adds to format 3, without rows, in the caller's transaction.
 StoreResult<void> add_tables_of_format_4(sql::Database& database);
+/// Makes the tables of the library of builds, without rows, in the caller's transaction.
+StoreResult<void> add_tables_of_library(sql::Database& database);
 /// Fails with newer_version, bad_request or corrupt if this program cannot read a world of this
 /// format. `file` names the world in the error.
 StoreResult<void> check_format(const std::string& file, std::uint32_t version);

@@ -1,4 +1,5 @@
-// WorldSink: the writes of a running server: edits, names, snapshots, keyframes and tiles. Each
+// WorldSink: the writes of a running server: edits, names, snapshots, keyframes, tiles and files of
+// builds. Each
 // call is one transaction. It fails (locked) and writes nothing if another program owns the world.
 #pragma once
 #include <functional>
@@ -7,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
@@ -55,6 +57,14 @@ class WorldSink {
   /// not prove the keyframe.
   virtual StoreResult<void> save_keyframe(ChunkSpan chunks,
                                           const std::optional<Keyframe>& keyframe) = 0;
+  /// Writes a part of the file of a build, before the record that adds the build is appended. It is
+  /// durable on return. Part 0 is the first one; each but the last has kBuildPartBytes bytes. The next
+  /// raise_epoch() removes parts whose build was not added. Fails (bad_request) if a build has this
+  /// content number.
+  virtual StoreResult<void> save_build_part(std::uint64_t /*content*/, std::uint32_t /*part*/,
+                                            ByteView /*data*/) {
+    return failure(StoreError{StoreError::Kind::bad_request, "", "", "has no library of builds"});
+  }
   /// Inserts or replaces tiles. Requires that each was made of chunks of this world, after it was
   /// opened for writing, and contains all edits below it up to its version. A tile is left out if a
   /// snapshot below it was saved meanwhile that is newer. Fails (bad_request) if a tile is ahead of

@@ -94,6 +94,12 @@ Result<void> validate_shape(const MaterialsEdit& shape) {
   return validate(*shape.added);
 }
 
+Result<void> validate_shape(const LibraryEdit& shape) {
+  if (shape.change == nullptr)
+    return fail(ErrorCode::bad_value, "edit of the library without a change");
+  return validate(*shape.change);
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -139,6 +145,10 @@ void write_shape(ByteWriter& w, const RightsEdit& shape) {
 
 void write_shape(ByteWriter& w, const MaterialsEdit& shape) {
   write_added_materials(w, *shape.added);
+}
+
+void write_shape(ByteWriter& w, const LibraryEdit& shape) {
+  write_library_change(w, *shape.change);
 }
 
 std::int32_t read_coordinate(ByteReader& r) {
@@ -209,6 +219,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::rights:
     case EditKind::materials:
     case EditKind::materials_with_looks:
+    case EditKind::library:
       return true;
   }
   return false;
@@ -243,6 +254,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r, false))};
     case EditKind::materials_with_looks:
       return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r, true))};
+    case EditKind::library:
+      return LibraryEdit{std::make_shared<const LibraryChange>(read_library_change(r))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -252,7 +265,7 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
       EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
-      EditKind::paste,     EditKind::rights,   EditKind::materials};
+      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -264,6 +277,10 @@ EditDescriptor rights_edit(RightsChange change) {
 
 EditDescriptor materials_edit(AddedMaterials added) {
   return {MaterialsEdit{std::make_shared<const AddedMaterials>(std::move(added))}, {}, kEmpty};
+}
+
+EditDescriptor library_edit(LibraryChange change) {
+  return {LibraryEdit{std::make_shared<const LibraryChange>(std::move(change))}, {}, kEmpty};
 }
 
 Result<void> validate(const EditDescriptor& edit) {
@@ -332,7 +349,8 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   auto edit = decode_descriptor(in);
   if (edit && !has_voxels(*edit))
-    return fail(ErrorCode::unknown_kind, "a change of rights or materials is no edit of voxels");
+    return fail(ErrorCode::unknown_kind,
+                "a change of rights, materials or the library is no edit of voxels");
   return edit;
 }
 

@@ -1,9 +1,9 @@
 // EditDescriptor: the effect of an edit as geometry, a mask and a material. A whole brush stroke or
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
-// in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Two kinds
-// have no voxels: one changes who may do what, the other adds materials. They stand in the same
-// order as the others.
+// in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
+// have no voxels: they change who may do what, add materials, or change the library of builds. They
+// stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,6 +17,7 @@
 #include "common/edits/clipboard/clipboard.hpp"
 #include "common/edits/clipboard/orientation.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
+#include "common/edits/descriptor/library_change.hpp"
 #include "common/rights/rights_change.hpp"
 
 namespace runstone {
@@ -31,7 +32,8 @@ enum class EditKind : std::uint8_t {
   paste = 6,
   rights = 7,
   materials = 8,
-  materials_with_looks = 9  // of which at least one has a look
+  materials_with_looks = 9,  // of which at least one has a look
+  library = 10
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -118,9 +120,18 @@ struct MaterialsEdit {
   }
 };
 
+/// Changes the library of builds. It has no voxels and touches no chunk.
+struct LibraryEdit {
+  std::shared_ptr<const LibraryChange> change;
+  friend bool operator==(const LibraryEdit& a, const LibraryEdit& b) {
+    return a.change == b.change ||
+           (a.change != nullptr && b.change != nullptr && *a.change == *b.change);
+  }
+};
+
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
-using EditShape =
-    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit, MaterialsEdit>;
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
+                               MaterialsEdit, LibraryEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -153,10 +164,18 @@ inline const AddedMaterials* added_materials_of(const EditDescriptor& edit) {
   const auto* materials = std::get_if<MaterialsEdit>(&edit.shape);
   return materials == nullptr ? nullptr : materials->added.get();
 }
+/// Returns the descriptor of a change of the library.
+EditDescriptor library_edit(LibraryChange change);
+/// Returns the change of a descriptor that changes the library; null for the other kinds.
+inline const LibraryChange* library_change_of(const EditDescriptor& edit) {
+  const auto* library = std::get_if<LibraryEdit>(&edit.shape);
+  return library == nullptr ? nullptr : library->change.get();
+}
 /// Returns false if the kind of the edit has no voxels.
 inline bool has_voxels(const EditDescriptor& edit) {
   return !std::holds_alternative<RightsEdit>(edit.shape) &&
-         !std::holds_alternative<MaterialsEdit>(edit.shape);
+         !std::holds_alternative<MaterialsEdit>(edit.shape) &&
+         !std::holds_alternative<LibraryEdit>(edit.shape);
 }
 
 /// Returns the maximum number of bytes of a descriptor of this kind.
@@ -166,6 +185,7 @@ constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::materials) return 64 + kAddedMaterialsBytesMax;
   if (kind == EditKind::materials_with_looks)
     return 64 + kAddedMaterialsBytesMax + kAddedLooksBytesMax;
+  if (kind == EditKind::library) return 64 + kLibraryChangeBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.

@@ -23,6 +23,8 @@ constexpr const char* name_of(EditKind kind) {
     case EditKind::materials:
     case EditKind::materials_with_looks:
       return "materials";
+    case EditKind::library:
+      return "library";
   }
   return "edit";
 }

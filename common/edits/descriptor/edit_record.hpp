@@ -32,7 +32,7 @@ inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 
 /// Fails if sequence, client sequence or subject is outside its range, or if the cause is not that
 /// of the edit: a change of rights has the cause `rights`, new materials have the cause
-/// `materials`, and no other edit has one of these.
+/// `materials`, a change of the library has the cause `library`, and no other edit has one of these.
 Result<void> validate_fields(const EditRecord& record);
 
 /// Returns true for a record that corrects the time of the log. Its time alone may be earlier than that

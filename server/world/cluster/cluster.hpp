@@ -45,6 +45,9 @@ class Cluster {
   std::size_t follower_count() const { return followers_.count(); }
   /// Returns why no CorrectTime may be ordered, as a sentence, or nullopt.
   std::optional<std::string> correction_refusal() const { return followers_.correction_refusal(); }
+  /// Returns why no change of the library may be ordered, as a sentence without its period, or
+  /// nullopt.
+  std::optional<std::string> library_refusal() const { return followers_.library_refusal(); }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const {

@@ -111,6 +111,15 @@ std::optional<std::string> Followers::correction_refusal() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Followers::library_refusal() const {
+  for (const auto& [link, follower] : all_) {
+    if (!follower.takes_library)
+      return "a server that follows is of an older version, which cannot read a change of the library: "
+             "stop it, or start it with this version (servers lists them)";
+  }
+  return std::nullopt;
+}
+
 void Followers::admit(Session& session, const Clocks& now) {
   const SessionId link = session.id;
   environment_.report(OperatorLogLevel::info,
@@ -126,6 +135,7 @@ void Followers::admit(Session& session, const Clocks& now) {
   follower.instance = session.instance;
   follower.takes_servers = session.has(kFeatureServerList);
   follower.takes_corrections = session.has(kFeatureTimeCorrections);
+  follower.takes_library = session.has(kFeatureLibrary);
   order_.feed().add(link);
   environment_.trust(link);
   environment_.opened(link);

@@ -27,6 +27,7 @@ struct Follower {
   std::string player_address, page_address;  // as in FollowRequest
   bool takes_servers = false;                // it knows the message
   bool takes_corrections = false;            // it knows a CorrectTime
+  bool takes_library = false;                // it knows a LibraryChange
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -61,6 +62,9 @@ class Followers {
   std::size_t count() const { return all_.size(); }
   /// Returns why no CorrectTime may be ordered, as a sentence, or nullopt.
   std::optional<std::string> correction_refusal() const;
+  /// Returns why no change of the library may be ordered, as a sentence without its period, or
+  /// nullopt.
+  std::optional<std::string> library_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;

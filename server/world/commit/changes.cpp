@@ -165,4 +165,27 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   return refusal(why_not_ordered(ordered));
 }
 
+Result<Sequence, std::string> Changes::change_library(const LibraryChange& change, AuthorId author,
+                                                      const Clocks& now) {
+  if (author != 0 && !order_.players().key_of(author)) return failure("the player has left");
+  const OperationId op = order_.next_own_operation(author);
+  const EditOffer offer{op, Cause::library, now.steady_us, library_edit(change), 0};
+  const ServerEditsResult ordered = order_edits({offer}, author, now);
+  if (ordered.state == ServerEditsResult::State::ordered) return order_.library().newest();
+  return failure(why_not_ordered(ordered));
+}
+
+Result<Sequence, std::string> Changes::add_build(const AddBuild& build, AuthorId author,
+                                                 const Clocks& now) {
+  if (auto why = order_.library().refusal(author, build.file_bytes)) return failure(*why);
+  return change_library(build, author, now);
+}
+
+Result<Sequence, std::string> Changes::remove_build(Sequence number, AuthorId author,
+                                                    const Clocks& now) {
+  if (order_.library().find(number) == nullptr)
+    return failure("the library has no build " + std::to_string(number));
+  return change_library(RemoveBuild{number}, author, now);
+}
+
 }  // namespace runstone

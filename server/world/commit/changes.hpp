@@ -1,8 +1,9 @@
-// Changes: edits that the server makes itself: rollback, undo, redo, changes of rights, and new
-// materials. All are records of the log.
+// Changes: edits that the server makes itself: rollback, undo, redo, changes of rights, new
+// materials, and changes of the library of builds. All are records of the log.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,7 +73,19 @@ class Changes {
   Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
                                                   const Clocks& now);
 
+  /// Orders the addition of a build by an author (0: the console), whose file is in the store. Returns
+  /// its number, which is the sequence of the record, or why it was refused, as a sentence.
+  Result<Sequence, std::string> add_build(const AddBuild& build, AuthorId author,
+                                          const Clocks& now);
+  /// Returns a content number for the file of a build, which was never used in the world.
+  std::uint64_t next_build_content() { return order_.library().next_content(order_.epoch()); }
+  /// Orders the removal of a build by an author (0: the console). Returns the sequence of the record,
+  /// or why it was refused, as a sentence.
+  Result<Sequence, std::string> remove_build(Sequence number, AuthorId author, const Clocks& now);
+
  private:
+  Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
+                                               const Clocks& now);
   enum class DiskNeed {
     space,  // nothing is ordered while the disk is full
     none,   // what is ordered while the disk is full waits in memory

@@ -86,6 +86,7 @@ void Commits::apply(const std::vector<EditRecord>& records) {
     ground_.rights_changed(*ground);
   }
   if (order_.apply_materials(records)) receipts_.send_materials_to_all();
+  order_.library().apply(records);
 }
 
 void Commits::send_batch(const OrderedBatch& batch, const Clocks& now) {

@@ -71,6 +71,7 @@ struct WorldConfig {
   std::size_t digest_check_chunks = 8;   // per session and interval
   TimeUs retry_interval_us = 100'000;    // after a full queue, unless drained() is called before
   std::size_t stack_load_edits = 1'024;  // an absent chunk with a longer stack is loaded
+  LibraryLimits library;
   // Memory and disk.
   MemoryLimits memory;
   SnapshotPolicy snapshots;

@@ -27,6 +27,15 @@ struct MemoryLimits {
   std::size_t stack_bytes_max = 64ULL << 20;
   std::size_t unused_bytes_max = 16ULL << 20;
 };
+/// Bounds of the library of builds (server/world/order/library.hpp).
+struct LibraryLimits {
+  std::uint64_t builds_max = 100'000;
+  std::uint64_t bytes_max = 4ULL << 30;        // of all files together
+  std::uint64_t file_bytes_max = 64ULL << 20;  // of one file
+  std::uint64_t builds_per_player = 200;
+  std::uint64_t bytes_per_player = 256ULL << 20;
+};
+
 /// Returns the bounds of a world whose data may take this many bytes.
 constexpr MemoryLimits memory_limits_of(std::size_t bytes) {
   return {bytes / 16 * 14, bytes / 16 * 15, bytes, bytes / 8, bytes / 32};

@@ -9,6 +9,7 @@
 #include "common/core/ids.hpp"
 #include "common/rights/change_rules.hpp"
 #include "server/world/environment/chat_entry.hpp"
+#include "server/world/environment/library_rows.hpp"
 #include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
@@ -34,6 +35,7 @@ struct WorldStart {
   std::vector<ChatEntry> chat;       // the newest lines, the last one last
   AuthorId author_max = 0;           // the highest author number ever stored
   std::vector<HighWater> resolved;
+  std::vector<LibraryRow> library;  // all builds, ascending
 };
 
 }  // namespace runstone

@@ -18,6 +18,7 @@
 #include "server/world/order/authority.hpp"
 #include "server/world/order/checkpointer.hpp"
 #include "server/world/order/large_edit_pace.hpp"
+#include "server/world/order/library.hpp"
 #include "server/world/order/log_feed.hpp"
 #include "server/world/order/name_claims.hpp"
 #include "server/world/order/ownership.hpp"
@@ -80,6 +81,9 @@ class Order {
   bool apply_materials(const std::vector<EditRecord>& records);
   /// Returns the record that added materials last in this run, or 0.
   Sequence newest_materials() const { return materials_seq_; }
+  /// Returns the builds of the world. The caller applies records to it as to the materials.
+  Library& library() { return library_; }
+  const Library& library() const { return library_; }
   /// Returns the operation of the next edit that this server makes for an author.
   OperationId next_own_operation(AuthorId author) { return {author, own_instance_, ++own_seq_}; }
 
@@ -169,6 +173,7 @@ class Order {
   LargeEditPace large_edits_;
   MaterialTable materials_;
   Sequence materials_seq_ = 0;
+  Library library_;
   Players players_;
   NameClaims names_;
   std::vector<AuthorId> gone_authors_;

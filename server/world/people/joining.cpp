@@ -214,11 +214,14 @@ bool Joining::is_server(const Session& session) const {
 }
 
 bool Joining::close_if_old_server(Session& session) {
-  if (!is_server(session) || session.has(kFeatureTimeCorrections) ||
-      !world_.rights.state().is_time_corrected())
-    return false;
-  world_.sessions.close(session, GoodbyeReason::wrong_protocol,
-                        "the time of this world was corrected: start a version that can read this");
+  if (!is_server(session)) return false;
+  const char* why = nullptr;
+  if (!session.has(kFeatureTimeCorrections) && world_.rights.state().is_time_corrected())
+    why = "the time of this world was corrected: start a version that can read this";
+  if (!session.has(kFeatureLibrary) && world_.order.library().has_changed_ever())
+    why = "this world has a library of builds: start a version that can read this";
+  if (why == nullptr) return false;
+  world_.sessions.close(session, GoodbyeReason::wrong_protocol, why);
   return true;
 }
 

@@ -45,9 +45,9 @@ class Joining {
   bool proves_key(Session& session, const ClientAuth& auth);
   /// Returns true for another server of the world. Requires that the features are in force.
   bool is_server(const Session& session) const;
-  /// Closes the session of another server that cannot read the log (wrong_protocol), because it has no
-  /// feature time corrections and the time of this world was corrected. Returns true if it closed the
-  /// session.
+  /// Closes the session of another server that cannot read the log (wrong_protocol): it lacks the
+  /// feature time corrections and the time of this world was corrected, or it lacks the feature library
+  /// and this world has builds. Returns true if it closed the session.
   bool close_if_old_server(Session& session);
   /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
   /// the session: closing (another server may own the world), server_full, name_refused or

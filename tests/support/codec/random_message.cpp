@@ -444,7 +444,7 @@ LogMarks any_log_marks(SplitMix64& rng) {
   Sequence seq = m.first;
   for (std::uint32_t left = rng.below(kLogMarksMax + 1); left != 0; --left) {
     m.marks.push_back({seq, any_time(rng), rng.below(1000),
-                       static_cast<Cause>(rng.below(kCauseMax + 1u)),
+                       static_cast<Cause>(rng.below(kLogMarkCauseMax + 1u)),
                        static_cast<EditKind>(1 + rng.below(255))});
     seq += 1 + rng.below(1000);
   }
@@ -467,7 +467,8 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
   return m;
 }
 
-/// Returns a record of the log at this version. It may change voxels, rights or materials.
+/// Returns a record of the log at this version. It may change voxels, rights,
+/// materials or the library.
 EditRecord any_record(SplitMix64& rng, Version version) {
   EditRecord record;
   record.version = version;
@@ -479,6 +480,8 @@ EditRecord any_record(SplitMix64& rng, Version version) {
   } else if (record.cause == Cause::materials) {
     MaterialsAdded added = any_materials_added(rng);
     record.edit = materials_edit({added.first, std::move(added.rows)});
+  } else if (record.cause == Cause::library) {
+    record.edit = library_edit(RemoveBuild{1 + rng.below(1000)});
   } else {
     record.edit = any_edit(rng);
   }

@@ -11,6 +11,7 @@ namespace runstone::test {
 TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") {
   CHECK(kFeatureTimeCorrections == 1 << 14);
   CHECK(kFeatureLargeActions == 1 << 15);
+  CHECK(kFeatureLibrary == 1 << 16);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

@@ -131,13 +131,22 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
-        "log cause \"rage\": player, console, rollback, undo, redo, import, rights or materials");
+        "log cause \"rage\": player, console, rollback, undo, redo, import, rights, materials or "
+        "library");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
         "materials \"red\": at most one word comes after materials");
   CHECK(mistake("materials add my wool.toml") ==
         "materials add: one file comes after it, in quotes if it has blanks");
+  CHECK(mistake("builds") == "builds: list, show, import, export, picture or remove is missing");
+  CHECK(mistake("builds list colour red") ==
+        "builds list \"colour\": name, author, tag, before or count");
+  CHECK(mistake("builds list count 51") == "builds list count \"51\": a number from 1 to 50");
+  CHECK(mistake("builds import") ==
+        "builds import: one file comes after it, in quotes if it has blanks");
+  CHECK(mistake("builds export 7") ==
+        "builds export: the number of a build and a file come after it");
   CHECK(mistake("backup") == "backup: the new folder comes after it");
   CHECK(mistake("reload now") == "reload \"now\": nothing comes after reload");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");
@@ -146,8 +155,9 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
 }
 
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
-  for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
-                            Cause::redo, Cause::import, Cause::rights, Cause::materials}) {
+  for (const Cause cause :
+       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import,
+        Cause::rights, Cause::materials, Cause::library}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }

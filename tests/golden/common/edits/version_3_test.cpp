@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+// The kinds of edits that version 3 adds. Their bytes may change until version 3 is released.
+namespace runstone::test {
+namespace {
+
+AddBuild golden_build() {
+  AddBuild build;
+  build.info.name = "Mill";
+  build.info.author = "zo\xc3\xab";
+  build.info.tags = {"wood"};
+  build.info.created_us = 300;
+  build.info.sides = {70, 3, 2};
+  build.info.origin = {-5, 64, 300};
+  build.touched = 137;
+  build.file_bytes = 329;
+  build.file_digest = 0x0123456789abcdefULL;
+  build.content = 0x200000001ULL;
+  return build;
+}
+
+void check_library_bytes(const LibraryChange& change, const Bytes& golden) {
+  const EditDescriptor edit = library_edit(change);
+  CHECK(encode(edit) == golden);
+  const auto decoded = decode_descriptor(golden);
+  REQUIRE(decoded.has_value());
+  CHECK(*decoded == edit);
+  CHECK_FALSE(decode_voxel_edit(golden).has_value());
+  for (std::size_t size = 0; size < golden.size(); ++size)
+    CHECK_FALSE(decode_descriptor(ByteView(golden).first(size)).has_value());
+  Bytes longer = golden;
+  longer.push_back(0);
+  CHECK_FALSE(decode_descriptor(longer).has_value());
+}
+
+}  // namespace
+
+TEST_CASE("the bytes of changes of the library are pinned", "[edits][golden]") {
+  check_library_bytes(RemoveBuild{300}, {0x0a, 0x00, 0x00, 0x02, 0xac, 0x02});
+  check_library_bytes(golden_build(),
+                      {0x0a, 0x00, 0x00, 0x01,                          // added
+                       0x45, 0x02, 0x01,                                // sides
+                       0x09, 0x80, 0x01, 0xd8, 0x04,                    // origin
+                       0xac, 0x02,                                      // created
+                       0x04, 'M',  'i',  'l',  'l',                     // name
+                       0x04, 'z',  'o',  0xc3, 0xab,                    // author
+                       0x01, 0x04, 'w',  'o',  'o',  'd',               // tags
+                       0x89, 0x01,                                      // touched cells
+                       0xc9, 0x02,                                      // bytes of the file
+                       0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,  // digest of the file
+                       0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00});
+}
+
+TEST_CASE("the cause of changes of the library has its number", "[edits][golden]") {
+  CHECK(static_cast<int>(Cause::library) == 8);
+  CHECK(kind_of(library_edit(RemoveBuild{1})) == EditKind::library);
+  CHECK(static_cast<int>(EditKind::library) == 10);
+}
+
+}  // namespace runstone::test

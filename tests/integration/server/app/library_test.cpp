@@ -1,0 +1,127 @@
+// The library of builds in a running server: after kill -9, in a copy of the world, in a backup and
+// in an exported log.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "server/backup/backup_program.hpp"
+#include "server/store/world_folder.hpp"
+#include "tests/integration/server/app/server_commands.hpp"
+#include "tests/integration/server/app/server_process.hpp"
+#include "tests/support/formats/rsb_bytes.hpp"
+#include "tests/support/replay/run_replay.hpp"
+
+namespace runstone::test {
+namespace {
+
+/// Writes an .rsb of more than one part of the store.
+void write_large_build(const std::string& file, const std::string& name) {
+  SampleBuild build;
+  build.info = sample_build_info({128, 64, 64});
+  build.info.name = name;
+  build.materials = sample_build_materials(200);
+  SplitMix64 rng(7);
+  for (std::uint32_t x = 0; x < 2; ++x) {
+    RunChunk cells{Extent::cube(64), AxisOrder::xyz, RunList(kBuildSectionVolumeMax)};
+    for (std::uint32_t end = 1, before = 0; end <= kBuildSectionVolumeMax; ++end) {
+      const std::uint32_t number = (before + 1 + rng.below(200)) % 201;
+      cells.runs.push_back({end, static_cast<Material>(number)});
+      before = number;
+    }
+    build.sections.push_back({{x, 0, 0}, std::move(cells)});
+  }
+  const Bytes bytes = rsb_of(build, 0);
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+std::string bytes_in_file(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void check_verified(const std::string& world) {
+  const ReplayOutcome replay = run_replay({"verify", "--world", world});
+  INFO(replay.out << replay.err);
+  CHECK(replay.code == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a library survives kill -9 and a backup, and comes back byte by byte",
+          "[integration][library]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "mill.rsb";
+  write_large_build(file, "Mill");
+  {
+    ServerProcess process([&] { return quiet_config(world); });
+    REQUIRE(process.port() != 0);
+    const Answer added = must(world, {"builds", "import", file});
+    CHECK(added.text.starts_with("added: 1 \"Mill\""));
+    must(world, {"builds", "import", file});
+    process.kill();
+  }
+  check_verified(world);
+  {
+    const auto server = start_server(quiet_config(world), flat_creation());
+    CHECK(must(world, {"builds", "list", "name", "mill"}).text.find("the library has 2 builds") !=
+          std::string::npos);
+    const std::string copy = folder / "copy.rsb";
+    must(world, {"builds", "export", "1", copy});
+    CHECK(bytes_in_file(copy) == bytes_in_file(file));
+    must(world, {"backup", folder / "backup"});
+    must(world, {"builds", "remove", "1"});
+    CHECK_FALSE(control(world, {"builds", "show", "1"}).is_ok);
+    CHECK(must(world, {"log", "cause", "library"}).text.find("removed build 1") !=
+          std::string::npos);
+    CHECK(server->stop().is_clean);
+  }
+  check_verified(world);
+  check_verified(folder / "backup");
+  {
+    const auto server = start_server(quiet_config(folder / "backup"), flat_creation());
+    const std::string copy = folder / "again.rsb";
+    must(folder / "backup", {"builds", "export", "1", copy});
+    CHECK(bytes_in_file(copy) == bytes_in_file(file));
+    CHECK(server->stop().is_clean);
+  }
+}
+
+TEST_CASE("an import of an .rlog keeps the records of a library without its builds",
+          "[integration][library]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "mill.rsb";
+  write_large_build(file, "Mill");
+  {
+    const auto server = start_server(quiet_config(world), flat_creation());
+    must(world, {"builds", "import", file});
+    CHECK(server->stop().is_clean);
+  }
+  const std::string log = folder / "log.rlog", other = folder / "other";
+  REQUIRE(run_replay({"export", "--world", world, log}).code == 0);
+  REQUIRE(run_replay({"import", "--world", other, log}).code == 0);
+  check_verified(other);
+  const auto server = start_server(quiet_config(other), flat_creation());
+  CHECK(must(other, {"builds", "list"}).text.find("the library has 0 builds") != std::string::npos);
+  CHECK(server->stop().is_clean);
+}
+
+TEST_CASE("a build larger than build_mib is refused with the limit", "[integration][library]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "large.rsb";
+  write_large_build(file, "Mill");
+  std::filesystem::resize_file(file, (2U << 20) + 1);
+  ServerConfig config = quiet_config(world);
+  config.build_mib = 2;
+  const auto server = start_server(config, flat_creation());
+  const Answer refused = control(world, {"builds", "import", file});
+  CHECK_FALSE(refused.is_ok);
+  CHECK(refused.text.find("takes 3 MiB, and one of at most 2 MiB is allowed (build_mib)") !=
+        std::string::npos);
+  CHECK(server->stop().is_clean);
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,189 @@
+// The commands of the library, from the file to the disk and back.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "server/admin/build_file.hpp"
+#include "server/admin/command_table.hpp"
+#include "server/store/build_table.hpp"
+#include "tests/support/formats/rsb_bytes.hpp"
+#include "tests/unit/server/rollback/rollback_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+/// A world whose log writer writes files of builds when the test says.
+struct LibraryBench : RollbackBench {
+  LibraryBench()
+      : services{bench.server,  service,      *this,
+                 folder.path(), actions_of(), [](const PublicKey&) { return false; }} {
+    author = join(kBuilder);
+  }
+  CommandAnswer give(const std::string& line, const CommandCaller& caller = {}) {
+    answers.clear();
+    give_command({services, caller, bench.now(), reply()}, line);
+    for (int i = 0; i < 10 && (answers.empty() || !answers.back().is_done); ++i) {
+      while (work()) {
+      }
+      save_file();
+      write_log();
+      services.tick(bench.now());
+    }
+    return answer();
+  }
+  /// The player of the session kBuilder.
+  CommandCaller builder() const {
+    return {author, {key_pair_of(seed_of(static_cast<std::uint8_t>(kBuilder))).public_key, false}};
+  }
+  std::string make_file(const std::string& name, const BuildInfo& info) {
+    SampleBuild build;
+    build.info = info;
+    build.materials = sample_build_materials();
+    build.sections.push_back({{}, uniform_chunk(section_extent(info.sides, {}), 2)});
+    const Bytes bytes = rsb_of(build, 0);
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    return folder / name;
+  }
+  BuildInfo info(const std::string& name) {
+    BuildInfo out = sample_build_info({5, 6, 7});
+    out.name = name;
+    return out;
+  }
+
+  AuthorId author = 0;
+  bool is_writer_busy = false;
+  std::string save_error;
+  CommandServices services;
+
+ private:
+  struct Saving {
+    std::uint64_t content = 0;
+    std::shared_ptr<const Bytes> file;
+    std::function<void(const std::string&)> done;
+  };
+  OperatorActions actions_of() {
+    OperatorActions actions;
+    actions.save_build_file = [this](std::uint64_t content, std::shared_ptr<const Bytes> file,
+                                     std::function<void(const std::string&)> done) {
+      if (is_writer_busy) return false;
+      saving = Saving{content, std::move(file), std::move(done)};
+      return true;
+    };
+    return actions;
+  }
+  void save_file() {
+    if (!saving) return;
+    const Saving now = *std::exchange(saving, std::nullopt);
+    if (!save_error.empty()) return now.done(save_error);
+    REQUIRE(now.file->size() <= kBuildPartBytes);
+    REQUIRE(store->save_build_part(now.content, 0, *now.file).has_value());
+    now.done("");
+  }
+  std::optional<Saving> saving;
+};
+
+std::string bytes_in(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a build is imported, listed, shown, exported and removed", "[admin][library]") {
+  LibraryBench bench;
+  const std::string file = bench.make_file("mill.rsb", bench.info("Old Mill"));
+  CommandAnswer answer = bench.give("builds import " + file);
+  INFO(answer.text);
+  REQUIRE(answer.is_ok);
+  CHECK(answer.text.starts_with("added: 1 \"Old Mill\" by zo\xc3\xab, 5 x 6 x 7, "));
+  CHECK(answer.text.ends_with(", mill wood"));
+  REQUIRE(bench.give("builds import " + bench.make_file("t.rsb", bench.info("Tower"))).is_ok);
+
+  answer = bench.give("builds list");
+  CHECK(answer.text.starts_with("2 \"Tower\""));
+  CHECK(answer.text.ends_with("\nthe library has 2 builds"));
+  answer = bench.give("builds list name OLD tag mill author ZO");
+  CHECK(answer.text.starts_with("1 \"Old Mill\""));
+  answer = bench.give("builds list count 1");
+  CHECK(answer.text.find("\nmore: builds list before 2\n") != std::string::npos);
+  CHECK(bench.give("builds list before 2").text.starts_with("1 \"Old Mill\""));
+  CHECK(bench.give("builds list tag stone").text == "no build fits\nthe library has 2 builds");
+
+  answer = bench.give("builds show 1");
+  CHECK(answer.text.find("name      Old Mill\n") != std::string::npos);
+  CHECK(answer.text.find("cells     210\n") != std::string::npos);
+  CHECK(answer.text.find("created   2023-11-14T22:13:20Z\n") != std::string::npos);
+  CHECK(answer.text.find(" by the console\n") != std::string::npos);
+
+  const std::string copy = bench.folder / "copy.rsb";
+  REQUIRE(bench.give("builds export 1 " + copy).is_ok);
+  CHECK(bytes_in(copy) == bytes_in(file));
+
+  const std::string picture = bench.folder / "mill.png";
+  REQUIRE(bench.give("builds picture 1 " + picture).is_ok);
+  CHECK(bytes_in(picture).starts_with("\x89PNG"));
+
+  answer = bench.give("builds remove 1");
+  REQUIRE(answer.is_ok);
+  CHECK(answer.text == "removed build 1 (record 3)");
+  CHECK(bench.give("builds remove 1").text ==
+        "builds remove: the library has no build 1 (builds list has the numbers)");
+  CHECK_FALSE(bench.give("builds show 1").is_ok);
+  CHECK_FALSE(bench.give("builds export 1 " + copy).is_ok);
+  CHECK(bench.store->check().has_value());
+}
+
+TEST_CASE("a file that is no sound .rsb is refused with the place of the fault",
+          "[admin][library]") {
+  LibraryBench bench;
+  const std::string file = bench.make_file("mill.rsb", bench.info("Mill"));
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);
+  CommandAnswer answer = bench.give("builds import " + file);
+  CHECK_FALSE(answer.is_ok);
+  CHECK(answer.text.starts_with("builds import: " + file + ": end at byte "));
+  CHECK(answer.text.ends_with(": file ends inside a block"));
+  answer = bench.give("builds import " + (bench.folder / "none.rsb"));
+  CHECK_FALSE(answer.is_ok);
+  answer = bench.give("builds import " + bench.folder.path() + "/world.sqlite");
+  CHECK(answer.text.ends_with("mark at byte 0: is not an .rsb file"));
+  CHECK(bench.bench.environment.records.empty());
+}
+
+TEST_CASE("an import that cannot be written adds nothing", "[admin][library]") {
+  LibraryBench bench;
+  const std::string file = bench.make_file("mill.rsb", bench.info("Mill"));
+  bench.is_writer_busy = true;
+  CHECK(bench.give("builds import " + file).text ==
+        "builds import: another file is being written, or the world cannot be written: try again");
+  bench.is_writer_busy = false;
+  bench.save_error = "disk is full";
+  CHECK(bench.give("builds import " + file).text == "builds import: disk is full");
+  CHECK(bench.give("builds list").text == "no build fits\nthe library has 0 builds");
+}
+
+TEST_CASE("players list builds, and remove only their own ones", "[admin][library]") {
+  LibraryBench bench;
+  REQUIRE(bench.give("builds import " + bench.make_file("m.rsb", bench.info("Mill"))).is_ok);
+  CHECK(bench.give("builds list", bench.builder()).is_ok);
+  CHECK(bench.give("builds show 1", bench.builder()).is_ok);
+  CHECK_FALSE(bench.give("builds import " + (bench.folder / "m.rsb"), bench.builder()).is_ok);
+  CHECK_FALSE(bench.give("builds export 1 /dev/null", bench.builder()).is_ok);
+  CHECK(bench.give("builds remove 1", bench.builder()).text ==
+        "builds remove: somebody else has added it, and you may not administer");
+}
+
+TEST_CASE("the log names what happened to the library", "[admin][library]") {
+  AddBuild build;
+  build.info.name = "Mill";
+  build.info.sides = {5, 6, 7};
+  build.file_bytes = 2000;
+  CHECK(library_change_text(build) == "added the build \"Mill\", 5 x 6 x 7, 2 KiB");
+  CHECK(library_change_text(RemoveBuild{7}) == "removed build 7");
+}
+
+}  // namespace runstone::test
