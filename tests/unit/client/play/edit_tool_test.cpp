@@ -149,7 +149,7 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
         EditDescriptor{FillBox{{{0, -2, 0}, {3, 0, 1}}}, {}, kEmpty});
   act(Action::rotate);
   act(Action::mirror);
-  CHECK(box.clipboard().orientation == Orientation{}.rotated_about_y(1).mirrored(Axis::x));
+  CHECK(box.clipboard().build->sides() == VoxelPos{1, 2, 3});
   CHECK(act(Action::paste) == "tool: paste");
   CHECK(act(Action::symmetry) == "refused: look at the voxel in the middle of the symmetry first");
   tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
