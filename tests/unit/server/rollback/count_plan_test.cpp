@@ -227,7 +227,7 @@ TEST_CASE("a chunk that cannot be read has the only error, and the others their 
   REQUIRE(selection.has_value());
   REQUIRE(selection->chunks.contains(bad));
   const Counts expected = counts_of_plans(world, *selection);
-  REQUIRE(raw_sql(world.store->file(), "UPDATE snapshot SET data = x'0102'") == "");
+  REQUIRE(raw_sql(world.store->file(), "UPDATE snapshot SET data = x'0102'").empty());
 
   RestorePlanner planner(*world.store, *world.generator);
   std::vector<ChunkKey> errors;

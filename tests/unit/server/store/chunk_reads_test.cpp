@@ -5,6 +5,7 @@
 #include "server/store/chunk_row.hpp"
 #include "server/store/read_span.hpp"
 #include "server/store/store.hpp"
+#include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
 
@@ -34,6 +35,28 @@ TEST_CASE(
     REQUIRE_FALSE(damaged.has_value());
     CHECK(damaged.error() == "checksum is wrong");
   }
+}
+
+TEST_CASE("a snapshot that is newer than wanted is not read", "[store][sqlite]") {
+  SplitMix64 rng{8};
+  TempPlace place;
+  const ChunkKey key{0, {4, 5, 6}};
+  {
+    const auto store = *create_world(place.path(), sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
+    REQUIRE(store->append(players, sample_records(rng, 1, 1, 20)).has_value());
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{key, sample_chunk(rng, {1, 7})}};
+    REQUIRE(store->save_snapshots(chunks, std::nullopt).has_value());
+    CHECK((*store->load_snapshot(key, 7))->version == Version{1, 7});
+    CHECK((*store->load_snapshot(key))->version == Version{1, 7});
+    CHECK_FALSE(store->load_snapshot(key, 6)->has_value());
+  }
+  REQUIRE(raw_sql(place / "world.sqlite", "UPDATE snapshot SET data = x'0102'").empty());
+  const auto store = *open_world(place.path(), StoreAccess::read_only);
+  CHECK_FALSE(store->load_snapshot(key, 7).has_value());
+  REQUIRE(store->load_snapshot(key, 6).has_value());
+  CHECK_FALSE(store->load_snapshot(key, 6)->has_value());
 }
 
 TEST_CASE("joined reads see one moment while another program writes", "[store]") {

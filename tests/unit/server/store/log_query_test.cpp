@@ -137,6 +137,104 @@ TEST_CASE("queries of the log find the same records as a naive scan", "[store][q
   CHECK(seen == 7);
 }
 
+TEST_CASE("queries find the edits of a stretch that one author filled", "[store][query]") {
+  // The griefer's segments follow each other without a gap, so they are read in the order of the log;
+  // later another author's edits lie between them. Their descriptors are short and long.
+  TempPlace place;
+  SplitMix64 rng(7);
+  auto records = mixed_records(7, 1200);
+  for (std::size_t i = 300; i < 1000; ++i) {
+    if (i >= 600 && rng.below(3) == 0) continue;
+    records[i].op.author = 6;
+    records[i].cause = Cause::player;
+    records[i].subject = 0;
+    records[i].edit = sample_edit(rng);
+  }
+  make_world(place.path(), records, rng);
+  auto store = *open_world(place.path(), StoreAccess::read_only);
+  CHECK(compare(*store, records, rng, 300) > 100);
+  std::size_t seen = 0;
+  LogQuery query;
+  query.box = VoxelBox{{-60, -60, -60}, {60, 60, 60}};
+  REQUIRE(store->query_log(query, [&](const EditRecord&) { return ++seen < 400; }).has_value());
+  CHECK(seen == 400);
+}
+
+TEST_CASE("a query leaves out the edits that its condition does not want", "[store][query]") {
+  TempPlace place;
+  SplitMix64 rng(8);
+  auto records = mixed_records(8, 900);
+  make_world(place.path(), records, rng);
+  auto store = *open_world(place.path(), StoreAccess::read_only);
+  std::size_t found = 0, left_out = 0;
+  for (int i = 0; i < 100; ++i) {
+    // Some boxes want the edits from a sequence on.
+    std::vector<std::pair<VoxelBox, Sequence>> wanted(1 + rng.below(4));
+    for (auto& [box, from] : wanted) {
+      const VoxelPos at = bounding_box(records[rng.below(900)].edit).min;
+      box = {at, {at.x + rng.between(1, 40), at.y + rng.between(1, 40), at.z + rng.between(1, 40)}};
+      from = 1 + rng.below(900);
+    }
+    LogQuery query;
+    query.first = kSequenceMax;
+    for (const auto& [box, from] : wanted) {
+      query.box = query.box ? bounding_box(*query.box, box) : box;
+      query.first = std::min(query.first, from);
+    }
+    query.wants = [&](const VoxelBox& box, Sequence last) {
+      return std::any_of(wanted.begin(), wanted.end(), [&](const auto& one) {
+        return !intersect(one.first, box).empty() && one.second <= last;
+      });
+    };
+    std::vector<EditRecord> naive;
+    for (const EditRecord& record : records) {
+      if (!answers(query, record)) continue;
+      if (query.wants(bounding_box(record.edit), record.version.seq)) {
+        naive.push_back(record);
+      } else {
+        ++left_out;
+      }
+    }
+    CAPTURE(i);
+    REQUIRE(ask(*store, query) == naive);
+    found += naive.size();
+  }
+  CHECK(found > 1'000);
+  CHECK(left_out > 1'000);
+}
+
+TEST_CASE("a damaged record is named when its turn comes", "[store][query][sqlite]") {
+  TempPlace place;
+  SplitMix64 rng(9);
+  auto records = mixed_records(9, 200);
+  for (std::size_t i = 148; i <= 149; ++i) {
+    records[i].cause = Cause::player;
+    records[i].subject = 0;
+    records[i].edit = {SetVoxel{{1, 2, 3}}, {}, 1};
+  }
+  make_world(place.path(), records, rng);
+  REQUIRE(
+      raw_sql(place / "world.sqlite", "UPDATE edit_log SET checksum = checksum + 1 WHERE seq = 150")
+          .empty());
+  auto store = *open_world(place.path(), StoreAccess::read_only);
+  const VoxelBox everywhere{{-kWorldLimit, -kWorldLimit, -kWorldLimit},
+                            {kWorldLimit - 1, kWorldLimit - 1, kWorldLimit - 1}};
+  for (const bool has_box : {false, true}) {
+    LogQuery query;
+    if (has_box) query.box = everywhere;
+    std::vector<EditRecord> found;
+    const auto queried = store->query_log(query, [&](const EditRecord& record) {
+      found.push_back(record);
+      return true;
+    });
+    CAPTURE(has_box);
+    REQUIRE_FALSE(queried.has_value());
+    CHECK(queried.error().where == "edit_log seq=150");
+    REQUIRE_FALSE(found.empty());
+    CHECK(found.back().version.seq == 149);
+  }
+}
+
 TEST_CASE("queries reach no further back than the log", "[store][query]") {
   TempPlace place;
   SplitMix64 rng(3);
