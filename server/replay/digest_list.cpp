@@ -154,7 +154,7 @@ Result<void, std::string> write_digests_json(const std::string& file, const Dige
 
 Result<DigestList, TextError> read_digests_json(const std::string& file) {
   const auto text = read_file(file, kDigestListBytesMax, FileKinds::regular_or_pipe);
-  // The line of the error begins with the name of the file, which a TextError has apart.
+  // The line of the error begins with the name of the file, which is a field of its own in TextError.
   if (!text) return text_failure(file, "", text.error().substr(file.size() + 2));
   return parse_digests_json(*text, file);
 }

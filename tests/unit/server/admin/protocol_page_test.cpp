@@ -1,3 +1,4 @@
+// docs/protocol.md names settings and their defaults. The defaults of the server are compared with it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
