@@ -4,9 +4,13 @@
 #include <cstring>
 #include <fstream>
 
+#include "common/os/private_file.hpp"
+
 namespace runstone {
 
 Result<RecordedLog, std::string> read_recorded_file(const std::string& file) {
+  // A pipe cannot be read from its middle, and opening one waits for its other end.
+  if (const auto kind = check_file_kind(file); !kind) return failure(kind.error());
   std::ifstream in(file, std::ios::binary);
   if (!in) return failure(file + ": cannot be read: " + std::strerror(errno));
   auto log = read_recorded_log(

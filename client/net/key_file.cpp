@@ -57,6 +57,8 @@ void save_new_key(const std::string& file, const KeySeed& seed) {
 KeySeed load_key_seed(const std::string& file) {
   struct stat info{};
   if (::stat(file.c_str(), &info) != 0) throw_error(file, std::strerror(errno));
+  const auto kind = check_file_kind(file, FileKinds::regular_or_pipe);
+  if (!kind) throw std::runtime_error(kind.error());
   if ((info.st_mode & 077) != 0)
     throw_error(file, "other users may read this key: run chmod 600 on it");
   const auto line = read_first_line(file);

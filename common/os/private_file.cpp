@@ -17,6 +17,13 @@ namespace {
 
 using Written = Result<void, std::string>;
 
+/// Returns why a file of this mode is not read, or an empty text.
+std::string words_of_mode(mode_t mode, FileKinds kinds) {
+  if (S_ISDIR(mode)) return "is a folder";
+  if (S_ISREG(mode) || (kinds == FileKinds::regular_or_pipe && S_ISFIFO(mode))) return {};
+  return "is a device, a pipe or a socket, and no file";
+}
+
 /// Closes a descriptor at the end of its scope.
 class OpenFile {
  public:
@@ -57,16 +64,14 @@ Result<std::string, std::string> read_file(const std::string& file, std::size_t 
     return fail(std::string("cannot be read: ") + std::strerror(error));
   };
   // Without O_NONBLOCK the call would wait for the other end of a FIFO.
-  const bool takes_pipes = kinds == FileKinds::regular_or_pipe;
-  const int waits = takes_pipes ? 0 : O_NONBLOCK;
+  const int waits = kinds == FileKinds::regular_or_pipe ? 0 : O_NONBLOCK;
   const int descriptor = ::open(file.c_str(), O_RDONLY | waits | O_NOCTTY | O_CLOEXEC);
   if (descriptor < 0) return cannot(errno);
   const OpenFile closes(descriptor);
   struct stat about{};
   if (::fstat(descriptor, &about) != 0) return cannot(errno);
-  if (S_ISDIR(about.st_mode)) return fail("is a folder");
-  if (!S_ISREG(about.st_mode) && !(takes_pipes && S_ISFIFO(about.st_mode)))
-    return fail("is a device, a pipe or a socket, and no file");
+  if (const std::string words = words_of_mode(about.st_mode, kinds); !words.empty())
+    return fail(words);
   const std::string too_large = "is larger than " + std::to_string(bytes_max) + " bytes";
   if (static_cast<std::uint64_t>(about.st_size) > bytes_max) return fail(too_large);
   // The file may grow while it is read, and files of /proc have no size.
@@ -80,6 +85,15 @@ Result<std::string, std::string> read_file(const std::string& file, std::size_t 
     bytes.append(part.data(), static_cast<std::size_t>(count));
     if (bytes.size() > bytes_max) return fail(too_large);
   }
+}
+
+Written check_file_kind(const std::string& file, FileKinds kinds) {
+  struct stat about{};
+  if (::stat(file.c_str(), &about) != 0)
+    return failure(file + ": cannot be read: " + std::strerror(errno));
+  const std::string words = words_of_mode(about.st_mode, kinds);
+  if (!words.empty()) return failure(file + ": " + words);
+  return {};
 }
 
 std::string set_aside(const std::string& file) {

@@ -35,6 +35,12 @@ enum class FileKinds : std::uint8_t {
 Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max,
                                            FileKinds kinds = FileKinds::regular);
 
+/// Fails with a line that begins with the name of the file if there is none, or one of another kind.
+/// For readers that open the file themselves: this call opens nothing, so it never waits for the
+/// other end of a pipe.
+Result<void, std::string> check_file_kind(const std::string& file,
+                                          FileKinds kinds = FileKinds::regular);
+
 /// Renames a file that cannot be used to `file` + ".broken", so that its user can repair it.
 /// Replaces an older broken file. Returns the new name, or an empty text if that failed.
 std::string set_aside(const std::string& file);

@@ -5,6 +5,8 @@
 #include <openssl/pem.h>
 #include <openssl/ssl.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "common/core/assert.hpp"
@@ -99,6 +101,9 @@ Result<TlsContext, std::string> TlsContext::server(const std::string& chain_pem,
 TlsContext TlsContext::client() { return TlsContext(make_context(TLS_client_method())); }
 
 Result<TlsContext, std::string> TlsContext::client_of_authorities(const std::string& ca_file) {
+  // OpenSSL says only that it found no certificate there.
+  if (std::error_code error; std::filesystem::is_directory(ca_file, error))
+    return failure("cannot read the authorities of " + ca_file + ": it is a folder");
   auto context = make_context(TLS_client_method());
   SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
   const int loaded = ca_file.empty() ? SSL_CTX_set_default_verify_paths(context.get())

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "common/os/private_file.hpp"
+
 namespace runstone {
 namespace {
 
@@ -46,6 +48,10 @@ std::string words_of_file(const std::string& file) {
   if (name == "map.sqlite" || name == "world.mt")
     return "is a file of a Luanti world: give the folder that holds it";
   if (name == "level.dat") return std::string("is a file of a Minecraft world") + kConvert;
+  // Opening a pipe waits for its other end.
+  if (!check_file_kind(file))
+    return "is a device, a pipe or a socket: give the folder of a Luanti world, which holds "
+           "map.sqlite and world.mt";
   std::ifstream in(file, std::ios::binary);
   std::array<char, 4> first{};
   in.read(first.data(), first.size());

@@ -90,6 +90,8 @@ Result<LuantiFolder, ImportError> find_luanti_map(const std::string& folder) {
                    "does not exist: the world has world.mt and no map. Start Luanti once with it, "
                    "so that there is a map, or check whether the folder was copied in full");
   if (fs::is_directory(out.map, error)) return refused(out.map, "is a folder, not a map");
+  if (const auto kind = check_file_kind(out.map); !kind)
+    return refused(out.map, kind.error().substr(out.map.size() + 2));
   if (fs::file_size(out.map, error) == 0 && !error)
     return refused(out.map, "has no bytes: copy the world again, or restore it from a backup");
   return out;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,12 +9,16 @@
 #include "common/core/hex.hpp"
 #include "common/core/m61.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
 
 namespace runstone {
 
 namespace {
 
 using Json = nlohmann::json;
+
+/// A row has about 120 bytes, so this is the list of 30 million chunks.
+constexpr std::size_t kDigestListBytesMax = std::size_t{4} << 30;
 
 Unexpected<TextError> text_failure(std::string_view file, std::string key, std::string what) {
   return {TextError{std::string(file), 0, std::move(key), std::move(what)}};
@@ -151,10 +153,10 @@ Result<void, std::string> write_digests_json(const std::string& file, const Dige
 }
 
 Result<DigestList, TextError> read_digests_json(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.good() && text.empty()) return text_failure(file, "", "cannot be read");
-  return parse_digests_json(text, file);
+  const auto text = read_file(file, kDigestListBytesMax, FileKinds::regular_or_pipe);
+  // The line of the error begins with the name of the file, which is a field of its own in TextError.
+  if (!text) return text_failure(file, "", text.error().substr(file.size() + 2));
+  return parse_digests_json(*text, file);
 }
 
 }  // namespace runstone

@@ -29,6 +29,9 @@ Result<DigestList, TextError> parse_digests_json(std::string_view json, std::str
 
 /// Writes the list as write_output_file() does.
 Result<void, std::string> write_digests_json(const std::string& file, const DigestList& list);
+/// Reads what write_digests_json() wrote. `file` may also be a pipe, which is read to its end. Fails
+/// if parse_digests_json() fails, or if the file is of another kind, cannot be read or has more than
+/// 4 GiB.
 Result<DigestList, TextError> read_digests_json(const std::string& file);
 
 }  // namespace runstone

@@ -17,6 +17,7 @@
 
 #include "common/os/new_folder.hpp"
 #include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
 #include "common/rlog/rlog_reader.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -298,6 +299,8 @@ Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::strin
 
 Result<RlogImport, std::string> import_rlog(const RlogImportRequest& request, std::ostream& out) {
   if (sodium_init() < 0) return failure("libsodium cannot start");
+  // A pipe cannot be read from its middle, and opening one waits for its other end.
+  if (const auto kind = check_file_kind(request.file); !kind) return failure(kind.error());
   const File in(request.file);
   if (!in.is_open()) return failure(request.file + ": cannot be read: " + system_error_text());
   auto reader = RlogReader::open([&in](std::uint64_t position, std::span<std::uint8_t> bytes) {

@@ -2,6 +2,8 @@
 // files.
 #include "server/replay/rlog_file.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -383,4 +385,12 @@ TEST_CASE("files that cannot be read or written are named", "[store][rlog]") {
   write_bytes(folder / "text", {'n', 'o'});
   CHECK(run_replay({"import", folder / "text", "--world", folder / "new"}).err ==
         "runstone-replay: " + folder / "text" + ": edit 1 at byte 0: is not an .rlog file\n");
+  const std::string pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (const std::string& file : {pipe, std::string("/dev/zero")}) {
+    CHECK(run_replay({"import", file, "--world", folder / "new"}).err ==
+          "runstone-replay: " + file + ": is a device, a pipe or a socket, and no file\n");
+  }
+  CHECK(run_replay({"import", folder.path(), "--world", folder / "new"}).err ==
+        "runstone-replay: " + folder.path() + ": is a folder\n");
 }

@@ -66,6 +66,8 @@ TEST_CASE_METHOD(Folder,
   CHECK_THROWS_WITH(load_or_create_key(file("empty")), Catch::Contains("not a key file"));
   CHECK(std::filesystem::file_size(file("empty")) == 0);
   CHECK_THROWS_WITH(load_or_create_key(file("missing/k")), Catch::Contains("missing/k"));
+  // The mode of a folder is not to be changed for a key.
+  CHECK_THROWS_WITH(load_or_create_key(path()), path() + ": is a folder");
 }
 
 TEST_CASE_METHOD(Folder, "pinned servers are read as written, and an error names the damaged line",

@@ -40,6 +40,25 @@ TEST_CASE("a device, a pipe or a folder is refused at once, whatever it would gi
   CHECK(error_of(pipe).find("a pipe") != std::string::npos);
 }
 
+TEST_CASE("the kind of a file is checked without opening it", "[os]") {
+  const TempFolder folder;
+  const auto words = [](const std::string& file, FileKinds kinds = FileKinds::regular) {
+    const auto kind = check_file_kind(file, kinds);
+    return kind ? std::string("no error") : kind.error();
+  };
+  const std::string file = folder / "file";
+  std::ofstream(file) << "x";
+  CHECK(words(file) == "no error");
+  CHECK(words(folder.path()) == folder.path() + ": is a folder");
+  CHECK(words("/dev/zero") == "/dev/zero: is a device, a pipe or a socket, and no file");
+  CHECK(words(folder / "none") ==
+        (folder / "none") + ": cannot be read: No such file or directory");
+  const std::string pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK(words(pipe) == pipe + ": is a device, a pipe or a socket, and no file");
+  CHECK(words(pipe, FileKinds::regular_or_pipe) == "no error");
+}
+
 TEST_CASE("an option may name a pipe, which is read to its end", "[os]") {
   int ends[2] = {};
   REQUIRE(::pipe(ends) == 0);

@@ -199,4 +199,6 @@ TEST_CASE("a server's certificate that cannot be used is refused with the reason
   CHECK(error_of(made.chain(), other.key()) ==
         "the secret key is not that of the certificate: key values mismatch");
   CHECK_FALSE(TlsContext::client_of_authorities("/nowhere/authority.pem"));
+  CHECK(TlsContext::client_of_authorities("/").error() ==
+        "cannot read the authorities of /: it is a folder");
 }

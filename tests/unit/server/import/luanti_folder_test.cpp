@@ -1,5 +1,7 @@
 #include "server/import/luanti_folder.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -80,6 +82,12 @@ TEST_CASE_METHOD(Folder, "a world without a map, and a map that is no file, are 
   std::filesystem::remove(*this / "world/map.sqlite");
   write("world/map.sqlite", "");
   CHECK(says(refusal(), "world/map.sqlite: has no bytes"));
+  std::filesystem::remove(*this / "world/map.sqlite");
+  REQUIRE(::mkfifo((*this / "world/map.sqlite").c_str(), 0600) == 0);
+  CHECK(says(refusal(), "world/map.sqlite: is a device, a pipe or a socket"));
+  CHECK(says(refusal("world/map.sqlite"), "give the folder that holds it"));
+  REQUIRE(::mkfifo((*this / "pipe").c_str(), 0600) == 0);
+  CHECK(says(refusal("pipe"), "pipe: is a device, a pipe or a socket: give the folder"));
 }
 
 TEST_CASE_METHOD(Folder, "what is no Luanti world is named, with what can be done",

@@ -116,7 +116,9 @@ TEST_CASE("a digest list file is replaced as a whole, and unknown keys in it are
       write_output_file(file, with("{\"world_id\"", "{\"more\":[1,{}],\"world_id\"")).has_value());
   CHECK(same(*read_digests_json(file), sample_list()));
   CHECK(read_digests_json(folder / "missing.json").error().message() ==
-        folder / "missing.json: cannot be read");
+        folder / "missing.json: cannot be read: No such file or directory");
+  CHECK(read_digests_json(folder.path()).error().message() == folder.path() + ": is a folder");
+  CHECK(read_digests_json("/dev/zero").error().message().find("is a device") != std::string::npos);
   CHECK(write_digests_json(folder / "no/list.json", {}).error() ==
         folder / "no/list.json: cannot be written: No such file or directory");
 }
