@@ -78,9 +78,14 @@ ChunkSending::ClaimReply ChunkSending::reply_to_claim(Viewer& viewer, const Chun
   return ClaimReply::queued;
 }
 
-bool ChunkSending::send_not_modified(Viewer& viewer, bool is_more) {
+ChunkSending::AnswersSent ChunkSending::send_not_modified(Viewer& viewer, bool is_more) {
   std::vector<UnmodifiedChunk>& due = viewer.chunks.not_modified;
+  std::size_t messages = 0;
   while (due.size() >= (is_more ? kChunksNotModifiedMax : 1)) {
+    if (messages++ == kNotModifiedPerCall) {
+      base_.deliveries.insert(viewer.id());
+      return AnswersSent::some;
+    }
     const std::size_t count = std::min(due.size(), kChunksNotModifiedMax);
     // A chunk that left the view and came back may be due twice. The newer version is sent.
     const auto newest_first = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
@@ -98,10 +103,11 @@ bool ChunkSending::send_not_modified(Viewer& viewer, bool is_more) {
     };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key),
                       same.chunks.end());
-    if (!base_.sessions.send_or_skip(viewer.session, encode_message(same))) return false;
+    if (!base_.sessions.send_or_skip(viewer.session, encode_message(same)))
+      return AnswersSent::full;
     due.erase(due.begin(), end);
   }
-  return true;
+  return AnswersSent::all;
 }
 
 bool ChunkSending::queue_uniform(Viewer& viewer, const ChunkKey& key, const Chunk& chunk,
@@ -143,10 +149,9 @@ bool ChunkSending::send_view_states(Viewer& viewer, const Clocks& now) {
   ChunksDue& due = viewer.chunks;
   if (!due.begins && !due.refused && !due.complete) return true;
   // Answers about the live world precede the state that ends it.
-  if (!send_not_modified(viewer, false)) {
-    due.stalled_us = now.steady_us;
-    return false;
-  }
+  const AnswersSent answers = send_not_modified(viewer, false);
+  if (answers == AnswersSent::full) due.stalled_us = now.steady_us;
+  if (answers != AnswersSent::all) return false;
   if (!send_uniform(viewer, now)) return false;
   for (std::optional<ViewState>* report : {&due.begins, &due.refused, &due.complete}) {
     if (!*report) continue;

@@ -22,6 +22,9 @@ inline constexpr std::size_t kUniformPerMessage = 256;
 /// Uniform chunks that may be due while the session's queue is full. Further chunks stay wanted.
 inline constexpr std::size_t kUniformWaitingMax = 1024;
 static_assert(kUniformWaitingMax <= kUniformChunksMax);
+/// Messages of "not modified" that one task sends. Each has up to kChunksNotModifiedMax answers and
+/// takes about 0.1 ms.
+inline constexpr std::size_t kNotModifiedPerCall = 4;
 
 class ChunkSending {
  public:
@@ -46,11 +49,16 @@ class ChunkSending {
   /// Sends the uniform chunks that are due for the session, in one message for each level of
   /// detail. Returns false if its queue is full; the chunks that are not sent stay due.
   bool send_uniform(Viewer& viewer, const Clocks& now);
-  /// Sends the "not modified" answers that are due. While more may follow (`is_more`), it sends
-  /// only full messages. Returns false if the session's queue is full; the rest stays due.
-  bool send_not_modified(Viewer& viewer, bool is_more);
+  enum class AnswersSent : std::uint8_t {
+    all,
+    some,  // the others have a task of their own
+    full,  // the session's queue is full; the rest stays due
+  };
+  /// Sends the "not modified" answers that are due, at most kNotModifiedPerCall messages of them.
+  /// While more may follow (`is_more`), it sends only full messages.
+  AnswersSent send_not_modified(Viewer& viewer, bool is_more);
   /// Sends the reports that must precede the session's next chunk. Returns false if its queue is
-  /// full.
+  /// full, or if answers that precede the reports have a task of their own.
   bool send_view_states(Viewer& viewer, const Clocks& now);
   /// Ends a delivery: sends the uniform chunks that are due unless loads under way may soon add
   /// more, and reports once that every chunk of the view was answered.

@@ -69,17 +69,18 @@ void Ground::on_cached_chunks(Session& session, const CachedChunks& cached) {
   const SessionInterest& interest = *base_.interest.find(session.id);
   const bool are_tiles = cached.chunks.front().key.lod > 0;
   if (are_tiles) base_.sessions.charge_reading(session, cached.chunks.size() * kTileClaimBytes);
+  std::vector<CachedChunk> unanswered;
   for (const CachedChunk& chunk : cached.chunks) {
     if (are_tiles && !tiles_.accepts_claim(viewer, chunk.key)) continue;
     const auto state = interest.state(chunk.key);
     const bool is_answered =
         state && *state != ChunkInterest::wanted && *state != ChunkInterest::waiting;
-    if (is_answered) continue;
-    if (viewer.chunks.claims.add(chunk)) continue;
-    return base_.sessions.close(
-        session, GoodbyeReason::flooding,
-        "claims to hold more than " + std::to_string(kClaimsPerSessionMax) + " chunks");
+    if (!is_answered) unanswered.push_back(chunk);
   }
+  if (viewer.chunks.claims.add(unanswered)) return;
+  base_.sessions.close(
+      session, GoodbyeReason::flooding,
+      "claims to hold more than " + std::to_string(kClaimsPerSessionMax) + " chunks");
 }
 
 void Ground::on_chunk_request(Session& session, const ChunkRequest& request, const Clocks& now) {

@@ -149,4 +149,98 @@ TEST_CASE_METHOD(Fixture, "not modified is sent before a session goes to the pas
   CHECK(order == std::vector<std::string>{"same", "state"});
 }
 
+/// A session that claims all chunks of a wide view, which are in memory and unchanged.
+struct WideClaims : WorldBench {
+  static constexpr View kWide{1, {0, 0, 0}, 16, 6};
+
+  static WorldConfig wide_config() {
+    WorldConfig c = config();
+    c.view_radius_max = 16;
+    return c;
+  }
+  WideClaims() : WorldBench(wide_config()) {
+    has_empty_base = true;
+    join(1, 1);
+    view(1, kWide);
+    for (std::int32_t x = -16; x <= 16; ++x) {
+      for (std::int32_t y = -6; y <= 6; ++y) {
+        for (std::int32_t z = -16; z <= 16; ++z) {
+          const ChunkKey key{0, {x, y, z}};
+          if (!kWide.contains(key.at)) continue;
+          const ChunkPtr chunk = server.order().chunks().find(key);
+          claims.push_back({key, chunk->version, claim_digest(chunk->digest)});
+        }
+      }
+    }
+    join(2, 2);
+    for (Message& message : cached_chunks_messages(claims))
+      server.received(2, std::move(message), now());
+  }
+  std::vector<ChunksNotModified> answers() const {
+    return environment.messages<ChunksNotModified>(2, kEdge);
+  }
+
+  std::vector<CachedChunk> claims;
+};
+
+TEST_CASE_METHOD(WideClaims, "a task answers a bounded number of claims", "[world]") {
+  REQUIRE(claims.size() > 10'000);
+  environment.full.insert(2);
+  send_view(2, kWide);
+  std::uint64_t answered = server.counters().not_modified_sent;
+  CHECK(answered <= 512);
+  while (server.ground().has_deliveries()) {
+    server.ground().deliver_next(now());
+    const std::uint64_t now_answered = server.counters().not_modified_sent;
+    REQUIRE(now_answered - answered <= 512);
+    answered = now_answered;
+  }
+  CHECK(answered == claims.size());
+  CHECK(answers().empty());
+
+  // All answers are due when the queue has room again. A task sends a few messages of them.
+  environment.full.clear();
+  server.drained(2, now());
+  std::size_t sent = answers().size();
+  CHECK(sent == kNotModifiedPerCall);
+  int tasks = 1;
+  for (; server.ground().has_deliveries(); ++tasks) {
+    server.ground().deliver_next(now());
+    const std::size_t now_sent = answers().size();
+    REQUIRE(now_sent - sent <= kNotModifiedPerCall);
+    sent = now_sent;
+  }
+  CHECK(tasks >= 3);
+  std::set<ChunkKey> keys;
+  for (const ChunksNotModified& message : answers()) {
+    for (const UnmodifiedChunk& chunk : message.chunks) CHECK(keys.insert(chunk.key).second);
+  }
+  CHECK(keys.size() == claims.size());
+}
+
+TEST_CASE_METHOD(WideClaims, "answers of several tasks precede the past", "[world]") {
+  environment.full.insert(2);
+  send_view(2, kWide);
+  while (server.ground().has_deliveries()) server.ground().deliver_next(now());
+  environment.full.clear();
+  server.received(2, HistoryRequest{1, HistoryTarget::sequence, 0, 0}, now());
+  server.ground().history_opened(2, 1, OpenedHistory{0, 0}, now());
+  CHECK(answers().size() == kNotModifiedPerCall);
+  CHECK(environment.messages<ViewState>(2, kEdge).empty());
+  while (server.ground().has_deliveries()) server.ground().deliver_next(now());
+  CHECK(answers().size() == (claims.size() + kChunksNotModifiedMax - 1) / kChunksNotModifiedMax);
+  CHECK_FALSE(environment.messages<ViewState>(2, kEdge).empty());
+}
+
+TEST_CASE_METHOD(WideClaims, "a view costs its session reading for the claims that wait",
+                 "[world]") {
+  CHECK(environment.charged[2] == 0);
+  environment.full.insert(2);
+  send_view(2, kWide);
+  CHECK(environment.charged[2] == claims.size() / 8);
+  while (server.ground().has_deliveries()) server.ground().deliver_next(now());
+  send_view(2, kWide);  // all claims are answered
+  CHECK(environment.charged[2] == claims.size() / 8);
+}
+
 }  // namespace runstone::test
