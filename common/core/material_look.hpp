@@ -1,6 +1,7 @@
 // MaterialLook: how the faces of a material are drawn, besides its colour. All values are integers,
 // so that tables, records and messages hold the same values.
 #pragma once
+#include <compare>
 #include <cstdint>
 
 #include "common/core/result.hpp"
@@ -30,7 +31,7 @@ struct MaterialLook {
   std::uint8_t roughness = 100;  // 100: matt; 0: mirrors the sun in a small spot. Percent
   std::uint8_t emission = 0;     // light that the material gives off in its colour, percent
   MaterialPattern pattern = MaterialPattern::none;
-  friend bool operator==(const MaterialLook&, const MaterialLook&) = default;
+  friend auto operator<=>(const MaterialLook&, const MaterialLook&) = default;
 };
 
 /// Fails (bad_value) for a share above kLookShareMax and for a pattern of a later version.

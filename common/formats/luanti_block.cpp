@@ -207,10 +207,11 @@ Result<ForeignPiece> decode_luanti_block(ByteView data) {
                                       : "luanti block: of a newer Luanti than this program knows");
 }
 
-Result<void> read_luanti_block(ByteView data, const PieceSink& sink) {
+Result<ForeignInfo> read_luanti_block(ByteView data, const PieceSink& sink) {
   auto piece = decode_luanti_block(data);
   if (!piece) return failure(piece.error());
-  return sink(std::move(*piece));
+  if (const auto taken = sink(std::move(*piece)); !taken) return failure(taken.error());
+  return ForeignInfo{};
 }
 
 }  // namespace runstone

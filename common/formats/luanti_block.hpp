@@ -32,7 +32,7 @@ std::int64_t luanti_block_pos(ChunkCoord block);
 /// bytes).
 Result<ForeignPiece> decode_luanti_block(ByteView data);
 /// Gives the piece of decode_luanti_block() to the sink: the reader of Format.
-Result<void> read_luanti_block(ByteView data, const PieceSink& sink);
+Result<ForeignInfo> read_luanti_block(ByteView data, const PieceSink& sink);
 
 /// Returns a material for a node: colour and visibility by name and kind, whatever its state. Water
 /// and glass are transparent. Plants, torches and the like are empty unless keep_all. "air" and
