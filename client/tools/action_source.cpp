@@ -33,14 +33,6 @@ bool clears(const EditDescriptor& edit) {
 
 }  // namespace
 
-PasteLimits paste_limits(const EditLimits& limits) {
-  PasteLimits out;
-  out.chunk_edge = limits.chunk_edge;
-  out.volume_max = std::max<std::uint64_t>(limits.volume_max, 1);
-  out.chunks_max = std::max<std::uint64_t>(limits.touched_chunks_max, 1);
-  return out;
-}
-
 ToolAction paste_of_build(BuildPaste paste, const EditLimits& limits) {
   ToolAction out;
   if (auto whole = whole_clipboard(*paste.build, paste.empty, paste_limits(limits))) {

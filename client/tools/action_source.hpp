@@ -5,11 +5,9 @@
 #include "client/build/edit_source.hpp"
 #include "client/tools/tool_action.hpp"
 #include "protocol/rules/edit_check.hpp"
+#include "protocol/rules/paste_limits.hpp"
 
 namespace runstone {
-
-/// Returns the limits of the edits of a paste in a world.
-PasteLimits paste_limits(const EditLimits& limits);
 
 /// Returns a paste as an action: as one edit if a descriptor can hold it.
 ToolAction paste_of_build(BuildPaste paste, const EditLimits& limits);

@@ -32,6 +32,18 @@ std::string tags_text(const BuildInfo& info) {
   return text;
 }
 
+/// Returns the file of a build of the library.
+Result<Bytes, std::string> stored_bytes(LibraryReader& reader, const StoredBuild& build) {
+  Bytes bytes;
+  bytes.reserve(static_cast<std::size_t>(build.build().file_bytes));
+  const auto read = reader.read_build(build, [&](ByteView part) {
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    return true;
+  });
+  if (!read) return failure(read.error().message());
+  return bytes;
+}
+
 }  // namespace
 
 Result<BuildFile, std::string> read_build_file(const std::string& file, std::uint64_t bytes_max) {
@@ -70,16 +82,19 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
   return {};
 }
 
+Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build) {
+  const auto bytes = stored_bytes(reader, build);
+  if (!bytes) return failure(bytes.error());
+  auto read = runstone::read_build(rsb_source(*bytes));
+  if (!read) return failure(read.error().message());
+  return *std::move(read);
+}
+
 Result<void, std::string> write_build_picture(LibraryReader& reader, const StoredBuild& build,
                                               const std::string& file) {
-  Bytes bytes;
-  bytes.reserve(static_cast<std::size_t>(build.build().file_bytes));
-  const auto read = reader.read_build(build, [&](ByteView part) {
-    bytes.insert(bytes.end(), part.begin(), part.end());
-    return true;
-  });
-  if (!read) return failure(read.error().message());
-  auto sections = RsbReader::open(rsb_source(bytes));
+  const auto bytes = stored_bytes(reader, build);
+  if (!bytes) return failure(bytes.error());
+  auto sections = RsbReader::open(rsb_source(*bytes));
   if (!sections) return failure(sections.error().message());
   const auto png = build_picture(*sections);
   if (!png) return failure(png.error().message());

@@ -7,6 +7,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/library_change.hpp"
+#include "common/formats/rsb_build.hpp"
 #include "server/store/library_reader.hpp"
 
 namespace runstone {
@@ -26,6 +27,9 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
 /// on the disk.
 Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBuild& build,
                                            const std::string& file);
+
+/// Reads a build of the library. The error is one line. Blocks on the disk.
+Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build);
 
 /// Draws a build from above (build_picture()), and writes the picture to a PNG file. The error is one
 /// line. Blocks on the disk.

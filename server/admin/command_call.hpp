@@ -16,6 +16,7 @@
 #include "server/admin/command_row.hpp"
 #include "server/admin/known_players.hpp"
 #include "server/admin/operator_actions.hpp"
+#include "server/place/place_service.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/world/world_server.hpp"
 
@@ -42,6 +43,7 @@ struct CommandServices {
   WorldServer& world;
   RollbackService& rollback;
   RollbackService::Workers& workers;
+  PlaceService& placing;
   const std::string world_folder;  // for the pictures of previews
   const OperatorActions actions;
   /// Returns true if the server's settings name the key as an operator's.

@@ -7,6 +7,7 @@
 
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/place_words.hpp"
 
 namespace runstone {
 namespace {
@@ -182,6 +183,38 @@ void draw_build(const CommandCall& call, const ExportedBuild& wanted) {
       });
 }
 
+struct PlacedBuild {
+  Sequence number = 0;
+  PlaceWords words;
+};
+
+Result<PlacedBuild, std::string> parse_place(WordReader& reader) {
+  PlacedBuild out;
+  out.number = take_build_number(reader, reader.command());
+  out.words = take_place_words(reader);
+  return reader.result(out);
+}
+
+void place_stored_build(const CommandCall& call, const PlacedBuild& wanted) {
+  call.on_worker(
+      "builds place: ",
+      [number = wanted.number](
+          WorldReader& reader) -> Result<std::shared_ptr<const FileBuild>, std::string> {
+        const auto stored = stored_build(reader, number);
+        if (!stored) return failure(stored.error());
+        auto build = read_stored_build(reader, *stored);
+        if (!build) return failure(build.error());
+        return std::make_shared<const FileBuild>(*std::move(build));
+      },
+      [call, wanted](const std::shared_ptr<const FileBuild>& build) {
+        place_build(call, "builds place", '"' + build->info.name + '"', *build, wanted.words);
+      });
+}
+
+void cancel_placing(const CommandCall& call) {
+  call.services.placing.cancel(call.caller.author, call.now, call.reply);
+}
+
 void remove_build(const CommandCall& call, const Sequence& number) {
   const LibraryRow* row = call.world().order().library().find(number);
   if (row == nullptr) return call.refuse("builds remove: " + no_build(number));
@@ -196,7 +229,7 @@ void remove_build(const CommandCall& call, const Sequence& number) {
                                          std::to_string(*removed) + ")");
 }
 
-constexpr std::array<CommandRow, 6> kLibraryRows = {{
+constexpr std::array<CommandRow, 8> kLibraryRows = {{
     {"builds list", needs(Right::see),
      "builds list [name PART] [author PART] [tag TAG] [before NUMBER] [count N]\n"
      "                          the builds of the library, newest first",
@@ -214,6 +247,14 @@ constexpr std::array<CommandRow, 6> kLibraryRows = {{
      "builds picture NUMBER FILE\n"
      "                          draw a build of the library from above to a PNG file",
      parsed_by<parse_export, draw_build>()},
+    {"builds place", needs(Right::administer),
+     "builds place NUMBER at X Y Z [turn 90 | 180 | 270] [mirror x | z] [only-into empty]\n"
+     "             [without air] [materials add | nearest]\n"
+     "                          place a build as one action, with its lowest corner at X Y Z",
+     parsed_by<parse_place, place_stored_build>()},
+    {"builds cancel", needs(Right::administer),
+     "builds cancel             end what you place, and take it back; the console ends all",
+     alone<cancel_placing>()},
     {"builds remove", needs(Right::build, Right::administer),
      "builds remove NUMBER      remove a build from the library: your own one, or any if you may\n"
      "                          administer",

@@ -1,4 +1,5 @@
-// The commands of the library of builds: `builds list`, `show`, `import`, `export`, `picture` and `remove`.
+// The commands of the library of builds: `builds list`, `show`, `import`, `export`, `picture`,
+// `place`, `cancel` and `remove`.
 #pragma once
 #include <span>
 

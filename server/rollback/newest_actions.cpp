@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/rollback/log_windows.hpp"
 
 namespace runstone {
 namespace {
@@ -30,36 +30,20 @@ ActionKey key_of(const EditRecord& record) {
 
 StoreResult<std::vector<LogAction>> newest_actions(LogReader& reader, const SelectionFilter& filter,
                                                    std::size_t count_max) {
-  const auto range = reader.log_range();
-  if (!range) return failure(range.error());
-  const std::set<AuthorId> authors(filter.authors.begin(), filter.authors.end());
   std::map<ActionKey, LogAction> found;
   std::size_t read_count = 0;
-  Sequence last = std::min(filter.last, range->last.version.seq);
-  const Sequence first = std::max(filter.first, range->first);
-  for (Sequence width = 4096;
-       last >= first && found.size() < count_max && read_count < kActionRecordsMax; width *= 2) {
-    LogQuery query;
-    if (authors.size() == 1) query.author = *authors.begin();
-    query.from_us = filter.from_us;
-    query.until_us = filter.until_us;
-    query.box = filter.box;
-    query.cause = filter.cause;
-    query.last = last;
-    query.first = last - first >= width ? last - width + 1 : first;
-    const auto read = reader.query_log(query, [&](const EditRecord& record) {
-      if (!authors.empty() && !authors.contains(record.op.author)) return true;
-      ++read_count;
-      LogAction& action = found[key_of(record)];
-      const VoxelBox box = bounding_box(record.edit);
-      action.box = action.edits++ == 0 ? box : around(action.box, box);
-      if (action.first == 0 || record.version.seq < action.first) action.first = record.version.seq;
-      if (record.version.seq > action.newest.version.seq) action.newest = record;
-      return true;
-    });
-    if (!read) return failure(read.error());
-    last = query.first - 1;
-  }
+  const auto wants_more = [&] {
+    return found.size() < count_max && read_count < kActionRecordsMax;
+  };
+  const auto read = read_log_backwards(reader, filter, wants_more, [&](const EditRecord& record) {
+    ++read_count;
+    LogAction& action = found[key_of(record)];
+    const VoxelBox box = bounding_box(record.edit);
+    action.box = action.edits++ == 0 ? box : around(action.box, box);
+    if (action.first == 0 || record.version.seq < action.first) action.first = record.version.seq;
+    if (record.version.seq > action.newest.version.seq) action.newest = record;
+  });
+  if (!read) return failure(read.error());
   std::vector<LogAction> out;
   out.reserve(found.size());
   for (auto& [key, action] : found) out.push_back(std::move(action));

@@ -19,8 +19,8 @@ struct LogAction {
 /// Records that one call reads at most. Older ones count as if the log did not have them.
 inline constexpr std::size_t kActionRecordsMax = 262'144;
 
-/// Returns the newest `count_max` actions that match, ascending by their newest records. The log is read
-/// in windows from its end, each twice as wide as the one before.
+/// Returns the newest `count_max` actions that match, ascending by their newest records. It reads
+/// the log as read_log_backwards() does.
 StoreResult<std::vector<LogAction>> newest_actions(LogReader& reader, const SelectionFilter& filter,
                                                    std::size_t count_max);
 

@@ -168,16 +168,55 @@ void RollbackService::start_player_change(const PlayerChangeOrder& asked, Search
       return;
     }
   }
+  start_action_job(asked.author, asked.cause, change.action, std::move(change.selection),
+                   asked.reply);
+}
+
+void RollbackService::start_action_job(AuthorId author, Cause cause, Sequence action,
+                                       Selection&& selection, CommandReply reply) {
   RestoreOrder order;
-  order.author = asked.author;
+  order.author = author;
   order.instance = player_instance_;
-  order.first_seq =
-      std::max(world_.order().resolved(asked.author, player_instance_), kGroupBegins) + 1;
-  order.payer = asked.author;
-  order.cause = asked.cause;
-  order.subject = change.action;
-  order.selection = std::make_shared<const Selection>(std::move(change.selection));
-  start_job(std::move(order), name, asked.reply).player_change_of = asked.author;
+  order.first_seq = std::max(world_.order().resolved(author, player_instance_), kGroupBegins) + 1;
+  order.payer = author;
+  order.cause = cause;
+  order.subject = action;
+  order.selection = std::make_shared<const Selection>(std::move(selection));
+  start_job(std::move(order), name_of(cause), std::move(reply)).player_change_of = author;
+}
+
+void RollbackService::undo_action(AuthorId author, ClientInstance instance, Sequence action,
+                                  const Clocks& now, CommandReply asked) {
+  if (player_changes_.contains(author)) return refuse(asked, "undo: " + busy_text(author));
+  player_changes_.insert(author);
+  // The author is free for another one if it fails before its job begins.
+  CommandReply reply = [this, author, asked](const CommandAnswer& answer) {
+    player_changes_.erase(author);
+    asked(answer);
+  };
+  when_durable(now, reply, [this, author, instance, action, asked, reply] {
+    auto found = std::make_shared<StoreResult<Selection>>(Selection());
+    workers_.run(
+        [found, author, instance, action, should_continue = should_continue()](WorldReader& reader,
+                                                                               const Generator&) {
+          LogQuery query;
+          query.author = author;
+          query.cause = Cause::player;
+          query.first = action;
+          std::vector<Sequence> edits;
+          const auto read = reader.query_log(query, [&](const EditRecord& record) {
+            if (record.op.instance == instance) edits.push_back(record.version.seq);
+            return should_continue();
+          });
+          *found = read ? select_edits(reader, edits, should_continue)
+                        : StoreResult<Selection>(failure(read.error()));
+        },
+        [this, found, author, action, asked, reply](const std::string& error) {
+          if (!error.empty()) return refuse(reply, "undo: " + error);
+          if (!*found) return refuse(reply, "undo: " + found->error().message());
+          start_action_job(author, Cause::undo, action, *std::move(*found), asked);
+        });
+  });
 }
 
 void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,

@@ -52,6 +52,12 @@ class RollbackService {
     change_player_actions(author, Cause::redo, now, std::move(reply));
   }
 
+  /// Undoes one action of the author, which takes no more edits: all records of its client instance
+  /// from `action` on, which is the sequence of its first edit. Others may be newer. Refuses while the
+  /// author has an undo or redo under way.
+  void undo_action(AuthorId author, ClientInstance instance, Sequence action, const Clocks& now,
+                   CommandReply reply);
+
   /// Answers what a rollback of these edits would do, and keeps the preview under an id ("p1"). If
   /// that takes longer than a moment, answers with the id and the progress come before. Changes
   /// nothing. The functions are those of RollbackPreview::compute().
@@ -102,6 +108,9 @@ class RollbackService {
   void change_player_actions(AuthorId author, Cause cause, const Clocks& now, CommandReply reply);
   /// Looks for the action as soon as the edits before are ordered and durable.
   void find_player_change(PlayerChangeOrder order, const Clocks& now);
+  /// Begins the job of an undo or redo of one action.
+  void start_action_job(AuthorId author, Cause cause, Sequence action, Selection&& selection,
+                        CommandReply reply);
   void start_player_change(const PlayerChangeOrder& order, SearchResult& found, Sequence end);
   /// Begins the undos and redos whose edits before are ordered.
   void step_player_changes(const Clocks& now);

@@ -96,9 +96,12 @@ CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReade
       operators_(std::move(operators)),
       rollback_(world, *this,
                 [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
+      placing_(world, rollback_, *this,
+               [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
       services_{world,
                 rollback_,
                 *this,
+                placing_,
                 world_folder,
                 on_strand(strand, actions),
                 [this](const PublicKey& key) { return operators_.contains(key); }} {}

@@ -40,10 +40,11 @@ class CommandRunner final : private RollbackService::Workers {
   /// every tick, and when the log became durable or failed.
   void tick(const Clocks& now) {
     rollback_.tick(now);
+    placing_.tick(now);
     services_.tick(now);
   }
-  /// Returns false while rollbacks, undos or redos are under way.
-  bool is_idle() const { return rollback_.is_idle(); }
+  /// Returns false while rollbacks, undos, redos or placed builds are under way.
+  bool is_idle() const { return rollback_.is_idle() && placing_.is_idle(); }
   /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 
@@ -55,6 +56,7 @@ class CommandRunner final : private RollbackService::Workers {
   WorldReaders& readers_;
   std::set<PublicKey> operators_;
   RollbackService rollback_;
+  PlaceService placing_;
   CommandServices services_;
 };
 

@@ -67,7 +67,7 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
   const std::optional<Payer> paying = payer_of(payer);
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
-    RUNSTONE_ASSERT(offer.cause != Cause::player);
+    RUNSTONE_ASSERT(offer.cause != Cause::player || offer.is_of_large_action);
     if (need == DiskNeed::space ? !order_.log_has_room() : !order_.log_has_queue_room()) {
       out.reason = order_.is_disk_full() ? order_.disk_reason()
                                          : "the log has no room now (log_queue_records)";
@@ -84,6 +84,8 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
         break;
       }
     }
+    if (offer.is_of_large_action && offer.op.seq == offer.action)
+      order_.authority().large_actions().begin(offer.op);
     const auto queued = order_.authority().enqueue(offer);
     RUNSTONE_ASSERT(queued.has_value());
     ++out.count;

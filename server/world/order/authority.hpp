@@ -67,6 +67,7 @@ class Authority {
 
   /// The actions of the clients with the feature large actions.
   LargeActions& large_actions() { return large_actions_; }
+  const LargeActions& large_actions() const { return large_actions_; }
   const EditQueue& queue() const { return queue_; }
   /// Returns how long the edits of players waited to be ordered.
   const WaitHistogram& edit_waits() const { return edit_waits_; }

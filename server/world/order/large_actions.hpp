@@ -38,6 +38,13 @@ class LargeActions {
     if (action == of->second.actions.end()) return Standing::unknown;
     return action->is_ended ? Standing::ended : Standing::open;
   }
+  /// Returns the sequence of the first edit of an action, or 0 if it is not ordered or not remembered.
+  Sequence first_of(const OperationId& first_op) const {
+    const auto of = clients_.find({first_op.author, first_op.instance});
+    if (of == clients_.end()) return 0;
+    const auto action = find_in(of->second.actions, first_op.seq);
+    return action == of->second.actions.end() ? 0 : action->first;
+  }
   /// Notes that the first edit of an action was accepted. It is ordered later.
   void begin(const OperationId& first_op) { add(first_op, {first_op.seq, 0, 0, false}); }
   /// Notes what the log has of an action: the sequence of its first edit.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include "server/backup/backup_program.hpp"
@@ -72,7 +73,10 @@ TEST_CASE("a library survives kill -9 and a backup, and comes back byte by byte"
     const std::string copy = folder / "copy.rsb";
     must(world, {"builds", "export", "1", copy});
     CHECK(bytes_in_file(copy) == bytes_in_file(file));
-    must(world, {"backup", folder / "backup"});
+    std::ostringstream said;
+    const auto saved = back_up({world, folder / "backup", false}, 1'795'000'000'000'000, said, {});
+    INFO((saved ? said.str() : saved.error()));
+    REQUIRE(saved.has_value());
     must(world, {"builds", "remove", "1"});
     CHECK_FALSE(control(world, {"builds", "show", "1"}).is_ok);
     CHECK(must(world, {"log", "cause", "library"}).text.find("removed build 1") !=
@@ -88,6 +92,32 @@ TEST_CASE("a library survives kill -9 and a backup, and comes back byte by byte"
     CHECK(bytes_in_file(copy) == bytes_in_file(file));
     CHECK(server->stop().is_clean);
   }
+}
+
+TEST_CASE("a build of the library is placed from the console as one action, and taken back",
+          "[integration][library]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "mill.rsb";
+  write_large_build(file, "Mill");
+  const auto server = start_server(quiet_config(world), flat_creation());
+  must(world, {"builds", "import", file});
+  const std::vector<std::string> place = {"builds", "place", "1", "at", "-70", "90", "5"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = place;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const Answer refused = control(world, place);
+  CHECK_FALSE(refused.is_ok);
+  CHECK(refused.text.find("this world lacks") != std::string::npos);
+  CHECK(refused.text.find("`materials add`") != std::string::npos);
+  CHECK(must(world, with({"materials", "nearest", "turn", "90"})).text.find("\"Mill\" is placed") !=
+        std::string::npos);
+  CHECK(must(world, {"undo"}).text.find("undo: ") != std::string::npos);
+  must(world, with({"materials", "add"}));
+  CHECK(must(world, {"materials", "m0000"}).text.find("m0000") != std::string::npos);
+  CHECK(server->stop().is_clean);
+  check_verified(world);
 }
 
 TEST_CASE("an import of an .rlog keeps the records of a library without its builds",

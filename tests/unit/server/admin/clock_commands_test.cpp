@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/admin/command_table.hpp"
-#include "tests/unit/server/rollback/rollback_bench.hpp"
+#include "tests/unit/server/admin/command_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -23,12 +23,14 @@ WorldStart start_ahead(TimeUs ahead_us) {
   return start;
 }
 
-struct ClockBench : RollbackBench {
+struct ClockBench : CommandBench {
   explicit ClockBench(TimeUs ahead_us) : ClockBench(start_ahead(ahead_us)) {}
   explicit ClockBench(const WorldStart& start)
-      : RollbackBench(config(), start),
-        services{bench.server,  service,   *this,
-                 folder.path(), actions(), [](const PublicKey&) { return false; }} {
+      : CommandBench(config(), start),
+        services{
+            bench.server, service, *this, placing, folder.path(), actions(), [](const PublicKey&) {
+              return false;
+            }} {
     join(kMoleSession);
     join(kAnaSession);
     tick();
@@ -211,11 +213,14 @@ TEST_CASE("a correction before the first tick leaves a ban the time that it had"
   start.log.last = start.log.last_epoch = 1;
   start.rights.push_back(
       {Restrict{RestrictionKind::ban, mole, given_us + kHour, ""}, {1, 0, given_us}});
-  RollbackBench bench(config(), start);
-  CommandServices services{
-      bench.bench.server, bench.service, bench, bench.folder.path(), {}, [](const PublicKey&) {
-        return false;
-      }};
+  CommandBench bench(config(), start);
+  CommandServices services{bench.bench.server,
+                           bench.service,
+                           bench,
+                           bench.placing,
+                           bench.folder.path(),
+                           {},
+                           [](const PublicKey&) { return false; }};
   give_command({services, {}, bench.bench.now(), bench.reply()}, "clock correct");
   CHECK(bench.bench.server.order().head() == 2);
   const auto* ban =

@@ -139,14 +139,21 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "materials \"red\": at most one word comes after materials");
   CHECK(mistake("materials add my wool.toml") ==
         "materials add: one file comes after it, in quotes if it has blanks");
-  CHECK(mistake("builds") == "builds: list, show, import, export, picture or remove is missing");
+  CHECK(mistake("builds") ==
+        "builds: list, show, import, export, picture, place, cancel or remove is missing");
   CHECK(mistake("builds list colour red") ==
         "builds list \"colour\": name, author, tag, before or count");
-  CHECK(mistake("builds list count 51") == "builds list count \"51\": a number from 1 to 50");
-  CHECK(mistake("builds import") ==
+  CHECK(mistake("builds list count 51") == "count \"51\": a number from 1 to 50");
+  CHECK(mistake("builds import mill mill.rsb") ==
         "builds import: one file comes after it, in quotes if it has blanks");
-  CHECK(mistake("builds export 7") ==
+  CHECK(mistake("builds export 7 mill mill.rsb") ==
         "builds export: the number of a build and a file come after it");
+  CHECK(mistake("builds place 7") ==
+        "builds place: at X Y Z is missing: the place of its lowest corner");
+  CHECK(mistake("builds place 7 at 1 2 3 turn 45") == "turn 45: 90, 180 or 270");
+  CHECK(mistake("builds place 7 at 1 2 3 materials red") == "materials: add or nearest");
+  CHECK(mistake("builds place 7 at 1 2 3 fast") ==
+        "builds place \"fast\": turn, mirror, only-into, without or materials");
   CHECK(mistake("backup") == "backup: the new folder comes after it");
   CHECK(mistake("reload now") == "reload \"now\": nothing comes after reload");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");

@@ -4,17 +4,18 @@
 #include <vector>
 
 #include "server/admin/command_table.hpp"
-#include "tests/unit/server/rollback/rollback_bench.hpp"
+#include "tests/unit/server/admin/command_bench.hpp"
 
 namespace runstone::test {
 namespace {
 
 /// A world with a player, whose program hands it over as the test says.
-struct HandoverBench : RollbackBench {
+struct HandoverBench : CommandBench {
   explicit HandoverBench(bool can_hand_over)
       : services{bench.server,
                  service,
                  *this,
+                 placing,
                  folder.path(),
                  actions_of(can_hand_over),
                  [](const PublicKey&) { return false; }} {
@@ -83,11 +84,15 @@ TEST_CASE("a program that cannot hand a world over says so", "[admin][servers]")
 }
 
 /// A world in which somebody owns the name "Ana".
-struct NameBench : RollbackBench {
+struct NameBench : CommandBench {
   NameBench()
-      : RollbackBench(config(), start_with_name()),
-        services{bench.server,  service, *this,
-                 folder.path(), {},      [](const PublicKey&) {
+      : CommandBench(config(), start_with_name()), services{bench.server,
+                                                            service,
+                                                            *this,
+                                                            placing,
+                                                            folder.path(),
+                                                            {},
+                                                            [](const PublicKey&) {
                    return false; }} {}
   void release() { give_command({services, {}, bench.now(), reply()}, "names release ana"); }
   /// Lets commands go on at a time after now.

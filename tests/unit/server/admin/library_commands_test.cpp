@@ -10,16 +10,21 @@
 #include "server/admin/command_table.hpp"
 #include "server/store/build_table.hpp"
 #include "tests/support/formats/rsb_bytes.hpp"
-#include "tests/unit/server/rollback/rollback_bench.hpp"
+#include "tests/unit/server/admin/command_bench.hpp"
 
 namespace runstone::test {
 namespace {
 
 /// A world whose log writer writes files of builds when the test says.
-struct LibraryBench : RollbackBench {
+struct LibraryBench : CommandBench {
   LibraryBench()
-      : services{bench.server,  service,      *this,
-                 folder.path(), actions_of(), [](const PublicKey&) { return false; }} {
+      : services{bench.server,
+                 service,
+                 *this,
+                 placing,
+                 folder.path(),
+                 actions_of(),
+                 [](const PublicKey&) { return false; }} {
     author = join(kBuilder);
   }
   CommandAnswer give(const std::string& line, const CommandCaller& caller = {}) {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "server/admin/command_table.hpp"
-#include "tests/unit/server/rollback/rollback_bench.hpp"
+#include "tests/unit/server/admin/command_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -18,8 +18,8 @@ WorldConfig config_of_sample() {
   return c;
 }
 
-struct AddBench : RollbackBench {
-  AddBench() : RollbackBench(config_of_sample()) {}
+struct AddBench : CommandBench {
+  AddBench() : CommandBench(config_of_sample()) {}
 
   CommandAnswer give(const CommandCaller& caller, const std::string& line) {
     answers.clear();
@@ -37,8 +37,13 @@ struct AddBench : RollbackBench {
   }
 
   const std::string file = folder / "my wool.toml";
-  CommandServices services{bench.server,  service, *this,
-                           folder.path(), {},      [](const PublicKey&) { return false; }};
+  CommandServices services{bench.server,
+                           service,
+                           *this,
+                           placing,
+                           folder.path(),
+                           {},
+                           [](const PublicKey&) { return false; }};
 };
 
 constexpr const char* kTwoRows =

@@ -5,7 +5,7 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/password_commands.hpp"
-#include "tests/unit/server/rollback/rollback_bench.hpp"
+#include "tests/unit/server/admin/command_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -13,12 +13,13 @@ namespace {
 constexpr SessionId kFirst = 1, kSecond = 2;  // the key of session n is that of seed n
 
 /// A world with two players, and its commands.
-struct RightsBench : RollbackBench {
+struct RightsBench : CommandBench {
   explicit RightsBench(const WorldStart& start = {})
-      : RollbackBench(config(), start),
-        services{bench.server, service,
-                 *this,        folder.path(),
-                 {},           [this](const PublicKey& key) { return key == operator_key; }} {
+      : CommandBench(config(), start),
+        services{
+            bench.server, service, *this, placing, folder.path(), {}, [this](const PublicKey& key) {
+              return key == operator_key;
+            }} {
     join(kFirst);
     join(kSecond);
   }

@@ -1,0 +1,15 @@
+// CommandBench: a RollbackBench with the other services on which commands work.
+#pragma once
+#include "server/place/place_service.hpp"
+#include "tests/unit/server/rollback/rollback_bench.hpp"
+
+namespace runstone::test {
+
+struct CommandBench : RollbackBench {
+  using RollbackBench::RollbackBench;
+  PlaceService placing{bench.server, service, *this, [](std::span<std::uint8_t> out) {
+                         for (auto& byte : out) byte = 0x5a;
+                       }};
+};
+
+}  // namespace runstone::test
