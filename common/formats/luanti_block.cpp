@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/formats/deflate.hpp"
 #include "common/formats/luanti_stream.hpp"
 #include "common/runs/run_builder.hpp"
 
@@ -150,9 +151,11 @@ Result<ForeignPiece> decode_zlib_block(ByteView data) {
   read_widths(head);
   if (!head.ok()) return failure(head.error());
   Bytes nodes;
-  const auto behind_nodes = unpack_zlib(data, head.offset(), kNodeCount * 4, &nodes);
+  const auto behind_nodes =
+      inflate_all(data, head.offset(), DeflateForm::zlib, kNodeCount * 4, &nodes);
   if (!behind_nodes) return failure(behind_nodes.error());
-  const auto behind_metadata = unpack_zlib(data, *behind_nodes, kMetadataBytesMax, nullptr);
+  const auto behind_metadata =
+      inflate_all(data, *behind_nodes, DeflateForm::zlib, kMetadataBytesMax, nullptr);
   if (!behind_metadata) return failure(behind_metadata.error());
 
   ByteReader in(data);
