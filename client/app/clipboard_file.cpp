@@ -44,8 +44,10 @@ Result<void, std::string> ClipboardFile::write(const std::string& file, const Ke
   if (!out) return failure(file + ": " + out.error());
   BuildInfo info;
   info.name = "clipboard";
+  std::vector<BuildMaterial> materials;
+  for (const MaterialRow& row : kept.rows) materials.push_back({row, {}});
   const auto written = write_build(
-      *kept.build, kept.rows, info, kept.empty == EmptyCells::skipped,
+      *kept.build, materials, info, kept.empty == EmptyCells::skipped,
       [&](ByteView bytes) { return out->write(bytes); }, kClipboardLevel);
   if (!written) {
     return failure(file + ": " + (out->error().empty() ? written.error().message() : out->error()));

@@ -2,32 +2,43 @@
 
 #include <algorithm>
 
+#include "common/formats/litematic_reader.hpp"
+#include "common/formats/look_material.hpp"
 #include "common/formats/luanti_block.hpp"
+#include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/schematic_reader.hpp"
+#include "common/formats/schematic_writer.hpp"
+#include "common/formats/vox.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr Format kFormats[] = {
-    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node},
+    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node, false},
+    {"sponge", ".schem", read_schematic, material_of_minecraft_block, true, write_schem},
+    {"mcedit", ".schematic", read_schematic, material_of_minecraft_block},
+    {"litematica", ".litematic", read_litematic, material_of_minecraft_block, true,
+     write_litematic},
+    {"magicavoxel", ".vox", read_vox, material_of_look, true, write_vox},
 };
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-bool ends_with(std::string_view path, std::string_view ending) {
+}  // namespace
+
+bool has_ending(std::string_view path, std::string_view ending) {
   if (path.size() < ending.size()) return false;
   path.remove_prefix(path.size() - ending.size());
   return std::equal(path.begin(), path.end(), ending.begin(),
                     [](char a, char b) { return lower(a) == lower(b); });
 }
 
-}  // namespace
-
 std::span<const Format> formats() { return kFormats; }
 
 const Format* format_of_file(std::string_view path) {
   const auto* found =
       std::find_if(std::begin(kFormats), std::end(kFormats),
-                   [&](const Format& format) { return ends_with(path, format.file_ending); });
+                   [&](const Format& format) { return has_ending(path, format.file_ending); });
   return found == std::end(kFormats) ? nullptr : found;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/core/text.hpp"
+#include "common/formats/minecraft_blocks.hpp"
 
 namespace runstone {
 namespace {
@@ -34,7 +35,8 @@ std::int64_t colour_distance(const MaterialColour& a, const MaterialColour& b) {
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  if (!material.states.empty()) name += '[' + material.states + ']';
+  const bool has_states = block_of_minecraft_material(name).has_value();
+  if (!material.states.empty() && !has_states) name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);
   return std::string(cut_utf8(name, kMaterialNameBytesMax - ending.size())) + ending;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "common/builds/build_builder.hpp"
@@ -32,19 +33,21 @@ struct FilePalette {
   std::vector<std::uint16_t> numbers;
 };
 
-FilePalette file_palette(const Build& build, std::span<const MaterialRow> rows, bool skips_empty) {
+FilePalette file_palette(const Build& build, std::span<const BuildMaterial> materials,
+                         bool skips_empty) {
   std::vector<std::size_t> order;
   FilePalette out;
-  std::vector<BuildMaterial> named;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    named.push_back({rows[i], {}});
+  std::vector<BuildMaterial> named(materials.begin(), materials.end());
+  for (std::size_t i = 0; i < named.size(); ++i) {
     if (named[i].row.name.empty())
       named[i].row.name = "material " + std::to_string(build.palette()[i]);
     if (!skips_empty || build.palette()[i] != kEmpty) order.push_back(i);
   }
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return named[a].row.name < named[b].row.name; });
-  out.numbers.assign(rows.size() + 1, 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(named[a].row.name, named[a].states) <
+           std::tie(named[b].row.name, named[b].states);
+  });
+  out.numbers.assign(named.size() + 1, 0);
   for (const std::size_t i : order) {
     out.materials.push_back(std::move(named[i]));
     out.numbers[i + 1] = static_cast<std::uint16_t>(out.materials.size());
@@ -56,10 +59,10 @@ Unexpected<RsbError> section_failure(const Error& error) { return {{error, "sect
 
 }  // namespace
 
-RsbResult<void> write_build(const Build& build, std::span<const MaterialRow> rows, BuildInfo info,
-                            bool skips_empty, const RsbSink& sink, int zstd_level) {
-  RUNSTONE_ASSERT(rows.size() == build.palette().size());
-  const FilePalette palette = file_palette(build, rows, skips_empty);
+RsbResult<void> write_build(const Build& build, std::span<const BuildMaterial> materials,
+                            BuildInfo info, bool skips_empty, const RsbSink& sink, int zstd_level) {
+  RUNSTONE_ASSERT(materials.size() == build.palette().size());
+  const FilePalette palette = file_palette(build, materials, skips_empty);
   const VoxelPos sides = build.sides();
   info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
                 static_cast<std::uint32_t>(sides.z)};

@@ -20,13 +20,14 @@ struct FileBuild {
   std::vector<BuildMaterial> materials;  // by palette entry of the build
 };
 
-/// Writes a build. `rows` are the materials of its palette, by entry; a row without a name gets one
-/// from its number. Sets the sides of `info`. With `skips_empty`, empty cells are written as
-/// untouched. Fails as RsbWriter does: if two rows have one name, a field is outside its range, the
+/// Writes a build. `materials` are those of its palette, by entry; one without a name gets one from its
+/// number. Sets the sides of `info`. With `skips_empty`, empty cells are written as
+/// untouched. Fails as RsbWriter does: if two materials have one name and the same states, a field is outside its range, the
 /// sink fails, or no cell is touched. Cost: O(runs + lines of the sections). Memory: that of one
 /// section and one block.
-RsbResult<void> write_build(const Build& build, std::span<const MaterialRow> rows, BuildInfo info,
-                            bool skips_empty, const RsbSink& sink, int zstd_level = 9);
+RsbResult<void> write_build(const Build& build, std::span<const BuildMaterial> materials,
+                            BuildInfo info, bool skips_empty, const RsbSink& sink,
+                            int zstd_level = 9);
 
 /// Reads a build. Fails as RsbReader does, and with limit_exceeded if the build takes more than
 /// `bytes_max` of memory. No byte is trusted.

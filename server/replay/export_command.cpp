@@ -1,21 +1,44 @@
 #include "server/replay/replay_commands.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <string_view>
 
+#include "common/core/text.hpp"
+#include "common/formats/file_build.hpp"
+#include "common/os/output_file.hpp"
+#include "common/os/progress_line.hpp"
+#include "server/history/build_at.hpp"
 #include "server/replay/command_world.hpp"
 #include "server/replay/rlog_file.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
+namespace {
 
-void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
-  command_line.common(options.common, "folder of the world; a server may be running it");
-  command_line.output_file("FILE", options.file, "the .rlog file to write; an old one is replaced");
-  command_line.moment("--at", options.at, "last edit to export");
+/// Returns the box of "X,Y,Z,X,Y,Z", two opposite corners that are both inside, or nullopt.
+std::optional<VoxelBox> parse_box(std::string_view text) {
+  std::array<std::int32_t, 6> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
+    if (error != std::errc()) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    const bool is_last = i + 1 == numbers.size();
+    if (is_last != text.empty() || (!is_last && text.front() != ',')) return std::nullopt;
+    if (!is_last) text.remove_prefix(1);
+  }
+  for (const std::int32_t number : numbers) {
+    if (number < -kWorldLimit || number >= kWorldLimit) return std::nullopt;
+  }
+  const auto low = [&](std::size_t i) { return std::min(numbers[i], numbers[i + 3]); };
+  const auto high = [&](std::size_t i) { return std::max(numbers[i], numbers[i + 3]) + 1; };
+  return VoxelBox{{low(0), low(1), low(2)}, {high(0), high(1), high(2)}};
 }
 
-Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out) {
+Result<int, std::string> export_log(const ExportOptions& options, std::ostream& out) {
   const auto store = open_world(options.common.world, StoreAccess::read_only);
   if (!store) return failure(store.error().message());
   const auto at = end_of_replay(**store, options.at);
@@ -34,6 +57,98 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
   const auto written = write_report(options.common.json, json.dump(1));
   if (!written) return failure(written.error());
   return code_of_output(**store);
+}
+
+/// Writes a build to a file, which replaces an old one when it is whole. Returns its bytes.
+Result<std::uint64_t, std::string> write_build_to(const std::string& file, const FileBuild& build) {
+  auto to = open_output_file(file);
+  if (!to) return failure(to.error());
+  std::uint64_t bytes = 0;
+  const auto written = write_file_build(file, build, [&](ByteView part) {
+    bytes += part.size();
+    return to->write(part);
+  });
+  if (!written) return failure(to->error().empty() ? written.error() : file + ": " + to->error());
+  if (const auto done = to->finish(); !done) return failure(file + ": " + done.error());
+  return bytes;
+}
+
+std::string name_of_build(const ExportOptions& options) {
+  if (!options.name.empty()) return options.name;
+  const std::string stem = std::filesystem::path(options.file).stem().string();
+  return is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
+}
+
+Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
+  if (auto why = ending_refusal(options.file, true); !why.empty()) return failure(std::move(why));
+  const auto world = open_for_reading(options.common.world, options.at);
+  if (!world) return failure(world.error());
+  Store& store = *world->store;
+  const auto last = store.last_sequence();
+  if (!last) return failure(last.error().message());
+  const Sequence at = std::min(world->end, *last);
+  const auto then = WorldAt::open(store, *world->generator, at);
+  if (!then) return failure(then.error().message());
+  const auto materials = store.materials(at);
+  if (!materials) return failure(materials.error().message());
+  auto build = [&] {
+    ProgressLine line("chunks read", options.common.progress);
+    return build_at(*then, store, *materials, *options.box, store.meta().chunk_edge,
+                    static_cast<std::size_t>(options.memory_mib) << 20,
+                    [&](std::uint64_t done, std::uint64_t total) {
+                      line.show(done, total);
+                      return true;
+                    });
+  }();
+  if (!build) return failure(options.common.world + ": " + build.error());
+  build->info.name = name_of_build(options);
+  const auto bytes = write_build_to(options.file, *build);
+  if (!bytes) return failure(bytes.error());
+  const BuildSides& sides = build->info.sides;
+  print_world(out, store);
+  row(out, "moment") << "after sequence " << at << '\n';
+  row(out, "box") << sides.x << " x " << sides.y << " x " << sides.z << " voxels, "
+                  << build->build->solid() << " of them not empty\n";
+  row(out, "materials") << build->materials.size() << '\n';
+  row(out, "written") << options.file << ", " << *bytes << " bytes\n";
+  const nlohmann::ordered_json json = {{"seq", at},
+                                       {"sides", {sides.x, sides.y, sides.z}},
+                                       {"solid", build->build->solid()},
+                                       {"materials", build->materials.size()},
+                                       {"lost", store.loss() ? store.loss()->message() : ""},
+                                       {"bytes", *bytes}};
+  const auto written = write_report(options.common.json, json.dump(1));
+  if (!written) return failure(written.error());
+  return code_of_output(store);
+}
+
+}  // namespace
+
+void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
+  command_line.common(options.common, "folder of the world; a server may be running it");
+  command_line.output_file("FILE", options.file,
+                           "the .rlog file to write, or with --box a build such as town.schem; an "
+                           "old one is replaced");
+  command_line.moment("--at", options.at, "last edit to export");
+  command_line.parsed(
+      "--box",
+      [&options](const std::string& text) -> std::string {
+        options.box = parse_box(text);
+        return options.box ? "" : "X,Y,Z,X,Y,Z: two opposite corners, both inside";
+      },
+      "X,Y,Z,X,Y,Z: export this box of the world as a build, in the format of the ending");
+  command_line.text("--name", options.name, "name of the build; default: the name of the file");
+  command_line.number("--memory", options.memory_mib, 1, 65'536,
+                      "MiB that the runs of a box may take; default 1024");
+}
+
+Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out) {
+  if (!options.name.empty() &&
+      (!is_plain_name(options.name) || options.name.size() > kBuildNameBytesMax)) {
+    return failure("--name: 1 to " + std::to_string(kBuildNameBytesMax) +
+                   " bytes without quotes, backslashes, control characters and outer blanks");
+  }
+  return options.box ? export_box(options, out) : export_log(options, out);
 }
 
 }  // namespace runstone

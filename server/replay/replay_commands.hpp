@@ -48,11 +48,15 @@ void declare_copy(SubcommandOptions& command_line, CopyOptions& options);
 /// Makes the new world and prints a table. Returns the code of code_of_output() (command_world.hpp).
 Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out);
 
-/// export: writes a world's log to an .rlog file (docs/edit-log.md).
+/// export: writes a world's log to an .rlog file (docs/edit-log.md), or a box of the world to a file
+/// of another format (docs/formats.md).
 struct ExportOptions {
   CommonOptions common;
   std::string file;
-  std::optional<NamedMoment> at;  // last edit of the file; default: the end of the log
+  std::optional<NamedMoment> at;    // last edit of the file; default: the end of the log
+  std::optional<VoxelBox> box;      // of the world; nullopt: the log is exported
+  std::string name;                 // of the build; empty: the name of the file
+  std::uint64_t memory_mib = 1024;  // of the runs of a box, at most
 };
 
 void declare_export(SubcommandOptions& command_line, ExportOptions& options);

@@ -1,0 +1,73 @@
+#include "common/formats/file_build.hpp"
+
+#include <utility>
+
+#include "common/formats/rsb_block.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::string_view kRsbEnding = ".rsb";
+
+bool is_rsb(std::string_view file) { return has_ending(file, kRsbEnding); }
+
+/// Returns the format of a file that holds a build as a whole, or null.
+const Format* file_format(std::string_view file) {
+  const Format* format = format_of_file(file);
+  return format != nullptr && format->is_file ? format : nullptr;
+}
+
+std::string error_text(const std::string& file, const Error& error) {
+  std::string text = file + ": " + error.what;
+  if (error.offset != 0) text += " (at byte " + std::to_string(error.offset) + ")";
+  return text;
+}
+
+}  // namespace
+
+Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
+                                               const ForeignReading& reading) {
+  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  if (is_rsb(file)) {
+    auto build = read_build(rsb_source(bytes), reading.bytes_max);
+    if (!build) return failure(file + ": " + build.error().message());
+    return *std::move(build);
+  }
+  auto build = read_foreign_build(*file_format(file), bytes, reading);
+  if (!build) return failure(error_text(file, build.error()));
+  return *std::move(build);
+}
+
+Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
+                                           const FormatSink& sink) {
+  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  bool is_written = true;
+  const FormatSink noting = [&](ByteView bytes) { return is_written = sink(bytes); };
+  if (is_rsb(file)) {
+    const auto done = write_build(*build.build, build.materials, build.info, false, noting);
+    if (!is_written) return failure(file + ": cannot be written");
+    if (!done) return failure(file + ": " + done.error().message());
+    return {};
+  }
+  const auto done = file_format(file)->write(build, noting);
+  if (!is_written) return failure(file + ": cannot be written");
+  if (!done) return failure(file + ": " + done.error().what);
+  return {};
+}
+
+std::string ending_refusal(std::string_view file, bool is_written) {
+  if (is_rsb(file)) return "";
+  const Format* format = file_format(file);
+  if (format != nullptr && (is_written ? format->write != nullptr : format->read != nullptr))
+    return "";
+  std::string text = std::string(file) + ": no format of this ending is " +
+                     (is_written ? "written" : "read") + "; the endings are " +
+                     std::string(kRsbEnding);
+  for (const Format& each : formats()) {
+    if (each.is_file && (is_written ? each.write != nullptr : each.read != nullptr))
+      text += ", " + std::string(each.file_ending);
+  }
+  return text;
+}
+
+}  // namespace runstone

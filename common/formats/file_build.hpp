@@ -1,0 +1,28 @@
+// Builds as files of any format, chosen by the ending of the file's name: .rsb, and the formats of the
+// table in format.cpp that are whole files.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "common/core/bytes.hpp"
+#include "common/core/result.hpp"
+#include "common/formats/build_of_file.hpp"
+#include "common/formats/format.hpp"
+#include "common/formats/rsb_build.hpp"
+
+namespace runstone {
+
+/// Reads the bytes of a file as a build. The error is one line with the file, the place and the reason.
+Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
+                                               const ForeignReading& reading);
+
+/// Writes a build in the format of the file's ending. The error is one line with the file and the
+/// reason; it is "cannot be written" if the sink returned false.
+Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
+                                           const FormatSink& sink);
+
+/// Returns why a file of this name can be neither read (or written, with `is_written`), as a sentence
+/// with the endings that can be, or an empty text.
+std::string ending_refusal(std::string_view file, bool is_written);
+
+}  // namespace runstone
