@@ -1,0 +1,56 @@
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include "common/formats/file_build.hpp"
+#include "common/os/private_file.hpp"
+#include "server/import/import_parts.hpp"
+
+namespace runstone {
+namespace {
+
+/// The bytes of a file, and the memory of its build.
+constexpr std::size_t kFileBytesMax = std::size_t{1} << 30;
+constexpr std::size_t kFileBuildBytesMax = std::size_t{2} << 30;
+
+class FileParts final : public ImportParts {
+ public:
+  FileParts(std::string file, VoxelPos at, bool keep_all)
+      : file_(std::move(file)), at_(at), keep_all_(keep_all) {}
+
+  std::size_t count() const override { return 1; }
+  Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
+    const auto bytes = read_file(file_, kFileBytesMax, FileKinds::regular);
+    if (!bytes) return failure(bytes.error());
+    const ByteView view(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+    ForeignReading reading;
+    reading.keep_all = keep_all_;
+    reading.bytes_max = kFileBuildBytesMax;
+    reading.name = std::filesystem::path(file_).stem().string();
+    auto build = read_file_build(file_, view, reading);
+    if (!build) return failure(build.error());
+    const VoxelPos sides = build->build->sides();
+    const std::array<std::pair<std::int64_t, std::int64_t>, 3> axes = {
+        {{at_.x, sides.x}, {at_.y, sides.y}, {at_.z, sides.z}}};
+    for (const auto& [at, side] : axes) {
+      if (at < -kWorldLimit || at + side > kWorldLimit)
+        return failure(file_ + ": its box does not lie in the world at this place");
+    }
+    return std::optional(ImportPart{*std::move(build), at_});
+  }
+
+ private:
+  std::string file_;
+  VoxelPos at_;
+  bool keep_all_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file, VoxelPos at,
+                                                                  bool keep_all) {
+  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  return std::unique_ptr<ImportParts>(std::make_unique<FileParts>(file, at, keep_all));
+}
+
+}  // namespace runstone
