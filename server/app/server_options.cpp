@@ -48,17 +48,51 @@ void add_flags(CLI::App& app, ServerOptions& out) {
 }
 
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {
-  CLI::App* const made = app.add_subcommand("import", "make a new world from a Luanti world");
-  made->add_option("--luanti", out.luanti, "folder that holds map.sqlite")->required();
+  CLI::App* const made = app.add_subcommand(
+      "import", "make a new world from a Luanti or Minecraft world, or from a file with a build");
+  const std::map<std::string, ImportKind> kinds = {{"luanti", ImportKind::luanti},
+                                                   {"minecraft", ImportKind::minecraft},
+                                                   {"file", ImportKind::file}};
+  CLI::Option* const kind =
+      made->add_option("KIND", out.kind, "luanti, minecraft, or file (docs/formats.md lists them)")
+          ->transform(CLI::Transformer(kinds))
+          ->option_text("luanti|minecraft|file");
+  CLI::Option* const source = made->add_option(
+      "SOURCE", out.source,
+      "luanti: folder that holds map.sqlite; minecraft: folder of the world, or a region file; "
+      "file: such as castle.schem");
+  kind->needs(source);
+  CLI::Option* const luanti =
+      made->add_option_function<std::string>(
+              "--luanti",
+              [&out](const std::string& text) {
+                out.kind = ImportKind::luanti;
+                out.source = text;
+              },
+              "the same as KIND luanti")
+          ->excludes(kind);
+  made->callback([kind, luanti] {
+    if (kind->count() + luanti->count() == 0) throw CLI::RequiredError("KIND and SOURCE");
+  });
   made->add_option("--world", out.world, "folder of the new world")
       ->required()
       ->check(folder_refusal);
+  made->add_option_function<std::vector<std::int32_t>>(
+          "--at",
+          [&out](const std::vector<std::int32_t>& at) {
+            out.at = {at[0], at[1], at[2]};
+          },
+          "file: X Y Z of its lowest corner; default: 0 0 0")
+      ->expected(3)
+      ->check(CLI::Range(-kWorldLimit, kWorldLimit - 1));
   made->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
   made->add_option_function<std::string>(
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
   made->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
+  made->add_flag("--progress", out.progress,
+                 "print progress even if standard error is no terminal");
   return made;
 }
 

@@ -1,13 +1,14 @@
 #include "server/import/import_builds.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "common/builds/build_transforms.hpp"
 #include "common/formats/material_match.hpp"
-#include "common/runs/column_tops.hpp"
 #include "common/runs/reorder.hpp"
 
 namespace runstone {
@@ -24,13 +25,54 @@ VoxelBox moved(const VoxelBox& box, VoxelPos by, int sign) {
           {box.max.x + sign * by.x, box.max.y + sign * by.y, box.max.z + sign * by.z}};
 }
 
-/// Returns y above the highest voxel of a column of the build that is not empty, or nullopt.
-std::optional<std::int32_t> top_of(const Build& build, std::int32_t x, std::int32_t z) {
-  for (std::int32_t y = build.sides().y - 1; y >= 0; --y) {
-    const auto material = build.at({x, y, z});
-    if (material && *material != kEmpty) return y + 1;
+/// Returns the chunks that a box meets, ascending by (z, y, x).
+std::vector<ChunkCoord> chunks_of(const VoxelBox& box, std::int32_t edge) {
+  const ChunkCoord first = chunk_of(box.min, edge);
+  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
+  std::vector<ChunkCoord> out;
+  for (std::int32_t z = first.z; z <= last.z; ++z) {
+    for (std::int32_t y = first.y; y <= last.y; ++y) {
+      for (std::int32_t x = first.x; x <= last.x; ++x) out.push_back({x, y, z});
+    }
   }
-  return std::nullopt;
+  return out;
+}
+
+/// Returns the place above the highest voxel that is not empty in the middle column of a part, or in
+/// the column nearest to it along x and z that has one; the top of the box if these have none.
+VoxelPos top_of_middle(const FileBuild& build, const VoxelBox& box) {
+  const VoxelPos sides = build.build->sides();
+  const auto top = [&](std::int32_t x, std::int32_t z) -> std::optional<std::int32_t> {
+    for (std::int32_t y = sides.y - 1; y >= 0; --y) {
+      const auto material = build.build->at({x, y, z});
+      if (material && *material != kEmpty) return y + 1;
+    }
+    return std::nullopt;
+  };
+  const std::int32_t x = sides.x / 2, z = sides.z / 2;
+  const std::int32_t reach = std::max(x, z);
+  for (std::int32_t away = 0; away <= reach; ++away) {
+    const std::array<std::pair<std::int32_t, std::int32_t>, 4> columns = {
+        {{x + away, z}, {x - away, z}, {x, z + away}, {x, z - away}}};
+    for (const auto& [at_x, at_z] : columns) {
+      if (at_x < 0 || at_x >= sides.x || at_z < 0 || at_z >= sides.z) continue;
+      if (const auto y = top(at_x, at_z))
+        return {box.min.x + at_x, box.min.y + *y, box.min.z + at_z};
+    }
+  }
+  return {box.min.x + x, box.max.y, box.min.z + z};
+}
+
+/// Returns the place on top of the part that is nearest to the middle of all.
+VoxelPos spawn_of(const VoxelBox& bounds, const std::vector<VoxelPos>& tops) {
+  const auto distance = [&](const VoxelPos& top) {
+    const std::int64_t x = std::int64_t{top.x} * 2 - bounds.min.x - bounds.max.x;
+    const std::int64_t z = std::int64_t{top.z} * 2 - bounds.min.z - bounds.max.z;
+    return std::abs(x) + std::abs(z);
+  };
+  return *std::min_element(tops.begin(), tops.end(), [&](const VoxelPos& a, const VoxelPos& b) {
+           return distance(a) < distance(b);
+         });
 }
 
 /// Returns a build of the ids of a table, or the name of a material that the table lacks.
@@ -44,37 +86,64 @@ Result<BuildPtr, std::string> with_ids(const FileBuild& build, const MaterialTab
 
 }  // namespace
 
-Result<BuildsReport, std::string> survey_builds(ImportParts& parts, std::int32_t edge,
-                                                const ImportProgress& progress) {
-  BuildsReport report;
+Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts, const ImportProgress& progress) {
+  BuildsSurvey survey;
   std::map<std::string, MaterialRow> rows;
-  std::vector<VoxelBox> boxes;
+  std::vector<VoxelPos> tops;
+  ImportFaults faults;  // the second pass finds them again
   for (std::size_t i = 0; i < parts.count(); ++i) {
     if (progress) progress(i, 2 * parts.count());
-    const auto part = parts.read(i, report.faults);
+    const auto part = parts.read(i, faults);
     if (!part) return failure(part.error());
     if (!*part || (*part)->build.build->solid() == 0) continue;
     const FileBuild& build = (*part)->build;
     for (const BuildMaterial& material : build.materials) {
       if (material.row.visibility == Visibility::empty) continue;
       MaterialRow row = world_row_of(material);
-      std::string name = row.name;
-      rows.try_emplace(std::move(name), std::move(row));
+      rows.try_emplace(row.name, row);
     }
-    ++report.parts;
-    report.bounds = around(report.bounds, moved(build.build->box(), (*part)->at, 1));
-    report.voxels += build.build->solid();
-    // Chunks are counted in the second pass.
-    static_cast<void>(edge);
+    const VoxelBox box = moved(build.build->box(), (*part)->at, 1);
+    survey.bounds = around(survey.bounds, box);
+    tops.push_back(top_of_middle(build, box));
   }
-  if (report.parts == 0) return failure("nothing but empty voxels is in it");
+  if (tops.empty()) {
+    return failure("nothing but empty voxels is in it" +
+                   (faults.empty() ? std::string() : "; " + faults.front()));
+  }
+  survey.spawn = parts.spawn().value_or(spawn_of(survey.bounds, tops));
   for (auto& [name, row] : rows) {
-    const auto added = report.materials.add({row.name, row.colour, row.visibility, std::nullopt,
-                                             row.body, row.look});
+    const auto added = survey.materials.add(
+        {row.name, row.colour, row.visibility, std::nullopt, row.body, row.look});
     if (!added) {
       return failure("its " + std::to_string(rows.size()) + " materials: " + name + ": " +
                      added.error().what);
     }
+  }
+  return survey;
+}
+
+Result<BuildsReport, std::string> import_builds(ImportParts& parts, const MaterialTable& materials,
+                                                std::int32_t edge, const ImportedChunk& chunk,
+                                                const ImportProgress& progress) {
+  BuildsReport report;
+  for (std::size_t i = 0; i < parts.count(); ++i) {
+    if (progress) progress(parts.count() + i, 2 * parts.count());
+    const auto part = parts.read(i, report.faults);
+    if (!part) return failure(part.error());
+    if (!*part || (*part)->build.build->solid() == 0) continue;
+    const auto build = with_ids((*part)->build, materials);
+    if (!build) return failure("it changed while it was read: import a copy");
+    ++report.parts;
+    const VoxelPos at = (*part)->at;
+    for (const ChunkCoord coord : chunks_of(moved((*build)->box(), at, 1), edge)) {
+      RunChunk voxels = materials_in(**build, moved(box_of(coord, edge), at, -1));
+      if (voxels.is_uniform() && voxels.runs.material(0) == kEmpty) continue;
+      voxels = in_cheapest_order(std::move(voxels));
+      ++report.chunks;
+      report.runs += voxels.runs.size();
+      if (!chunk({0, coord}, std::move(voxels))) return failure("the world cannot be written");
+    }
+    report.voxels += (*build)->solid();
   }
   return report;
 }

@@ -15,14 +15,18 @@
 
 namespace runstone {
 
+struct BuildsSurvey {
+  MaterialTable materials;  // id 0 is air; the others ascend by name
+  VoxelBox bounds;          // around all parts
+  VoxelPos spawn;           // of the source, or on top of the part in the middle
+};
+
 struct BuildsReport {
   std::uint64_t parts = 0;   // that hold something
   std::uint64_t chunks = 0;  // that are not all empty
-  std::uint64_t runs = 0, voxels = 0;  // in them; voxels that are not empty
-  MaterialTable materials;             // id 0 is air; the others ascend by name
-  VoxelBox bounds;                     // around all parts
-  VoxelPos spawn;                      // on top of the middle column of the bounds
-  ImportFaults faults;                 // of the second pass
+  std::uint64_t runs = 0;    // in them
+  std::uint64_t voxels = 0;  // that are not empty
+  ImportFaults faults;
 };
 
 /// Is called for each chunk that is not all empty, in its cheapest axis order. Returns false to stop.
@@ -32,8 +36,7 @@ using ImportProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 
 /// The first pass. Fails with one line if a part cannot be read, if there are more materials than a
 /// table can hold, or if nothing is in any part.
-Result<BuildsReport, std::string> survey_builds(ImportParts& parts, std::int32_t edge,
-                                                const ImportProgress& progress);
+Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts, const ImportProgress& progress);
 /// The second pass, with the materials of the first. Fails with one line if a part cannot be read, has
 /// a material that the first pass did not see, or the callback returns false.
 Result<BuildsReport, std::string> import_builds(ImportParts& parts, const MaterialTable& materials,

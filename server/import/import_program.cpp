@@ -2,12 +2,15 @@
 
 #include <sodium.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "common/materials/palette.hpp"
 #include "common/os/new_folder.hpp"
+#include "common/os/progress_line.hpp"
+#include "server/import/import_builds.hpp"
 #include "server/import/import_luanti.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
@@ -45,37 +48,46 @@ class BaseWriter {
 
 /// Returns the materials of the new world: those of the imported one, and the palette.
 Result<MaterialTable, std::string> materials_of(const ImportRequest& request,
-                                                const LuantiImportReport& survey) {
-  MaterialTable materials = survey.materials;
+                                                const MaterialTable& found) {
+  MaterialTable materials = found;
   if (request.palette && !append_palette(materials, default_material_table())) {
-    return failure(request.luanti + ": its " + std::to_string(survey.materials.size()) +
+    return failure(request.source + ": its " + std::to_string(found.size()) +
                    " materials leave no room for the builders' palette: add --palette none");
   }
   return materials;
 }
 
-Result<void, std::string> fill(const ImportRequest& request, const LuantiImportReport& survey,
-                               const MaterialTable& materials, const std::string& folder) {
+/// Makes the world in `folder`, and has `chunks` write its base.
+Result<void, std::string> fill(const ImportRequest& request, const MaterialTable& materials,
+                               VoxelPos spawn, const std::string& folder,
+                               const std::function<Result<void, std::string>(BaseWriter&)>& chunks) {
   WorldMeta meta;
   meta.chunk_edge = request.edge;
   meta.generator.name = "empty";
   meta.materials = materials;
-  meta.spawn = {survey.spawn.x + 0.5, static_cast<double>(survey.spawn.y), survey.spawn.z + 0.5};
+  meta.spawn = {spawn.x + 0.5, static_cast<double>(spawn.y), spawn.z + 0.5};
   draw_identity(meta);
   auto store = create_world(folder, meta);
   if (!store) return failure(store.error().message());
   BaseWriter base(**store);
+  const auto done = chunks(base);
+  if (!base.error().empty()) return failure(base.error());
+  if (!done) return done;
+  if (!base.flush()) return failure(base.error());
+  return {};
+}
+
+Result<void, std::string> fill_from_luanti(const ImportRequest& request,
+                                           const LuantiImportReport& survey, BaseWriter& base) {
   LuantiImportSink sink;
   sink.materials = [](const MaterialTable&) {};
   sink.chunk = [&](const ChunkKey& key, RunChunk&& voxels) {
     return base.add(key, std::move(voxels));
   };
-  const auto report = import_luanti(request.luanti, {request.edge, request.keep_all}, sink);
-  if (!base.error().empty()) return failure(base.error());
+  const auto report = import_luanti(request.source, {request.edge, request.keep_all}, sink);
   if (!report) return failure(report.error().message());
-  if (!base.flush()) return failure(base.error());
   if (report->materials != survey.materials || report->chunks != survey.chunks) {
-    return failure(request.luanti +
+    return failure(request.source +
                    ": changed while it was read: stop the Luanti server, or import a copy");
   }
   return {};
@@ -123,6 +135,87 @@ void print(const LuantiImportReport& report, const ImportRequest& request,
     out << "world.mt names a readonly_backend: the blocks of that map were not imported\n";
 }
 
+/// Makes the new world, which `chunks` fills.
+Result<MaterialTable, std::string> make_world(
+    const ImportRequest& request, const MaterialTable& found, VoxelPos spawn, std::ostream& out,
+    const std::function<Result<void, std::string>(const MaterialTable&, BaseWriter&)>& chunks) {
+  const auto materials = materials_of(request, found);
+  if (!materials) return failure(materials.error());
+  auto folder = NewFolder::make(request.world, out);
+  if (!folder) return failure(folder.error());
+  const auto filled = fill(request, *materials, spawn, folder->path(),
+                           [&](BaseWriter& base) { return chunks(*materials, base); });
+  if (!filled) return failure(filled.error());
+  if (const auto finished = folder->finish("world.sqlite"); !finished)
+    return failure(finished.error());
+  return *materials;
+}
+
+Result<void, std::string> import_luanti_world(const ImportRequest& request, std::ostream& out) {
+  LuantiImportSink survey_sink;
+  survey_sink.materials = [](const MaterialTable&) {};
+  survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
+  const auto survey = import_luanti(request.source, {request.edge, request.keep_all}, survey_sink);
+  if (!survey) return failure(survey.error().message());
+  if (survey->blocks == 0 && !survey->damaged.empty()) {
+    const DamagedBlock& first = survey->damaged.front();
+    return failure(request.source + ": each of its " + std::to_string(survey->damaged.size()) +
+                   " blocks is damaged, the first at " + place_of(first) + ": " + first.error.what +
+                   (needs_other_luanti(survey->damaged) ? std::string("; ") + kOtherLuanti : ""));
+  }
+  if (survey->chunks == 0) {
+    return failure(request.source + ": nothing but air is in its " +
+                   std::to_string(survey->blocks) + " blocks" +
+                   (request.keep_all ? "" : ". Plants are imported with --keep-all"));
+  }
+  const auto materials = make_world(request, survey->materials, survey->spawn, out,
+                                    [&](const MaterialTable&, BaseWriter& base) {
+                                      return fill_from_luanti(request, *survey, base);
+                                    });
+  if (!materials) return failure(materials.error());
+  print(*survey, request, *materials, out);
+  return {};
+}
+
+void print(const BuildsReport& report, const ImportRequest& request, const BuildsSurvey& survey,
+           std::size_t materials, std::ostream& out) {
+  const VoxelBox& box = survey.bounds;
+  out << request.world << ": " << report.voxels << " voxels in a box of "
+      << box.max.x - box.min.x << " x " << box.max.y - box.min.y << " x " << box.max.z - box.min.z
+      << " became " << report.chunks << " chunks of edge " << request.edge << " with " << report.runs
+      << " runs and " << survey.materials.size() << " materials, to which the builders' palette adds "
+      << materials - survey.materials.size() << '\n';
+  for (std::size_t i = 0; i < report.faults.size() && i < kDamagedListed; ++i)
+    out << "left out: " << report.faults[i] << '\n';
+  if (report.faults.size() > kDamagedListed)
+    out << "left out: " << report.faults.size() - kDamagedListed << " more\n";
+}
+
+Result<void, std::string> import_parts(const ImportRequest& request, ImportParts& parts,
+                                       std::ostream& out) {
+  ProgressLine line("parts read", request.progress);
+  const ImportProgress progress = [&](std::uint64_t done, std::uint64_t total) {
+    line.show(done, total);
+  };
+  const auto survey = survey_builds(parts, progress);
+  if (!survey) return failure(request.source + ": " + survey.error());
+  BuildsReport report;
+  const auto materials = make_world(
+      request, survey->materials, survey->spawn, out,
+      [&](const MaterialTable& table, BaseWriter& base) -> Result<void, std::string> {
+        auto done = import_builds(
+            parts, table, request.edge,
+            [&](const ChunkKey& key, RunChunk&& voxels) { return base.add(key, std::move(voxels)); },
+            progress);
+        if (!done) return failure(request.source + ": " + done.error());
+        report = *std::move(done);
+        return {};
+      });
+  if (!materials) return failure(materials.error());
+  print(report, request, *survey, materials->size(), out);
+  return {};
+}
+
 }  // namespace
 
 Result<void, std::string> import_world(const ImportRequest& request, std::ostream& out) {
@@ -132,33 +225,12 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
                    ": chunks have an edge of 16, 32, 64 or 128");
   }
   if (const auto free = NewFolder::check(request.world); !free) return failure(free.error());
-  LuantiImportSink survey_sink;
-  survey_sink.materials = [](const MaterialTable&) {};
-  survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
-  const auto survey = import_luanti(request.luanti, {request.edge, request.keep_all}, survey_sink);
-  if (!survey) return failure(survey.error().message());
-  if (survey->blocks == 0 && !survey->damaged.empty()) {
-    const DamagedBlock& first = survey->damaged.front();
-    return failure(request.luanti + ": each of its " + std::to_string(survey->damaged.size()) +
-                   " blocks is damaged, the first at " + place_of(first) + ": " + first.error.what +
-                   (needs_other_luanti(survey->damaged) ? std::string("; ") + kOtherLuanti : ""));
-  }
-  if (survey->chunks == 0) {
-    return failure(request.luanti + ": nothing but air is in its " +
-                   std::to_string(survey->blocks) + " blocks" +
-                   (request.keep_all ? "" : ". Plants are imported with --keep-all"));
-  }
-
-  const auto materials = materials_of(request, *survey);
-  if (!materials) return failure(materials.error());
-  auto folder = NewFolder::make(request.world, out);
-  if (!folder) return failure(folder.error());
-  if (const auto filled = fill(request, *survey, *materials, folder->path()); !filled)
-    return failure(filled.error());
-  if (const auto finished = folder->finish("world.sqlite"); !finished)
-    return failure(finished.error());
-  print(*survey, request, *materials, out);
-  return {};
+  if (request.kind == ImportKind::luanti) return import_luanti_world(request, out);
+  auto parts = request.kind == ImportKind::file
+                   ? open_file_parts(request.source, request.at, request.keep_all)
+                   : open_minecraft_parts(request.source, request.keep_all);
+  if (!parts) return failure(parts.error());
+  return import_parts(request, **parts, out);
 }
 
 }  // namespace runstone

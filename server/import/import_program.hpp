@@ -1,19 +1,26 @@
-// The import subcommand: makes a new Runstone world of a Luanti world.
+// The import subcommand: makes a new Runstone world of a Luanti or Minecraft world, or of a file with a
+// build (docs/formats.md).
 #pragma once
 #include <cstdint>
 #include <ostream>
 #include <string>
 
+#include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 
 namespace runstone {
 
+enum class ImportKind : std::uint8_t { luanti, minecraft, file };
+
 struct ImportRequest {
-  std::string luanti;  // folder with map.sqlite
+  ImportKind kind = ImportKind::luanti;
+  std::string source;  // a folder with map.sqlite; a world folder or region file; a file with a build
   std::string world;   // folder to be made
+  VoxelPos at;         // of the lowest corner of a build
   std::uint16_t edge = 32;
   bool keep_all = false;
-  bool palette = true;  // add the materials of the built-in table that the world lacks
+  bool progress = false;  // print progress on standard error even if it is no terminal
+  bool palette = true;    // add the materials of the built-in table that the world lacks
 };
 
 /// Imports a world and prints a short report. The error is one line.

@@ -24,7 +24,7 @@ TEST_CASE("an import of which every block is damaged fails and makes no world",
   std::filesystem::permissions(map, std::filesystem::perms::owner_all);
   raw_sql(map, "UPDATE blocks SET data = x'00'");
   ImportRequest request;
-  request.luanti = folder.path();
+  request.source = folder.path();
   request.world = folder / "world";
   std::ostringstream out;
   const auto imported = import_world(request, out);
@@ -38,7 +38,7 @@ TEST_CASE("an imported world has the builders' palette, unless the request says 
           "[server][import]") {
   const TempFolder folder;
   ImportRequest request;
-  request.luanti = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
+  request.source = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
   request.world = folder / "world";
   request.palette = GENERATE(true, false);
   std::ostringstream out;
@@ -48,7 +48,7 @@ TEST_CASE("an imported world has the builders' palette, unless the request says 
   LuantiImportSink sink;
   sink.materials = [](const MaterialTable&) {};
   sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
-  const auto source = import_luanti(request.luanti, {}, sink);
+  const auto source = import_luanti(request.source, {}, sink);
   REQUIRE(source.has_value());
   const auto store = open_world(request.world, StoreAccess::read_only);
   REQUIRE(store.has_value());
@@ -74,7 +74,7 @@ TEST_CASE("an import of nothing but air fails and makes no world", "[server][imp
   std::filesystem::create_directory(folder / "luanti");
   write_luanti_map(folder / "luanti/map.sqlite", {{{0, 0, 0}, luanti_row(air)}});
   ImportRequest request;
-  request.luanti = folder / "luanti";
+  request.source = folder / "luanti";
   request.world = folder / "world";
   std::ostringstream out;
   const auto imported = import_world(request, out);
@@ -94,7 +94,7 @@ TEST_CASE("the report of an import names versions, repeated rows and the second 
                    "CREATE TABLE blocks (pos INT, data BLOB)");
   std::ofstream(folder / "luanti/world.mt") << "readonly_backend = sqlite3\n";
   ImportRequest request;
-  request.luanti = folder / "luanti";
+  request.source = folder / "luanti";
   request.world = folder / "world";
   std::ostringstream out;
   REQUIRE(import_world(request, out).has_value());
