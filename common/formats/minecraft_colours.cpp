@@ -338,6 +338,7 @@ constexpr NamedAppearance kBlocks[] = {
     {"chest", {0x8f6428}},
     {"trapped_chest", {0x8f6428}},
     {"ender_chest", {0x2b3a3d}},
+    {"shulker_box", {0x8e608d}},
     {"bookshelf", {0x7a5e3d}},
     {"chiseled_bookshelf", {0xb1905a}},
     {"furnace", {0x6e6e6e}},

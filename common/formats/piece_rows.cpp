@@ -17,13 +17,28 @@ std::uint32_t side(std::int32_t low, std::int32_t high) {
   return static_cast<std::uint32_t>(high - low);
 }
 
-std::uint32_t tile_side(std::uint32_t side, std::uint32_t tile, std::uint32_t edge) {
-  return std::min(edge, side - tile * edge);
+std::uint32_t offset_in_grid(std::int32_t low, std::uint32_t edge) {
+  return static_cast<std::uint32_t>(low) & (edge - 1);
+}
+
+/// Cells of a side from `begin` to `end`.
+struct TileSpan {
+  std::uint32_t begin, end;
+  std::uint32_t size() const { return end - begin; }
+};
+
+/// Returns the part of a side in a tile. `offset` is that of the side in the grid.
+TileSpan tile_span(std::uint32_t side, std::uint32_t offset, std::uint32_t tile,
+                   std::uint32_t edge) {
+  const std::uint32_t begin = tile * edge;
+  return {begin > offset ? begin - offset : 0, std::min(begin + edge - offset, side)};
 }
 
 std::int32_t tile_corner(std::int32_t low, std::uint32_t cells) {
   return low + static_cast<std::int32_t>(cells);
 }
+
+std::uint8_t extent_side(std::uint32_t side) { return static_cast<std::uint8_t>(side); }
 
 }  // namespace
 
@@ -34,8 +49,11 @@ PieceRows::PieceRows(const VoxelBox& box, const std::vector<ForeignBlock>& block
       height_(side(box.min.y, box.max.y)),
       length_(side(box.min.z, box.max.z)),
       tile_(std::uint64_t{width_} * length_ <= kSmallTilesAreaMax ? kTileSmall : kTileLarge),
-      tiles_x_((width_ + tile_ - 1) / tile_),
-      tiles_z_((length_ + tile_ - 1) / tile_),
+      offset_x_(offset_in_grid(box.min.x, tile_)),
+      offset_y_(offset_in_grid(box.min.y, kLayers)),
+      offset_z_(offset_in_grid(box.min.z, tile_)),
+      tiles_x_((offset_x_ + width_ + tile_ - 1) / tile_),
+      tiles_z_((offset_z_ + length_ + tile_ - 1) / tile_),
       blocks_(blocks),
       sink_(sink),
       left_(std::uint64_t{width_} * height_ * length_) {
@@ -43,19 +61,18 @@ PieceRows::PieceRows(const VoxelBox& box, const std::vector<ForeignBlock>& block
   begin_slab();
 }
 
-Extent PieceRows::tile_extent(std::uint32_t x, std::uint32_t z) const {
-  return {static_cast<std::uint8_t>(tile_side(width_, x, tile_)),
-          static_cast<std::uint8_t>(slab_layers_),
-          static_cast<std::uint8_t>(tile_side(length_, z, tile_))};
-}
-
 void PieceRows::begin_slab() {
-  slab_layers_ = std::min(kLayers, height_ - slab_y_);
+  slab_layers_ = std::min(kLayers - ((offset_y_ + slab_y_) & (kLayers - 1)), height_ - slab_y_);
   tiles_.clear();
   tiles_.reserve(std::size_t{tiles_x_} * tiles_z_);
   for (std::uint32_t z = 0; z < tiles_z_; ++z) {
-    for (std::uint32_t x = 0; x < tiles_x_; ++x)
-      tiles_.emplace_back(tile_extent(x, z), AxisOrder::xzy);
+    const std::uint32_t length = tile_span(length_, offset_z_, z, tile_).size();
+    for (std::uint32_t x = 0; x < tiles_x_; ++x) {
+      const std::uint32_t width = tile_span(width_, offset_x_, x, tile_).size();
+      tiles_.emplace_back(
+          Extent{extent_side(width), extent_side(slab_layers_), extent_side(length)},
+          AxisOrder::xzy);
+    }
   }
   y_ = z_ = tile_x_ = 0;
   span_left_ = 0;
@@ -73,10 +90,10 @@ void PieceRows::advance() {
       }
     }
   }
-  const std::uint32_t tile_z = z_ / tile_;
-  span_rows_ = tiles_x_ == 1 ? tile_side(length_, tile_z, tile_) : 1;
+  const TileSpan along_z = tile_span(length_, offset_z_, (z_ + offset_z_) / tile_, tile_);
+  span_rows_ = tiles_x_ == 1 ? along_z.size() : 1;
   span_layers_ = tiles_x_ == 1 && tiles_z_ == 1 ? slab_layers_ : 1;
-  span_left_ = tile_side(width_, tile_x_, tile_) * span_rows_ * span_layers_;
+  span_left_ = tile_span(width_, offset_x_, tile_x_, tile_).size() * span_rows_ * span_layers_;
 }
 
 Result<void> PieceRows::append(std::uint64_t count, Material material) {
@@ -84,7 +101,7 @@ Result<void> PieceRows::append(std::uint64_t count, Material material) {
   while (count > 0) {
     if (span_left_ == 0) advance();
     const auto part = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, span_left_));
-    tiles_[std::size_t{z_ / tile_} * tiles_x_ + tile_x_].append(part, material);
+    tiles_[std::size_t{(z_ + offset_z_) / tile_} * tiles_x_ + tile_x_].append(part, material);
     count -= part;
     span_left_ -= part;
     left_ -= part;
@@ -103,9 +120,9 @@ Result<void> PieceRows::give_slab() {
   for (std::uint32_t z = 0; z < tiles_z_; ++z) {
     for (std::uint32_t x = 0; x < tiles_x_; ++x) {
       RunChunk cells = tiles_[std::size_t{z} * tiles_x_ + x].finish();
-      if (is_empty(cells)) continue;
-      const VoxelPos origin{tile_corner(low_.x, x * tile_), tile_corner(low_.y, slab_y_),
-                            tile_corner(low_.z, z * tile_)};
+      const VoxelPos origin{tile_corner(low_.x, tile_span(width_, offset_x_, x, tile_).begin),
+                            tile_corner(low_.y, slab_y_),
+                            tile_corner(low_.z, tile_span(length_, offset_z_, z, tile_).begin)};
       if (const auto taken = sink_(piece_of(std::move(cells), origin)); !taken)
         return failure(taken.error());
     }

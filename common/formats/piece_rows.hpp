@@ -1,6 +1,7 @@
 // PieceRows: cuts the cells of a box, which come row by row as many formats store them (x fastest, then
-// z, then y), into pieces of 64 voxels a side, or of 128 along x and z if the box is very wide. It holds
-// the runs of one slab of 64 layers, never a grid.
+// z, then y), into pieces of at most 64 voxels a side (128 along x and z if the box is very wide) at the
+// planes of the grid with that edge, as builds have them. It holds the runs of one slab of layers, never
+// a grid.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,8 @@ class PieceRows {
 
   /// Returns the number of cells that are not appended yet.
   std::uint64_t left() const { return left_; }
-  /// Appends cells, and gives the pieces of a slab to the sink when it is full. Fails as the sink does.
+  /// Appends cells, and gives the pieces of a slab to the sink when it is full, also those of
+  /// which the file says nothing. Fails as the sink does.
   /// Requires count <= left(), and a material of at most blocks.size(). Cost: O(rows of tiles).
   Result<void> append(std::uint64_t count, Material material);
 
@@ -32,11 +34,12 @@ class PieceRows {
   void advance();
   Result<void> give_slab();
   ForeignPiece piece_of(RunChunk cells, VoxelPos origin);
-  Extent tile_extent(std::uint32_t x, std::uint32_t z) const;
 
   VoxelPos low_;
   std::uint32_t width_, height_, length_;
   std::uint32_t tile_;  // edge of a tile along x and z
+  // How far the planes of the grid lie below the low corner, which is less than an edge.
+  std::uint32_t offset_x_, offset_y_, offset_z_;
   std::uint32_t tiles_x_, tiles_z_;
   const std::vector<ForeignBlock>& blocks_;
   const PieceSink& sink_;

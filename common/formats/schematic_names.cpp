@@ -8,6 +8,7 @@
 namespace runstone {
 namespace {
 
+constexpr std::string_view kGameNamespace = "minecraft:";
 constexpr std::string_view kRunstoneNamespace = "runstone:";
 constexpr std::string_view kRunstoneState = "runstone=";
 
@@ -106,12 +107,8 @@ bool is_untouched_in_schematic(std::string_view text) {
 
 ForeignBlock block_of_schematic(std::string_view name, std::vector<BlockProperty> properties) {
   ForeignBlock block;
-  if (name.starts_with(kRunstoneNamespace)) {
-    auto plain = unescaped(name.substr(kRunstoneNamespace.size()), kNameRule);
-    if (plain && !plain->empty() && !is_plain_block_name(*plain)) block.name = *std::move(plain);
-  }
-  if (block.name.empty() && name.find(':') == std::string_view::npos) block.name = "minecraft:";
-  if (block.name.empty() || block.name == "minecraft:") block.name += name;
+  if (name.find(':') == std::string_view::npos) block.name = kGameNamespace;
+  block.name += name;
   std::sort(properties.begin(), properties.end());
   for (const auto& [key, value] : properties) {
     if (!block.states.empty()) block.states += ',';
@@ -146,18 +143,35 @@ std::vector<BlockProperty> properties_of(std::string_view states) {
   return out;
 }
 
+MaterialInfo material_of_schematic_block(const ForeignBlock& block, bool keep_all) {
+  if (!block.name.starts_with(kRunstoneNamespace))
+    return material_of_minecraft_block(block, keep_all);
+  MaterialInfo info = material_of_minecraft_block(block, true);
+  const auto name =
+      unescaped(std::string_view(block.name).substr(kRunstoneNamespace.size()), kNameRule);
+  if (name && *name != "air" &&
+      validate_material(*name, info.colour, info.visibility, info.body, info.look))
+    info.name = *name;
+  return info;
+}
+
 ForeignBlock schematic_block_of(const BuildMaterial& material) {
   const std::string& name = material.row.name;
+  const bool is_plain = is_plain_block_name(name);
   ForeignBlock block{name, material.states};
-  if (!is_plain_block_name(name) || material.states.empty()) {
+  bool is_block = is_plain;
+  if (!is_plain || (material.states.empty() && name.starts_with(kGameNamespace))) {
     const auto known = block_of_minecraft_material(name);
     if (known && is_plain_block_name(known->name)) {
+      is_block = true;
       block.name = known->name;
       if (material.states.empty()) block.states = known->states;
     }
   }
-  if (!is_plain_block_name(block.name))
-    block.name = std::string(kRunstoneNamespace) + escaped(block.name, kNameRule);
+  const bool is_same = is_block && (block.name.starts_with(kGameNamespace) ||
+                                    minecraft_material_name(block) == name);
+  if (!is_same)
+    block = {std::string(kRunstoneNamespace) + escaped(name, kNameRule), material.states};
   if (!are_plain_states(block.states))
     block.states = std::string(kRunstoneState) + escaped(block.states, kStatesRule);
   return block;

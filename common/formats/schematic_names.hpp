@@ -3,10 +3,12 @@
 //
 // A name that the game allows, "namespace:path", is written as it is. Any other name, such as "red
 // bricks", becomes "runstone:red_bricks": a blank is "_", and each byte other than a-z, 0-9, "-" and
-// "/" is "." with two hexadecimal digits. States of the form "key=value,key=value" that ascend by key
-// are written as they are. Others become one state with the key "runstone", in which each byte other
-// than a-z and 0-9 is "_" with two digits. Untouched cells are minecraft:structure_void, so a material
-// of that name is written by the rule for other names.
+// "/" is "." with two hexadecimal digits. So is a name that the states would change: materials of
+// Minecraft's blocks have names with their states, and those of other games have not. Reading leaves
+// such a name as it is, and material_of_schematic_block() finds the material's name in it.
+// States of the form "key=value,key=value" that ascend by key are written as they are. Others become one
+// state with the key "runstone", in which each byte other than a-z and 0-9 is "_" with two digits.
+// Untouched cells are minecraft:structure_void, so a material of that name has a name by the rule.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -32,10 +34,14 @@ ForeignBlock block_of_schematic(std::string_view name, std::vector<BlockProperty
 /// Returns the block of a text such as "minecraft:oak_stairs[facing=north,half=bottom]".
 ForeignBlock block_of_schematic_text(std::string_view text);
 
+/// Returns the material that a block of a schematic becomes. A name that schematic_block_of() made is the
+/// material's own again; `keep_all` does not concern it. Other blocks are those of Minecraft.
+MaterialInfo material_of_schematic_block(const ForeignBlock& block, bool keep_all);
+
 /// Returns the block as which a material is written. Its name and its states are valid in the game's
 /// files. A material of an imported world, whose name holds states (minecraft_blocks.hpp), becomes the
-/// block with these states. A block of Minecraft without states gets its default ones, as other
-/// programs expect them all.
+/// block with these states. A block of Minecraft without states gets its default ones, because other
+/// programs expect all of them.
 ForeignBlock schematic_block_of(const BuildMaterial& material);
 /// Returns the states of schematic_block_of() as pairs.
 std::vector<BlockProperty> properties_of(std::string_view states);

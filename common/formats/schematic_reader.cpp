@@ -340,15 +340,20 @@ VoxelPos origin_of_head(const SchematicHead& head) {
 Result<void> check_head(const SchematicHead& head) {
   if (head.version && (*head.version < 1 || *head.version > kSpongeVersionMax))
     return fail(ErrorCode::bad_version, "schematic: Version is not 1 .. 3");
+  const auto volume = static_cast<std::uint64_t>(head.sides[0] * head.sides[1] * head.sides[2]);
   if (head.has_palette) {
-    if (head.cells.bytes > 0) return {};
-    return fail(ErrorCode::bad_value, "schematic: there is a palette, but no data of blocks");
+    if (head.cells.bytes == 0)
+      return fail(ErrorCode::bad_value, "schematic: there is a palette, but no data of blocks");
+    if (head.cells.bytes < volume) {
+      return fail(ErrorCode::truncated, "schematic: there are fewer cells than the sides say",
+                  head.cells.at + head.cells.bytes);
+    }
+    return {};
   }
   if (head.version || head.blocks.bytes == 0)
     return fail(ErrorCode::bad_value, "schematic: there are no blocks");
   if (!head.materials.empty() && head.materials != "Alpha")
     return fail(ErrorCode::unknown_kind, "schematic: Materials is not Alpha");
-  const auto volume = static_cast<std::uint64_t>(head.sides[0] * head.sides[1] * head.sides[2]);
   if (head.blocks.bytes != volume || head.data.bytes != volume) {
     return fail(ErrorCode::bad_value,
                 "schematic: Blocks or Data has another length than the sides say");
