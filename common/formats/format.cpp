@@ -6,6 +6,7 @@
 #include "common/formats/look_material.hpp"
 #include "common/formats/luanti_block.hpp"
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/minecraft_region.hpp"
 #include "common/formats/schematic_reader.hpp"
 #include "common/formats/schematic_writer.hpp"
 #include "common/formats/vox.hpp"
@@ -19,6 +20,7 @@ constexpr Format kFormats[] = {
     {"mcedit", ".schematic", read_schematic, material_of_minecraft_block},
     {"litematica", ".litematic", read_litematic, material_of_minecraft_block, true,
      write_litematic},
+    {"minecraft", ".mca", read_minecraft_region, material_of_minecraft_block},
     {"magicavoxel", ".vox", read_vox, material_of_look, true, write_vox},
 };
 

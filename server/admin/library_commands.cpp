@@ -211,6 +211,31 @@ void place_stored_build(const CommandCall& call, const PlacedBuild& wanted) {
       });
 }
 
+struct PlacedFile {
+  std::string file;
+  PlaceWords words;
+};
+
+Result<PlacedFile, std::string> parse_import_file(WordReader& reader) {
+  PlacedFile out;
+  out.file = reader.take("import", "a file, such as castle.schem");
+  out.words = take_place_words(reader);
+  return reader.result(out);
+}
+
+void import_file(const CommandCall& call, const PlacedFile& wanted) {
+  call.on_worker(
+      "import: ",
+      [file = wanted.file](WorldReader&) -> Result<std::shared_ptr<const FileBuild>, std::string> {
+        auto build = read_any_build_file(file);
+        if (!build) return failure(build.error());
+        return std::make_shared<const FileBuild>(*std::move(build));
+      },
+      [call, wanted](const std::shared_ptr<const FileBuild>& build) {
+        place_build(call, "import", '"' + build->info.name + '"', *build, wanted.words);
+      });
+}
+
 void cancel_placing(const CommandCall& call) {
   call.services.placing.cancel(call.caller.author, call.now, call.reply);
 }
@@ -229,7 +254,7 @@ void remove_build(const CommandCall& call, const Sequence& number) {
                                          std::to_string(*removed) + ")");
 }
 
-constexpr std::array<CommandRow, 8> kLibraryRows = {{
+constexpr std::array<CommandRow, 9> kLibraryRows = {{
     {"builds list", needs(Right::see),
      "builds list [name PART] [author PART] [tag TAG] [before NUMBER] [count N]\n"
      "                          the builds of the library, newest first",
@@ -252,6 +277,10 @@ constexpr std::array<CommandRow, 8> kLibraryRows = {{
      "             [without air] [materials add | nearest]\n"
      "                          place a build as one action, with its lowest corner at X Y Z",
      parsed_by<parse_place, place_stored_build>()},
+    {"import FILE", kLocal,
+     "import FILE at X Y Z ...  place a build from a file (.rsb, .schem, .vox and others), with the\n"
+     "                          words of builds place",
+     parsed_by<parse_import_file, import_file>()},
     {"builds cancel", needs(Right::administer),
      "builds cancel             end what you place, and take it back; the console ends all",
      alone<cancel_placing>()},

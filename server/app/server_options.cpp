@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <string_view>
 #include <vector>
 
@@ -62,15 +63,14 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       "luanti: folder that holds map.sqlite; minecraft: folder of the world, or a region file; "
       "file: such as castle.schem");
   kind->needs(source);
-  CLI::Option* const luanti =
-      made->add_option_function<std::string>(
-              "--luanti",
-              [&out](const std::string& text) {
-                out.kind = ImportKind::luanti;
-                out.source = text;
-              },
-              "the same as KIND luanti")
-          ->excludes(kind);
+  CLI::Option* const luanti = made->add_option_function<std::string>(
+                                      "--luanti",
+                                      [&out](const std::string& text) {
+                                        out.kind = ImportKind::luanti;
+                                        out.source = text;
+                                      },
+                                      "the same as KIND luanti")
+                                  ->excludes(kind);
   made->callback([kind, luanti] {
     if (kind->count() + luanti->count() == 0) throw CLI::RequiredError("KIND and SOURCE");
   });
@@ -78,10 +78,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       ->required()
       ->check(folder_refusal);
   made->add_option_function<std::vector<std::int32_t>>(
-          "--at",
-          [&out](const std::vector<std::int32_t>& at) {
-            out.at = {at[0], at[1], at[2]};
-          },
+          "--at", [&out](const std::vector<std::int32_t>& at) { out.at = {at[0], at[1], at[2]}; },
           "file: X Y Z of its lowest corner; default: 0 0 0")
       ->expected(3)
       ->check(CLI::Range(-kWorldLimit, kWorldLimit - 1));

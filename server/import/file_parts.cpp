@@ -47,8 +47,8 @@ class FileParts final : public ImportParts {
 
 }  // namespace
 
-Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file, VoxelPos at,
-                                                                  bool keep_all) {
+Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
+                                                                  VoxelPos at, bool keep_all) {
   if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
   return std::unique_ptr<ImportParts>(std::make_unique<FileParts>(file, at, keep_all));
 }

@@ -71,8 +71,8 @@ VoxelPos spawn_of(const VoxelBox& bounds, const std::vector<VoxelPos>& tops) {
     return std::abs(x) + std::abs(z);
   };
   return *std::min_element(tops.begin(), tops.end(), [&](const VoxelPos& a, const VoxelPos& b) {
-           return distance(a) < distance(b);
-         });
+    return distance(a) < distance(b);
+  });
 }
 
 /// Returns a build of the ids of a table, or the name of a material that the table lacks.
@@ -86,7 +86,8 @@ Result<BuildPtr, std::string> with_ids(const FileBuild& build, const MaterialTab
 
 }  // namespace
 
-Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts, const ImportProgress& progress) {
+Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
+                                                const ImportProgress& progress) {
   BuildsSurvey survey;
   std::map<std::string, MaterialRow> rows;
   std::vector<VoxelPos> tops;

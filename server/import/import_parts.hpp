@@ -37,8 +37,8 @@ class ImportParts {
 };
 
 /// Opens a file of any format (file_build.hpp), whose lowest corner comes to `at`.
-Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file, VoxelPos at,
-                                                                  bool keep_all);
+Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
+                                                                  VoxelPos at, bool keep_all);
 /// Opens a Minecraft Java world: a folder with a folder `region`, a folder of region files, or one
 /// region file. Each region is a part. Voxels keep their places. Chunks that are damaged are left out.
 /// Fails if there is no region file.

@@ -58,9 +58,10 @@ Result<MaterialTable, std::string> materials_of(const ImportRequest& request,
 }
 
 /// Makes the world in `folder`, and has `chunks` write its base.
-Result<void, std::string> fill(const ImportRequest& request, const MaterialTable& materials,
-                               VoxelPos spawn, const std::string& folder,
-                               const std::function<Result<void, std::string>(BaseWriter&)>& chunks) {
+Result<void, std::string> fill(
+    const ImportRequest& request, const MaterialTable& materials, VoxelPos spawn,
+    const std::string& folder,
+    const std::function<Result<void, std::string>(BaseWriter&)>& chunks) {
   WorldMeta meta;
   meta.chunk_edge = request.edge;
   meta.generator.name = "empty";
@@ -180,11 +181,12 @@ Result<void, std::string> import_luanti_world(const ImportRequest& request, std:
 void print(const BuildsReport& report, const ImportRequest& request, const BuildsSurvey& survey,
            std::size_t materials, std::ostream& out) {
   const VoxelBox& box = survey.bounds;
-  out << request.world << ": " << report.voxels << " voxels in a box of "
-      << box.max.x - box.min.x << " x " << box.max.y - box.min.y << " x " << box.max.z - box.min.z
-      << " became " << report.chunks << " chunks of edge " << request.edge << " with " << report.runs
-      << " runs and " << survey.materials.size() << " materials, to which the builders' palette adds "
-      << materials - survey.materials.size() << '\n';
+  out << request.world << ": " << report.voxels << " voxels in a box of " << box.max.x - box.min.x
+      << " x " << box.max.y - box.min.y << " x " << box.max.z - box.min.z << " became "
+      << report.chunks << " chunks of edge " << request.edge << " with " << report.runs
+      << " runs and " << survey.materials.size()
+      << " materials, to which the builders' palette adds " << materials - survey.materials.size()
+      << '\n';
   for (std::size_t i = 0; i < report.faults.size() && i < kDamagedListed; ++i)
     out << "left out: " << report.faults[i] << '\n';
   if (report.faults.size() > kDamagedListed)
@@ -200,17 +202,19 @@ Result<void, std::string> import_parts(const ImportRequest& request, ImportParts
   const auto survey = survey_builds(parts, progress);
   if (!survey) return failure(request.source + ": " + survey.error());
   BuildsReport report;
-  const auto materials = make_world(
-      request, survey->materials, survey->spawn, out,
-      [&](const MaterialTable& table, BaseWriter& base) -> Result<void, std::string> {
-        auto done = import_builds(
-            parts, table, request.edge,
-            [&](const ChunkKey& key, RunChunk&& voxels) { return base.add(key, std::move(voxels)); },
-            progress);
-        if (!done) return failure(request.source + ": " + done.error());
-        report = *std::move(done);
-        return {};
-      });
+  const auto materials =
+      make_world(request, survey->materials, survey->spawn, out,
+                 [&](const MaterialTable& table, BaseWriter& base) -> Result<void, std::string> {
+                   auto done = import_builds(
+                       parts, table, request.edge,
+                       [&](const ChunkKey& key, RunChunk&& voxels) {
+                         return base.add(key, std::move(voxels));
+                       },
+                       progress);
+                   if (!done) return failure(request.source + ": " + done.error());
+                   report = *std::move(done);
+                   return {};
+                 });
   if (!materials) return failure(materials.error());
   print(report, request, *survey, materials->size(), out);
   return {};

@@ -76,8 +76,8 @@ class MinecraftParts final : public ImportParts {
   bool is_of_joiner(const Error& error) const {
     return joiner_failed_ && error.code == ErrorCode::limit_exceeded;
   }
-  static std::string fault_text(const std::string& file, const MinecraftRegion& region, unsigned slot,
-                                const Error& error) {
+  static std::string fault_text(const std::string& file, const MinecraftRegion& region,
+                                unsigned slot, const Error& error) {
     const RegionPos at = region.at.value_or(RegionPos{});
     const auto x = std::int64_t{at.x} * kRegionSide + slot % kRegionSide;
     const auto z = std::int64_t{at.z} * kRegionSide + slot / kRegionSide;
@@ -114,8 +114,9 @@ Result<std::unique_ptr<ImportParts>, std::string> open_minecraft_parts(const std
     files = region_files(std::filesystem::path(place) / "region");
     if (files.empty()) files = region_files(place);
     if (files.empty()) {
-      return failure(place + ": no region file (r.X.Z.mca) is there or in its folder region; other "
-                             "dimensions are in DIM-1 (Nether) and DIM1 (End)");
+      return failure(place +
+                     ": no region file (r.X.Z.mca) is there or in its folder region; other "
+                     "dimensions are in DIM-1 (Nether) and DIM1 (End)");
     }
   } else if (has_ending(place, kRegionEnding)) {
     files.push_back(place);

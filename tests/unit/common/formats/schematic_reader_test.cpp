@@ -89,8 +89,8 @@ TEST_CASE("the origin of a schematic is where WorldEdit copied it", "[formats]")
 
 TEST_CASE("large schematics are cut at the planes of the grid of 64", "[formats]") {
   SplitMix64 random(47);
-  for (const VoxelPos sides : {VoxelPos{130, 3, 70}, VoxelPos{64, 70, 2}, VoxelPos{5, 130, 66},
-                               VoxelPos{65, 65, 1}}) {
+  for (const VoxelPos sides :
+       {VoxelPos{130, 3, 70}, VoxelPos{64, 70, 2}, VoxelPos{5, 130, 66}, VoxelPos{65, 65, 1}}) {
     CAPTURE(sides.x, sides.y, sides.z);
     SpongeFields fields;
     fields.sides = sides;
@@ -98,8 +98,8 @@ TEST_CASE("large schematics are cut at the planes of the grid of 64", "[formats]
       fields.palette.emplace_back("mod:block_" + std::to_string(i), i);
     const auto volume = static_cast<std::size_t>(sides.x * sides.y * sides.z);
     while (fields.cells.size() < volume) {
-      const std::size_t count = std::min<std::size_t>(random.below(90) + 1,
-                                                      volume - fields.cells.size());
+      const std::size_t count =
+          std::min<std::size_t>(random.below(90) + 1, volume - fields.cells.size());
       fields.cells.insert(fields.cells.end(), count, random.below(300));
     }
     const ForeignCells read = cells_of_schematic(sponge_plain(fields));

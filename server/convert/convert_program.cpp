@@ -1,0 +1,115 @@
+#include "server/convert/convert_program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "common/core/build_info.hpp"
+#include "common/core/text.hpp"
+#include "common/core/version.hpp"
+#include "common/formats/file_build.hpp"
+#include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kFileBytesMax = std::size_t{4} << 30;
+
+struct ConvertOptions {
+  std::string in, out, name;
+  std::uint64_t memory_mib = 2048;
+  bool keep_all = true;
+  bool lists = false;
+};
+
+Result<FileBuild, std::string> read(const ConvertOptions& options) {
+  if (auto why = ending_refusal(options.in, false); !why.empty()) return failure(std::move(why));
+  const auto bytes = read_file(options.in, kFileBytesMax, FileKinds::regular);
+  if (!bytes) return failure(bytes.error());
+  ForeignReading reading;
+  reading.keep_all = options.keep_all;
+  reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
+  reading.name = std::filesystem::path(options.in).stem().string();
+  auto build = read_file_build(
+      options.in, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
+  if (build && !options.name.empty()) build->info.name = options.name;
+  return build;
+}
+
+Result<void, std::string> write(const ConvertOptions& options, const FileBuild& build) {
+  auto to = open_output_file(options.out);
+  if (!to) return failure(to.error());
+  const auto written =
+      write_file_build(options.out, build, [&](ByteView bytes) { return to->write(bytes); });
+  if (!written) {
+    return failure(to->error().empty() ? written.error() : options.out + ": " + to->error());
+  }
+  if (const auto done = to->finish(); !done) return failure(options.out + ": " + done.error());
+  return {};
+}
+
+Result<void, std::string> convert(const ConvertOptions& options, std::ostream& out) {
+  if (!options.out.empty()) {
+    if (auto why = ending_refusal(options.out, true); !why.empty()) return failure(std::move(why));
+  }
+  const auto build = read(options);
+  if (!build) return failure(build.error());
+  if (!options.out.empty()) {
+    if (const auto written = write(options, *build); !written) return written;
+  }
+  const BuildSides& sides = build->info.sides;
+  out << (options.out.empty() ? options.in : options.out) << ": \"" << build->info.name << "\", "
+      << sides.x << " x " << sides.y << " x " << sides.z << " voxels, " << build->build->solid()
+      << " of them not empty, " << build->materials.size() << " materials, "
+      << build->build->run_count() << " runs\n";
+  if (!options.lists) return {};
+  for (const BuildMaterial& material : build->materials) {
+    out << material.row.name;
+    if (!material.states.empty()) out << " [" << material.states << ']';
+    out << '\n';
+  }
+  return {};
+}
+
+std::string name_refusal(const std::string& name) {
+  return is_plain_name(name) && name.size() <= kBuildNameBytesMax
+             ? ""
+             : "1 to " + std::to_string(kBuildNameBytesMax) +
+                   " bytes without quotes, backslashes, control characters and outer blanks";
+}
+
+}  // namespace
+
+int convert_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  ConvertOptions options;
+  CLI::App app("Reads a build from a file and writes it in the format of another ending.",
+               "runstone-convert");
+  app.set_version_flag("--version", "runstone-convert " + std::string(version()));
+  app.add_option("IN", options.in, "the file to read, such as castle.schem")->required();
+  app.add_option("OUT", options.out,
+                 "the file to write, such as castle.vox; an old one is replaced. Without it, the "
+                 "program only says what IN is");
+  app.add_option("--name", options.name, "name of the build; default: that of IN")
+      ->check(name_refusal);
+  app.add_option("--memory", options.memory_mib, "MiB that the build may take; default 2048")
+      ->check(CLI::Range(1, 1 << 20));
+  app.add_flag("--list", options.lists, "list the materials");
+  app.add_flag_callback(
+      "--only-cubes", [&options] { options.keep_all = false; },
+      "leave out blocks that are no whole cubes, such as plants and torches");
+  app.footer("docs/formats.md lists the formats, and what each of them keeps.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, out, err);
+  }
+  const auto done = convert(options, out);
+  if (!done) err << "runstone-convert: " << done.error() << '\n';
+  return done ? 0 : 1;
+}
+
+}  // namespace runstone
