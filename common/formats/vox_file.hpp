@@ -42,10 +42,11 @@ struct VoxNode {
   enum class Kind : std::uint8_t { transform, group, shape };
   Kind kind = Kind::group;
   bool is_hidden = false;
-  std::int32_t layer = -1;              // of a transform
-  VoxPlace place;                       // of a transform
-  std::vector<std::int32_t> children;   // nodes of a transform or group; model of a shape, first frame
-  std::size_t offset = 0;               // of the chunk in the file
+  std::int32_t layer = -1;  // of a transform
+  VoxPlace place;           // of a transform
+  std::vector<std::int32_t>
+      children;            // nodes of a transform or group; model of a shape, first frame
+  std::size_t offset = 0;  // of the chunk in the file
 };
 
 /// An entry of MATL as far as it is known here.
@@ -60,8 +61,9 @@ struct VoxFile {
   std::vector<VoxModel> models;
   std::array<std::array<std::uint8_t, 4>, kVoxColours> palette{};  // by colour of a voxel
   std::array<VoxMaterial, kVoxColours> materials;
-  std::array<std::uint8_t, kVoxColours> shown_at{};  // place of a colour in the palette on the screen
-  std::vector<std::string_view> notes;               // of the rows of the palette
+  std::array<std::uint8_t, kVoxColours>
+      shown_at{};                       // place of a colour in the palette on the screen
+  std::vector<std::string_view> notes;  // of the rows of the palette
   std::map<std::int32_t, VoxNode> nodes;
   std::map<std::int32_t, bool> hidden_layers;
   std::string_view name, author;  // of the build, if this project wrote the file

@@ -27,8 +27,8 @@ std::optional<MaterialLook> vox_look_of_text(std::string_view text) {
     if (error != std::errc{}) return std::nullopt;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
-  return nearest_valid_look({numbers[0], numbers[1], numbers[2], numbers[3],
-                             static_cast<MaterialPattern>(numbers[4])});
+  return nearest_valid_look(
+      {numbers[0], numbers[1], numbers[2], numbers[3], static_cast<MaterialPattern>(numbers[4])});
 }
 
 std::string_view note_of(const VoxFile& file, std::size_t colour) {
@@ -98,8 +98,8 @@ std::vector<ForeignBlock> vox_blocks(const VoxFile& file) {
     } else {
       block.look = vox_look(file, colour);
       const std::string_view note = note_of(file, colour);
-      block.name = std::string(note.empty() ? "colour" : note) + " " +
-                   vox_colour_text(block.look->colour);
+      block.name =
+          std::string(note.empty() ? "colour" : note) + " " + vox_colour_text(block.look->colour);
       if (const auto& surface = block.look->surface) {
         if (surface->roughness != MaterialLook{}.roughness)
           block.name += " rough " + std::to_string(surface->roughness);

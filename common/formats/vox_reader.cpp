@@ -153,15 +153,15 @@ Result<std::vector<VoxPart>> VoxModels::unpack(const VoxModel& model) {
                     at);
       }
       for (std::int32_t x = 0; x < model.x; ++x) {
-        const std::int32_t part = x / kVoxPieceEdge +
-                                  wide * (y / kVoxPieceEdge + deep * (z / kVoxPieceEdge));
+        const std::int32_t part =
+            x / kVoxPieceEdge + wide * (y / kVoxPieceEdge + deep * (z / kVoxPieceEdge));
         runs[static_cast<std::size_t>(part)].append(1, row[static_cast<std::size_t>(x)]);
       }
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i].runs = in_cheapest_order(runs[i].finish());
-  const bool has_voxels = std::any_of(out.begin(), out.end(),
-                                      [](const VoxPart& part) { return !is_empty(part.runs); });
+  const bool has_voxels =
+      std::any_of(out.begin(), out.end(), [](const VoxPart& part) { return !is_empty(part.runs); });
   if (!has_voxels) out.clear();
   return out;
 }
@@ -229,10 +229,10 @@ Result<ForeignInfo> read_vox(ByteView bytes, const PieceSink& sink) {
   std::uint64_t voxels = 0;
   for (const PlacedVoxModel& one : *placed) {
     const VoxModel& model = file->models[one.model];
-    voxels += model.is_packed ? static_cast<std::uint64_t>(model.x) *
-                                    static_cast<std::uint64_t>(model.y) *
-                                    static_cast<std::uint64_t>(model.z)
-                              : model.voxels.size() / 4;
+    voxels += model.is_packed
+                  ? static_cast<std::uint64_t>(model.x) * static_cast<std::uint64_t>(model.y) *
+                        static_cast<std::uint64_t>(model.z)
+                  : model.voxels.size() / 4;
     if (voxels > kVoxPlacedMax)
       return fail(ErrorCode::limit_exceeded, "vox: the scene places more than 2^31 voxels",
                   model.offset);
