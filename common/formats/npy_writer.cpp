@@ -12,14 +12,13 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/formats/grid_cells.hpp"
 #include "common/formats/npy.hpp"
 #include "common/formats/npy_header.hpp"
-#include "common/runs/reorder.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::int32_t kNpySlabEdge = 64, kNpyTileEdge = 128;
 constexpr std::size_t kNpyWriteBytes = std::size_t{1} << 16;
 
 /// The numbers of the cells in an array.
@@ -52,54 +51,24 @@ std::optional<std::uint16_t> number_of_name(const BuildMaterial& material) {
 
 /// Gives the cells of a build as an array in C order: z fastest, x slowest.
 Result<void> give_cells(const Build& build, const NpyNumbers& numbers, const FormatSink& sink) {
-  /// A box of the slab, read line by line.
-  struct Tile {
-    RunChunk cells;
-    std::uint32_t line = 0;
-    std::size_t run = 0;
-    std::uint32_t at = 0;
-  };
-  const VoxelPos sides = build.sides();
   const bool is_wide = numbers.item_bytes() == 2;
   Bytes buffer;
-  std::vector<Tile> tiles;
-  for (std::int32_t x = 0; x < sides.x; x += kNpySlabEdge) {
-    const std::int32_t thick = std::min(kNpySlabEdge, sides.x - x);
-    tiles.clear();
-    for (std::int32_t y = 0; y < sides.y; y += kNpyTileEdge) {
-      for (std::int32_t z = 0; z < sides.z; z += kNpyTileEdge) {
-        const VoxelBox box =
-            intersect(build.box(), {{x, y, z}, {x + thick, y + kNpyTileEdge, z + kNpyTileEdge}});
-        tiles.push_back({reorder(cells_in(build, box), AxisOrder::zyx),
-                         static_cast<std::uint32_t>(box.max.z - box.min.z)});
-      }
-    }
-    const auto wide = static_cast<std::size_t>((sides.z + kNpyTileEdge - 1) / kNpyTileEdge);
-    for (std::int32_t layer = 0; layer < thick; ++layer) {
-      for (std::int32_t y = 0; y < sides.y; ++y) {
-        const std::size_t row = static_cast<std::size_t>(y / kNpyTileEdge) * wide;
-        for (std::size_t i = row; i < row + wide; ++i) {
-          Tile& tile = tiles[i];
-          for (const std::uint32_t end = tile.at + tile.line; tile.at < end;) {
-            const Run run = tile.cells.runs[tile.run];
-            const std::uint32_t stop = std::min(run.end, end);
-            const std::uint16_t number = numbers.of_cell[run.material];
-            if (is_wide) {
-              ByteWriter w(buffer);
-              for (std::uint32_t k = tile.at; k < stop; ++k) w.u16(number);
-            } else {
-              buffer.insert(buffer.end(), stop - tile.at, static_cast<std::uint8_t>(number));
-            }
-            tile.at = stop;
-            if (stop == run.end) ++tile.run;
-          }
+  ByteWriter w(buffer);
+  const auto walked =
+      walk_cells(build, AxisOrder::zyx, [&](std::uint32_t count, std::uint16_t cell) {
+        const std::uint16_t number = numbers.of_cell[cell];
+        if (is_wide) {
+          for (std::uint32_t i = 0; i < count; ++i) w.u16(number);
+        } else {
+          buffer.insert(buffer.end(), count, static_cast<std::uint8_t>(number));
         }
-        if (buffer.size() < kNpyWriteBytes) continue;
-        if (!sink(buffer)) return fail(ErrorCode::io_failed, "npy: cannot be written");
+        if (buffer.size() < kNpyWriteBytes) return Result<void>{};
+        if (!sink(buffer))
+          return Result<void>(fail(ErrorCode::io_failed, "npy: cannot be written"));
         buffer.clear();
-      }
-    }
-  }
+        return Result<void>{};
+      });
+  if (!walked) return walked;
   if (!sink(buffer)) return fail(ErrorCode::io_failed, "npy: cannot be written");
   return {};
 }
@@ -261,7 +230,7 @@ Result<void> ZipWriter::add(const std::string& name,
     return true;
   };
   const auto filled = fill([&](ByteView part) {
-    // A part has a row of an array at most, far below 4 GiB.
+    // A part has a buffer of voxels or a whole other array, far below 4 GiB.
     bytes += part.size();
     checksum = crc32_z(checksum, part.data(), part.size());
     return part.empty() || deflate_all(part, Z_NO_FLUSH);

@@ -165,7 +165,7 @@ TEST_CASE("names come from notes, and looks from materials", "[formats]") {
   CHECK(build->materials[2].row.name == "water #0907f7bf rough 10");
   CHECK(build->materials[2].row.colour == MaterialColour{9, 7, 247, 191});
   CHECK(build->materials[2].row.visibility == Visibility::transparent);
-  CHECK(build->materials[1].row.look->emission == 50);
+  CHECK(build->materials[0].row.look->emission == 50);
 }
 
 TEST_CASE("bad .vox files are refused", "[formats]") {
