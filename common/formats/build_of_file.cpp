@@ -13,11 +13,8 @@ namespace {
 
 /// Returns the nearest plain name with at most `bytes_max` bytes, or an empty text if nothing is left.
 std::string plain_name(std::string_view text, std::size_t bytes_max) {
-  // Longer text is cut before it is copied.
-  text = text.substr(0, 4 * bytes_max);
-  while (!text.empty() && !is_printable_utf8(text) &&
-         (static_cast<unsigned char>(text.back()) & 0x80U) != 0)
-    text.remove_suffix(1);  // a character that the cut may have broken
+  // A name of any length is cut before it is checked, and not inside a character.
+  if (text.size() > 4 * bytes_max) text = cut_utf8(text, 4 * bytes_max);
   std::string out(text);
   const bool is_utf8 = is_printable_utf8(text);
   for (char& c : out) {

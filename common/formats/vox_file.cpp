@@ -316,10 +316,14 @@ Result<void> VoxChunks::read() {
   const std::string_view main = text_of(in.bytes(4));
   if (in.ok() && main != "MAIN") return fail(ErrorCode::bad_value, "vox: chunk MAIN is missing", 8);
   const std::uint32_t main_bytes = in.u32();
-  in.u32();  // of the children, which other programs write wrong for large files
-  if (main_bytes > in.left()) return fail(ErrorCode::truncated, "vox: chunk MAIN is cut", 12);
-  in.bytes(main_bytes);
+  const std::uint32_t child_bytes_of_main = in.u32();
   if (!in.ok()) return fail(ErrorCode::truncated, "vox: file ends in its head", in.offset());
+  if (main_bytes > in.left() || child_bytes_of_main > in.left() - main_bytes)
+    return fail(ErrorCode::truncated, "vox: file is shorter than its chunk MAIN says",
+                file_.size());
+  if (child_bytes_of_main == 0) return fail(ErrorCode::bad_value, "vox: chunk MAIN is empty", 16);
+  in = ByteReader(file_.first(in.offset() + main_bytes + child_bytes_of_main));
+  in.bytes(20 + std::size_t{main_bytes});
   while (!in.at_end()) {
     const std::size_t begin = in.offset();
     const std::string_view id = text_of(in.bytes(4));

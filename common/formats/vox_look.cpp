@@ -12,6 +12,8 @@ namespace {
 
 /// The rows of the palette on the screen, of 8 colours each. The first note is that of the last row.
 constexpr std::size_t kVoxRows = 32, kVoxRowColours = 8;
+/// Names and states of a build are shorter. Each piece has a copy of them.
+constexpr std::size_t kVoxTextBytesMax = 1024;
 /// A note that is longer is cut, so that a name has room for the rest.
 constexpr std::size_t kVoxNoteBytesMax = 28;
 
@@ -92,8 +94,8 @@ std::vector<ForeignBlock> vox_blocks(const VoxFile& file) {
     const VoxMaterial& material = file.materials[colour];
     ForeignBlock block;
     if (material.has_name) {
-      block.name = material.name;
-      block.states = material.states;
+      block.name = material.name.substr(0, kVoxTextBytesMax);
+      block.states = material.states.substr(0, kVoxTextBytesMax);
       block.look = ForeignLook{file.palette[colour], vox_look_of_text(material.look)};
     } else {
       block.look = vox_look(file, colour);
