@@ -1,0 +1,132 @@
+#include "server/convert/convert_program.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/formats/file_build.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/formats/file_builds.hpp"
+
+namespace runstone::test {
+namespace {
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+Outcome convert(const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv = {"runstone-convert"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  std::ostringstream out, err;
+  const int code = convert_program(static_cast<int>(argv.size()), argv.data(), out, err);
+  return {code, out.str(), err.str()};
+}
+
+void write_bytes(const std::string& file, const Bytes& bytes) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+Bytes bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+FileBuild read_back(const std::string& file) {
+  auto build = read_file_build(file, bytes_of(file), {});
+  INFO((build ? "" : build.error()));
+  REQUIRE(build.has_value());
+  return *std::move(build);
+}
+
+/// Writes a build of random cells as an .rsb, and returns it.
+FileBuild make_rsb(const std::string& file) {
+  SplitMix64 rng(11);
+  FileBuild build = random_file_build(rng, {40, 9, 21}, 12, false);
+  Bytes bytes;
+  REQUIRE(write_file_build(file, build, [&](ByteView part) {
+            bytes.insert(bytes.end(), part.begin(), part.end());
+            return true;
+          }).has_value());
+  write_bytes(file, bytes);
+  return build;
+}
+
+}  // namespace
+
+TEST_CASE("a build keeps its cells through the files of other programs", "[convert]") {
+  const TempFolder folder;
+  const std::string first = folder / "house.rsb";
+  const FileBuild build = make_rsb(first);
+  const std::string ending = GENERATE(as<std::string>(), ".schem", ".litematic", ".rsb");
+  const std::string there = folder / ("there" + ending), back = folder / "back.rsb";
+  const Outcome done = convert({first, there});
+  INFO(done.err);
+  REQUIRE(done.code == 0);
+  CHECK(done.out.find("40 x 9 x 21 voxels") != std::string::npos);
+  REQUIRE(convert({there, back}).code == 0);
+  const FileBuild read = read_back(back);
+  REQUIRE(read.build->sides() == build.build->sides());
+  for (std::int32_t z = 0; z < 21; ++z) {
+    for (std::int32_t y = 0; y < 9; ++y) {
+      for (std::int32_t x = 0; x < 40; ++x) {
+        const auto name = [&](const FileBuild& of) -> std::string {
+          const auto material = of.build->at({x, y, z});
+          if (!material) return "-";
+          const BuildMaterial& row = of.materials[*of.build->number_of(*material) - 1U];
+          return row.row.name + row.states;
+        };
+        REQUIRE(name(read) == name(build));
+      }
+    }
+  }
+}
+
+TEST_CASE("runstone-convert says what a file is, and lists its materials", "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb";
+  const FileBuild build = make_rsb(file);
+  const Outcome said = convert({file, "--list"});
+  REQUIRE(said.code == 0);
+  for (const BuildMaterial& material : build.materials)
+    CHECK(said.out.find('\n' + material.row.name) != std::string::npos);
+}
+
+TEST_CASE("runstone-convert refuses with the file and the reason, and keeps an old file",
+          "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb", old = folder / "old.schem";
+  make_rsb(file);
+  write_bytes(old, {1, 2, 3});
+
+  Outcome refused = convert({file, folder / "house.exe"});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("house.exe: no format of this ending is written; the endings are .rsb, ") !=
+        std::string::npos);
+
+  Bytes damaged = bytes_of(file);
+  damaged[damaged.size() / 2] ^= 1;
+  write_bytes(folder / "damaged.rsb", damaged);
+  refused = convert({folder / "damaged.rsb", old});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("damaged.rsb: ") != std::string::npos);
+  CHECK(bytes_of(old) == Bytes{1, 2, 3});
+
+  refused = convert({old, folder / "new.rsb"});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("old.schem: ") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "new.rsb"));
+
+  refused = convert({folder / "none.rsb", old});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("none.rsb") != std::string::npos);
+}
+
+}  // namespace runstone::test

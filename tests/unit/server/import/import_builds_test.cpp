@@ -1,0 +1,113 @@
+// Files with a build become worlds, and boxes of worlds become files.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "common/formats/file_build.hpp"
+#include "common/formats/material_match.hpp"
+#include "common/formats/schematic_writer.hpp"
+#include "server/import/import_program.hpp"
+#include "server/store/store.hpp"
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/formats/file_builds.hpp"
+
+namespace runstone::test {
+namespace {
+
+void write_bytes(const std::string& file, const Bytes& bytes) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+ImportRequest request_of(const TempFolder& folder, const std::string& file) {
+  ImportRequest request;
+  request.kind = ImportKind::file;
+  request.source = folder / file;
+  request.world = folder / "world";
+  request.edge = 32;
+  request.keep_all = true;
+  return request;
+}
+
+}  // namespace
+
+TEST_CASE("a schematic becomes a world whose voxels are those of the file", "[import]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  const FileBuild build = random_file_build(rng, {50, 40, 70}, 20, true);
+  const auto bytes = written(write_schem, build);
+  REQUIRE(bytes.has_value());
+  write_bytes(folder / "house.schem", *bytes);
+  ImportRequest request = request_of(folder, "house.schem");
+  request.at = {-13, 5, 1000};
+  request.palette = false;
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  INFO((imported ? out.str() : imported.error()));
+  REQUIRE(imported.has_value());
+  CHECK(out.str().find("in a box of 50 x 40 x 70 became ") != std::string::npos);
+
+  const auto store = open_world(request.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  const MaterialTable& table = (*store)->meta().materials;
+  std::map<ChunkCoord, std::optional<Chunk>> chunks;
+  const auto voxel = [&](VoxelPos at) {
+    const ChunkCoord coord = chunk_of(at, 32);
+    if (!chunks.contains(coord)) {
+      auto chunk = (*store)->load_base({0, coord});
+      REQUIRE(chunk.has_value());
+      chunks[coord] = *std::move(chunk);
+    }
+    const std::optional<Chunk>& chunk = chunks[coord];
+    return chunk ? material_at(chunk->voxels, local_of(at, 32)) : kEmpty;
+  };
+  std::size_t solid = 0;
+  for (std::int32_t z = 0; z < 70; ++z) {
+    for (std::int32_t y = 0; y < 40; ++y) {
+      for (std::int32_t x = 0; x < 50; ++x) {
+        const auto material = build.build->at({x, y, z});
+        const BuildMaterial* expected =
+            material ? &build.materials[*build.build->number_of(*material) - 1U] : nullptr;
+        const VoxelPos at{x - 13, y + 5, z + 1000};
+        const Material here = voxel(at);
+        const bool is_empty =
+            expected == nullptr || expected->row.visibility == Visibility::empty;
+        REQUIRE((here == kEmpty) == is_empty);
+        if (is_empty) continue;
+        ++solid;
+        REQUIRE(table[here].name == world_name_of(*expected));
+      }
+    }
+  }
+  CHECK(solid == build.build->solid());
+}
+
+TEST_CASE("an import of a file that cannot be read makes no world", "[import]") {
+  const TempFolder folder;
+  write_bytes(folder / "bad.schem", {0, 1, 2});
+  ImportRequest request = request_of(folder, "bad.schem");
+  std::ostringstream out;
+  auto imported = import_world(request, out);
+  REQUIRE_FALSE(imported.has_value());
+  CHECK(imported.error().find("bad.schem: ") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(request.world));
+
+  request.source = folder / "bad.exe";
+  imported = import_world(request, out);
+  REQUIRE_FALSE(imported.has_value());
+  CHECK(imported.error().find("the endings are .rsb") != std::string::npos);
+
+  request.kind = ImportKind::minecraft;
+  request.source = folder.path();
+  imported = import_world(request, out);
+  REQUIRE_FALSE(imported.has_value());
+  CHECK(imported.error().find("no region file (r.X.Z.mca)") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(request.world));
+}
+
+}  // namespace runstone::test
