@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-constexpr std::int32_t kWalkSlab = 64, kWalkTile = 128;
+constexpr std::int32_t kGridSlab = 64, kGridTile = 128;
 
 /// A box of the slab, read line by line.
 struct WalkedTile {
@@ -33,15 +33,15 @@ Result<void> walk_cells(const Build& build, AxisOrder order,
     for (std::size_t i = 0; i < 3; ++i) at[static_cast<std::size_t>(axes[i])] = by_order[i];
     return VoxelPos{at[0], at[1], at[2]};
   };
-  const auto wide = static_cast<std::size_t>((sides[0] + kWalkTile - 1) / kWalkTile);
+  const auto wide = static_cast<std::size_t>((sides[0] + kGridTile - 1) / kGridTile);
   std::vector<WalkedTile> tiles;
-  for (std::int32_t s = 0; s < sides[2]; s += kWalkSlab) {
-    const std::int32_t end_s = std::min(s + kWalkSlab, sides[2]);
+  for (std::int32_t s = 0; s < sides[2]; s += kGridSlab) {
+    const std::int32_t end_s = std::min(s + kGridSlab, sides[2]);
     tiles.clear();
-    for (std::int32_t m = 0; m < sides[1]; m += kWalkTile) {
-      const std::int32_t end_m = std::min(m + kWalkTile, sides[1]);
-      for (std::int32_t fast = 0; fast < sides[0]; fast += kWalkTile) {
-        const std::int32_t end_f = std::min(fast + kWalkTile, sides[0]);
+    for (std::int32_t m = 0; m < sides[1]; m += kGridTile) {
+      const std::int32_t end_m = std::min(m + kGridTile, sides[1]);
+      for (std::int32_t fast = 0; fast < sides[0]; fast += kGridTile) {
+        const std::int32_t end_f = std::min(fast + kGridTile, sides[0]);
         const VoxelBox box{position({fast, m, s}), position({end_f, end_m, end_s})};
         tiles.push_back(
             {reorder(cells_in(build, box), order), static_cast<std::uint32_t>(end_f - fast)});
@@ -49,7 +49,7 @@ Result<void> walk_cells(const Build& build, AxisOrder order,
     }
     for (std::int32_t layer = s; layer < end_s; ++layer) {
       for (std::int32_t m = 0; m < sides[1]; ++m) {
-        const std::size_t row = static_cast<std::size_t>(m / kWalkTile) * wide;
+        const std::size_t row = static_cast<std::size_t>(m / kGridTile) * wide;
         for (std::size_t i = row; i < row + wide; ++i) {
           WalkedTile& tile = tiles[i];
           for (const std::uint32_t end = tile.at + tile.line; tile.at < end;) {
