@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "common/core/assert.hpp"
-#include "common/formats/schematic_names.hpp"
 #include "common/formats/litematic_reader.hpp"
+#include "common/formats/schematic_names.hpp"
 
 using namespace runstone;
 
@@ -17,9 +17,8 @@ Result<void> check_litematic_piece(ForeignPiece&& piece) {
     RUNSTONE_ASSERT(piece.voxels.runs.material(i) <= piece.blocks.size());
   for (const ForeignBlock& block : piece.blocks) {
     const MaterialInfo info = material_of_schematic_block(block, true);
-    RUNSTONE_ASSERT(
-        validate_material(info.name, info.colour, info.visibility, info.body, info.look)
-            .has_value());
+    RUNSTONE_ASSERT(validate_material(info.name, info.colour, info.visibility, info.body, info.look)
+                        .has_value());
   }
   return {};
 }

@@ -17,9 +17,8 @@ Result<void> check_schematic_piece(ForeignPiece&& piece) {
     RUNSTONE_ASSERT(piece.voxels.runs.material(i) <= piece.blocks.size());
   for (const ForeignBlock& block : piece.blocks) {
     const MaterialInfo info = material_of_schematic_block(block, true);
-    RUNSTONE_ASSERT(
-        validate_material(info.name, info.colour, info.visibility, info.body, info.look)
-            .has_value());
+    RUNSTONE_ASSERT(validate_material(info.name, info.colour, info.visibility, info.body, info.look)
+                        .has_value());
   }
   return {};
 }

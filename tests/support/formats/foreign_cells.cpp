@@ -6,8 +6,9 @@
 
 namespace runstone::test {
 
-Result<ForeignCells> read_foreign_cells(
-    Result<ForeignInfo> (*read)(ByteView record, const PieceSink& sink), ByteView file) {
+Result<ForeignCells> read_foreign_cells(Result<ForeignInfo> (*read)(ByteView record,
+                                                                    const PieceSink& sink),
+                                        ByteView file) {
   ForeignCells out;
   std::uint64_t volume = 0;
   auto info = read(file, [&](ForeignPiece&& piece) -> Result<void> {

@@ -16,7 +16,8 @@ struct ForeignCells {
 
 /// Reads a file with a reader of a format. Fails an assertion if a piece breaks a rule of the seam.
 /// Cells of pieces with more than 2^20 voxels in all are not kept, only their box.
-Result<ForeignCells> read_foreign_cells(
-    Result<ForeignInfo> (*read)(ByteView record, const PieceSink& sink), ByteView file);
+Result<ForeignCells> read_foreign_cells(Result<ForeignInfo> (*read)(ByteView record,
+                                                                    const PieceSink& sink),
+                                        ByteView file);
 
 }  // namespace runstone::test

@@ -50,8 +50,7 @@ NbtBytes& NbtBytes::list(std::string_view name, std::uint8_t type, std::int64_t 
 
 Bytes gzip_of(const Bytes& plain) {
   z_stream stream{};
-  const int begun =
-      deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+  const int begun = deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
   RUNSTONE_ASSERT(begun == Z_OK);
   Bytes out(deflateBound(&stream, static_cast<uLong>(plain.size())) + 64);
   stream.next_in = const_cast<Bytef*>(plain.data());

@@ -56,8 +56,8 @@ Bytes sponge_plain(const SpongeFields& fields);
 struct MceditFields {
   VoxelPos sides{2, 1, 1};
   std::string materials = "Alpha";
-  Bytes blocks, data, add;                                   // empty `add`: there is none
-  std::vector<std::pair<std::string, int>> mapping;          // empty: there is none
+  Bytes blocks, data, add;                           // empty `add`: there is none
+  std::vector<std::pair<std::string, int>> mapping;  // empty: there is none
 };
 Bytes mcedit_plain(const MceditFields& fields);
 

@@ -89,8 +89,8 @@ TEST_CASE("the origin of a schematic is where WorldEdit copied it", "[formats]")
 
 TEST_CASE("large schematics are cut at the planes of the grid of 64", "[formats]") {
   SplitMix64 random(47);
-  for (const VoxelPos sides : {VoxelPos{130, 3, 70}, VoxelPos{64, 70, 2}, VoxelPos{5, 130, 66},
-                               VoxelPos{65, 65, 1}}) {
+  for (const VoxelPos sides :
+       {VoxelPos{130, 3, 70}, VoxelPos{64, 70, 2}, VoxelPos{5, 130, 66}, VoxelPos{65, 65, 1}}) {
     CAPTURE(sides.x, sides.y, sides.z);
     SpongeFields fields;
     fields.sides = sides;
@@ -98,18 +98,20 @@ TEST_CASE("large schematics are cut at the planes of the grid of 64", "[formats]
       fields.palette.emplace_back("mod:block_" + std::to_string(i), i);
     const auto volume = static_cast<std::size_t>(sides.x * sides.y * sides.z);
     while (fields.cells.size() < volume) {
-      const std::size_t count = std::min<std::size_t>(random.below(90) + 1,
-                                                      volume - fields.cells.size());
+      const std::size_t count =
+          std::min<std::size_t>(random.below(90) + 1, volume - fields.cells.size());
       fields.cells.insert(fields.cells.end(), count, random.below(300));
     }
     const ForeignCells read = cells_of_schematic(sponge_plain(fields));
     const auto tiles = [](std::int32_t side) { return static_cast<std::size_t>((side + 63) / 64); };
     CHECK(read.pieces == tiles(sides.x) * tiles(sides.y) * tiles(sides.z));
     REQUIRE(read.blocks.size() == volume);
+    std::size_t wrong = 0;
     for (const auto& [at, block] : read.blocks) {
       const auto i = static_cast<std::size_t>((at.y * sides.z + at.z) * sides.x + at.x);
-      REQUIRE(block == "mod:block_" + std::to_string(fields.cells[i]));
+      wrong += block != "mod:block_" + std::to_string(fields.cells[i]) ? 1u : 0u;
     }
+    CHECK(wrong == 0);
   }
 }
 

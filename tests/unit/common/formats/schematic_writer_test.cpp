@@ -1,6 +1,7 @@
 #include "common/formats/schematic_writer.hpp"
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <set>
 
 #include "common/builds/build_builder.hpp"
@@ -29,7 +30,7 @@ struct SchemFormat {
   SchemReader read;
 };
 constexpr SchemFormat kSchemFormats[] = {{"schem", write_schem, read_schematic},
-                                      {"litematic", write_litematic, read_litematic}};
+                                         {"litematic", write_litematic, read_litematic}};
 
 /// A cell: -1 is untouched, and other values are places in the list of materials.
 using SchemCells = std::vector<std::int32_t>;  // (y * length + z) * width + x
@@ -44,7 +45,7 @@ BuildMaterial schem_material(std::string name, std::string states = "") {
 
 /// Makes a build whose sections have the given edges and random axis orders. The material of place i is i.
 FileBuild schem_file_build(SplitMix64& random, VoxelPos sides, const SchemCells& cells,
-                     const std::vector<BuildMaterial>& materials, std::int32_t edge) {
+                           const std::vector<BuildMaterial>& materials, std::int32_t edge) {
   auto builder = BuildBuilder::of(
       {grid_cuts(sides.x, edge), grid_cuts(sides.y, edge, edge / 3), grid_cuts(sides.z, edge)});
   REQUIRE(builder.has_value());
@@ -54,17 +55,17 @@ FileBuild schem_file_build(SplitMix64& random, VoxelPos sides, const SchemCells&
       for (std::uint32_t sx = 0; sx + 1 < cuts[0].size(); ++sx) {
         const VoxelPos low{cuts[0][sx], cuts[1][sy], cuts[2][sz]};
         const VoxelPos high{cuts[0][sx + 1], cuts[1][sy + 1], cuts[2][sz + 1]};
-        RunBuilder runs({static_cast<std::uint8_t>(high.x - low.x),
-                         static_cast<std::uint8_t>(high.y - low.y),
-                         static_cast<std::uint8_t>(high.z - low.z)},
-                        AxisOrder::xyz);
+        RunBuilder runs(
+            {static_cast<std::uint8_t>(high.x - low.x), static_cast<std::uint8_t>(high.y - low.y),
+             static_cast<std::uint8_t>(high.z - low.z)},
+            AxisOrder::xyz);
         for (std::int32_t z = low.z; z < high.z; ++z) {
           for (std::int32_t y = low.y; y < high.y; ++y) {
             for (std::int32_t x = low.x; x < high.x; ++x) {
               const std::int32_t cell =
                   cells[static_cast<std::size_t>((y * sides.z + z) * sides.x + x)];
-              runs.append(1, cell < 0 ? Material{0}
-                                      : *builder->number_of(static_cast<Material>(cell)));
+              runs.append(
+                  1, cell < 0 ? Material{0} : *builder->number_of(static_cast<Material>(cell)));
             }
           }
         }
@@ -98,8 +99,8 @@ std::string schem_material_text(const std::string& block) {
   ForeignBlock read{block.substr(0, open), ""};
   if (open < block.size()) read.states = block.substr(open + 1, block.size() - open - 2);
   const MaterialInfo info = material_of_schematic_block(read, true);
-  REQUIRE(validate_material(info.name, info.colour, info.visibility, info.body, info.look)
-              .has_value());
+  REQUIRE(
+      validate_material(info.name, info.colour, info.visibility, info.body, info.look).has_value());
   return info.name + "|" + (info.name == "air" ? "" : read.states);
 }
 
@@ -112,7 +113,9 @@ std::vector<BuildMaterial> schem_materials() {
                      "facing=east,half=bottom,shape=straight,waterlogged=false"),
       schem_material("grass"),
       schem_material("red bricks"),
-      schem_material("Stra\xc3\x9f" "e_1.[x]", "any thing"),
+      schem_material("Stra\xc3\x9f"
+                     "e_1.[x]",
+                     "any thing"),
       schem_material("default:chest", "param2=3"),
       schem_material("default:chest"),
       schem_material("default:furnace"),
@@ -138,8 +141,7 @@ TEST_CASE("a build that was written as a schematic is read with its cells, names
     SchemCells cells;
     const auto volume = static_cast<std::size_t>(sides.x * sides.y * sides.z);
     while (cells.size() < volume) {
-      const std::size_t count =
-          std::min<std::size_t>(1 + random.below(60), volume - cells.size());
+      const std::size_t count = std::min<std::size_t>(1 + random.below(60), volume - cells.size());
       cells.insert(cells.end(), count,
                    random.between(-1, static_cast<std::int32_t>(materials.size()) - 1));
     }
@@ -155,30 +157,37 @@ TEST_CASE("a build that was written as a schematic is read with its cells, names
       REQUIRE(back.has_value());
       CHECK(back->box == VoxelBox{{0, 0, 0}, sides});
       CHECK(back->info.name == file.info.name);
+      std::map<std::string, std::string> texts;  // of materials, by block
+      std::size_t touched = 0, wrong = 0;
       for (std::size_t i = 0; i < volume; ++i) {
+        if (cells[i] < 0) continue;
+        ++touched;
         const auto at = static_cast<std::int32_t>(i);
-        const VoxelPos place{at % sides.x, at / (sides.x * sides.z), at / sides.x % sides.z};
-        const auto found = back->blocks.find(place);
-        if (cells[i] < 0) {
-          REQUIRE(found == back->blocks.end());
+        const auto found =
+            back->blocks.find({at % sides.x, at / (sides.x * sides.z), at / sides.x % sides.z});
+        if (found == back->blocks.end()) {
+          ++wrong;
           continue;
         }
-        REQUIRE(found != back->blocks.end());
+        auto [text, is_new] = texts.try_emplace(found->second);
+        if (is_new) text->second = schem_material_text(found->second);
         const BuildMaterial& wanted = materials[static_cast<std::size_t>(cells[i])];
-        const std::string text = schem_material_text(found->second);
         // The name of a material of Minecraft has its states.
-        if (wanted.row.name == "minecraft:stone_like")
-          REQUIRE(text.ends_with("|axis=y"));
-        else
-          REQUIRE(text == wanted.row.name + "|" + wanted.states);
+        const std::string wanted_name = wanted.row.name == "minecraft:stone_like"
+                                            ? "minecraft:stone_like[axis=y]"
+                                            : wanted.row.name;
+        wrong += text->second != wanted_name + "|" + wanted.states ? 1u : 0u;
       }
+      CHECK(wrong == 0);
+      CHECK(touched == back->blocks.size());
     }
   }
 }
 
 TEST_CASE("the info of a build is kept", "[formats]") {
   SplitMix64 random(3);
-  FileBuild file = schem_file_build(random, {2, 1, 1}, {0, -1}, {schem_material("minecraft:stone")}, 64);
+  FileBuild file =
+      schem_file_build(random, {2, 1, 1}, {0, -1}, {schem_material("minecraft:stone")}, 64);
   file.info.author = "me";
   file.info.created_us = 1'600'000'000'123'000;
   file.info.origin = {-5, 70, 1 << 20};
@@ -206,8 +215,10 @@ TEST_CASE("more than 128 blocks take two bytes a cell, and more bits", "[formats
     const auto back = read_foreign_cells(read, schem_bytes(write, file));
     REQUIRE(back.has_value());
     REQUIRE(back->blocks.size() == cells.size());
+    std::size_t wrong = 0;
     for (const auto& [at, block] : back->blocks)
-      REQUIRE(block == "m:" + std::to_string((at.y * 20 + at.z) * 100 + at.x));
+      wrong += block != "m:" + std::to_string((at.y * 20 + at.z) * 100 + at.x) ? 1u : 0u;
+    CHECK(wrong == 0);
   }
 }
 
@@ -247,8 +258,8 @@ TEST_CASE("names that the game does not allow are written by a rule", "[formats]
 }
 
 TEST_CASE("a schematic in a namespace of Runstone that no rule made keeps its name", "[formats]") {
-  for (const char* name : {"runstone:A", "runstone:.4", "runstone:.zz", "runstone:.61", "runstone:",
-                           "runstone:air", "runstone:.00"}) {
+  for (const char* name : {"runstone:A", "runstone:.4", "runstone:.zz", "runstone:.61",
+                           "runstone:", "runstone:air", "runstone:.00"}) {
     CAPTURE(name);
     const MaterialInfo info = material_of_schematic_block({name, ""}, true);
     CHECK(info.name != "air");
@@ -284,13 +295,11 @@ TEST_CASE("a build that a schematic cannot hold is refused before anything is wr
         {grid_cuts(sides.x, 128), grid_cuts(sides.y, 128), grid_cuts(sides.z, 128)});
     REQUIRE(builder.has_value());
     const auto number = builder->number_of(Material{1});
-    REQUIRE(builder->put({0, 0, 0}, uniform_chunk({static_cast<std::uint8_t>(
-                                                       std::min(sides.x, 128)),
-                                                   static_cast<std::uint8_t>(
-                                                       std::min(sides.y, 128)),
-                                                   static_cast<std::uint8_t>(
-                                                       std::min(sides.z, 128))},
-                                                  *number))
+    REQUIRE(builder
+                ->put({0, 0, 0}, uniform_chunk({static_cast<std::uint8_t>(std::min(sides.x, 128)),
+                                                static_cast<std::uint8_t>(std::min(sides.y, 128)),
+                                                static_cast<std::uint8_t>(std::min(sides.z, 128))},
+                                               *number))
                 .has_value());
     return FileBuild{{}, *builder->finish(), {schem_material("minecraft:stone")}};
   };
