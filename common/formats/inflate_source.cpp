@@ -58,6 +58,7 @@ bool InflateSource::fill(std::span<std::uint8_t> out) {
     const uInt had = stream_->avail_in;
     const int status = inflate(stream_.get(), Z_SYNC_FLUSH);
     const std::size_t made = room - stream_->avail_out;
+    is_finished_ = status == Z_STREAM_END;
     out = out.subspan(made);
     if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
       is_damaged_ = true;
@@ -68,6 +69,11 @@ bool InflateSource::fill(std::span<std::uint8_t> out) {
       return false;
   }
   return true;
+}
+
+bool InflateSource::finish() {
+  std::array<std::uint8_t, 1> more{};
+  return !fill(more) && !is_damaged_ && (is_finished_ || !stream_);
 }
 
 bool InflateSource::skip(std::uint64_t count) {

@@ -27,6 +27,8 @@ class InflateSource {
   bool skip(std::uint64_t count);
   /// Returns true if a stream is no stream. Otherwise it ended early.
   bool is_damaged() const { return is_damaged_; }
+  /// Reads the end of a stream. Returns false if bytes follow, or if the stream ends early.
+  bool finish();
   /// Returns the number of bytes of `packed` that were read.
   std::size_t offset() const;
   /// Returns the CRC-32 of the bytes that were read.
@@ -40,6 +42,7 @@ class InflateSource {
   std::size_t at_ = 0;  // stored bytes that were read
   std::unique_ptr<z_stream_s, StreamDeleter> stream_;
   bool is_damaged_ = false;
+  bool is_finished_ = false;
   std::uint32_t checksum_ = 0;
 
   bool fill(std::span<std::uint8_t> out);

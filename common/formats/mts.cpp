@@ -237,6 +237,11 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
       if (auto done = pieces->append(1, material); !done) return failure(done.error());
     }
   }
+  if (!params.finish()) {
+    if (params.is_damaged()) return cut(params);
+    return fail(ErrorCode::truncated, "mts: the nodes end early, or not with the last node",
+                head->nodes_at + params.offset());
+  }
   return ForeignInfo{};
 }
 

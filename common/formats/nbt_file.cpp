@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace runstone {
 namespace {
 
 // The longest value that is read in one piece is a string of 65,535 bytes.
-constexpr std::size_t kWindowBytes = std::size_t{256} << 10;
+constexpr std::size_t kWindowBytes = std::size_t{128} << 10;
 constexpr std::size_t kArrayPartBytes = std::size_t{64} << 10;
 constexpr std::size_t kFlushBytes = std::size_t{64} << 10;
 
@@ -18,26 +19,20 @@ bool is_plain_nbt(ByteView file) {
 }  // namespace
 
 NbtFileSource::NbtFileSource(ByteView file)
-    : plain_(file),
+    : file_(file),
       is_plain_(is_plain_nbt(file)),
       packed_(is_plain_ ? ByteView() : file, DeflateForm::zlib_or_gzip),
-      window_(kWindowBytes) {}
+      window_(is_plain_ ? 0 : kWindowBytes) {}
 
 Result<ByteView> NbtFileSource::more(ByteView rest) {
+  // Views only move forward, so a rest is the end of the file.
+  if (is_plain_) return rest.empty() ? std::exchange(file_, {}) : rest;
   if (rest.size() == window_.size())
-    return fail(ErrorCode::limit_exceeded, "nbt: a value is longer than 256 KiB", total_);
+    return fail(ErrorCode::limit_exceeded, "nbt: a value is longer than 128 KiB", total_);
   if (!rest.empty()) std::memmove(window_.data(), rest.data(), rest.size());
-  const std::span<std::uint8_t> room = std::span(window_).subspan(rest.size());
-  std::size_t count = 0;
-  if (is_plain_) {
-    count = std::min(room.size(), plain_.size());
-    std::copy_n(plain_.begin(), count, room.begin());
-    plain_ = plain_.subspan(count);
-  } else {
-    const auto read = packed_.read(room);
-    if (!read) return failure(read.error());
-    count = *read;
-  }
+  const auto read = packed_.read(std::span(window_).subspan(rest.size()));
+  if (!read) return failure(read.error());
+  const std::size_t count = *read;
   total_ += count;
   if (total_ > kNbtFileBytesMax)
     return fail(ErrorCode::limit_exceeded, "the file decompresses to more than 5 GiB", total_);

@@ -19,14 +19,15 @@ namespace runstone {
 /// The bytes that a file may decompress to.
 inline constexpr std::uint64_t kNbtFileBytesMax = std::uint64_t{5} << 30;
 
-/// The bytes of a file, a window at a time. The file must outlive it. Memory: 300 KB.
+/// The bytes of a file, a window at a time; the whole file if it is not compressed. The file must
+/// outlive it. Memory: 180 KB.
 class NbtFileSource : public NbtSource {
  public:
   explicit NbtFileSource(ByteView file);
   Result<ByteView> more(ByteView rest) override;
 
  private:
-  ByteView plain_;  // what is left of a file that is not compressed
+  ByteView file_;
   bool is_plain_;
   Inflater packed_;
   Bytes window_;

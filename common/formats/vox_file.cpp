@@ -145,8 +145,8 @@ void VoxChunks::take_packed(ByteReader& in) {
 }
 
 void VoxChunks::take_palette(ByteReader& in) {
-  // Entry i is the colour of voxels of colour i + 1. The last one has no use.
-  for (std::size_t i = 0; i < kVoxColours; ++i) {
+  // Entry i is the colour of voxels of colour i + 1. The last one has no use, and some files lack it.
+  for (std::size_t i = 0; i < kVoxColours && (i + 1 < kVoxColours || in.left() > 0); ++i) {
     auto& colour = out_.palette[(i + 1) % kVoxColours];
     for (std::uint8_t& part : colour) part = in.u8();
   }

@@ -90,11 +90,13 @@ TEST_CASE("packed numbers cross from long to long in every width", "[formats]") 
     region.longs = packed_longs(numbers, bits);
     const ForeignCells read = cells_of_litematic({region});
     REQUIRE(read.blocks.size() == numbers.size());
-    CHECK(read.pieces == 2 * 2 * 2);  // the grid of 64 cuts each side once
+    CHECK(read.pieces == 3 * 2 * 3);  // cut at x -64, 0; y 0; z -128, -64
+    std::size_t wrong = 0;
     for (const auto& [at, block] : read.blocks) {
       const auto i = static_cast<std::size_t>(((at.y + 3) * 70 + at.z + 130) * 75 + at.x + 70);
-      REQUIRE(block == "m:" + std::to_string(numbers[i]));
+      wrong += block != "m:" + std::to_string(numbers[i]) ? 1u : 0u;
     }
+    CHECK(wrong == 0);
   }
 }
 

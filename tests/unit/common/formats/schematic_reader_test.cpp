@@ -106,10 +106,12 @@ TEST_CASE("large schematics are cut at the planes of the grid of 64", "[formats]
     const auto tiles = [](std::int32_t side) { return static_cast<std::size_t>((side + 63) / 64); };
     CHECK(read.pieces == tiles(sides.x) * tiles(sides.y) * tiles(sides.z));
     REQUIRE(read.blocks.size() == volume);
+    std::size_t wrong = 0;
     for (const auto& [at, block] : read.blocks) {
       const auto i = static_cast<std::size_t>((at.y * sides.z + at.z) * sides.x + at.x);
-      REQUIRE(block == "mod:block_" + std::to_string(fields.cells[i]));
+      wrong += block != "mod:block_" + std::to_string(fields.cells[i]) ? 1u : 0u;
     }
+    CHECK(wrong == 0);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "common/formats/schematic_writer.hpp"
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <set>
 
 #include "common/builds/build_builder.hpp"
@@ -156,23 +157,29 @@ TEST_CASE("a build that was written as a schematic is read with its cells, names
       REQUIRE(back.has_value());
       CHECK(back->box == VoxelBox{{0, 0, 0}, sides});
       CHECK(back->info.name == file.info.name);
+      std::map<std::string, std::string> texts;  // of materials, by block
+      std::size_t touched = 0, wrong = 0;
       for (std::size_t i = 0; i < volume; ++i) {
+        if (cells[i] < 0) continue;
+        ++touched;
         const auto at = static_cast<std::int32_t>(i);
-        const VoxelPos place{at % sides.x, at / (sides.x * sides.z), at / sides.x % sides.z};
-        const auto found = back->blocks.find(place);
-        if (cells[i] < 0) {
-          REQUIRE(found == back->blocks.end());
+        const auto found =
+            back->blocks.find({at % sides.x, at / (sides.x * sides.z), at / sides.x % sides.z});
+        if (found == back->blocks.end()) {
+          ++wrong;
           continue;
         }
-        REQUIRE(found != back->blocks.end());
+        auto [text, is_new] = texts.try_emplace(found->second);
+        if (is_new) text->second = schem_material_text(found->second);
         const BuildMaterial& wanted = materials[static_cast<std::size_t>(cells[i])];
-        const std::string text = schem_material_text(found->second);
         // The name of a material of Minecraft has its states.
-        if (wanted.row.name == "minecraft:stone_like")
-          REQUIRE(text.ends_with("|axis=y"));
-        else
-          REQUIRE(text == wanted.row.name + "|" + wanted.states);
+        const std::string wanted_name = wanted.row.name == "minecraft:stone_like"
+                                            ? "minecraft:stone_like[axis=y]"
+                                            : wanted.row.name;
+        wrong += text->second != wanted_name + "|" + wanted.states ? 1u : 0u;
       }
+      CHECK(wrong == 0);
+      CHECK(touched == back->blocks.size());
     }
   }
 }
@@ -208,8 +215,10 @@ TEST_CASE("more than 128 blocks take two bytes a cell, and more bits", "[formats
     const auto back = read_foreign_cells(read, schem_bytes(write, file));
     REQUIRE(back.has_value());
     REQUIRE(back->blocks.size() == cells.size());
+    std::size_t wrong = 0;
     for (const auto& [at, block] : back->blocks)
-      REQUIRE(block == "m:" + std::to_string((at.y * 20 + at.z) * 100 + at.x));
+      wrong += block != "m:" + std::to_string((at.y * 20 + at.z) * 100 + at.x) ? 1u : 0u;
+    CHECK(wrong == 0);
   }
 }
 
