@@ -7,6 +7,9 @@
 #include "common/formats/luanti_block.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_region.hpp"
+#include "common/formats/mts.hpp"
+#include "common/formats/npy.hpp"
+#include "common/formats/qb.hpp"
 #include "common/formats/schematic_reader.hpp"
 #include "common/formats/schematic_writer.hpp"
 #include "common/formats/vox.hpp"
@@ -15,13 +18,16 @@ namespace runstone {
 namespace {
 
 constexpr Format kFormats[] = {
-    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node, false},
-    {"sponge", ".schem", read_schematic, material_of_minecraft_block, true, write_schem},
+    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node, nullptr, false},
+    {"sponge", ".schem", read_schematic, material_of_minecraft_block, write_schem},
     {"mcedit", ".schematic", read_schematic, material_of_minecraft_block},
-    {"litematica", ".litematic", read_litematic, material_of_minecraft_block, true,
-     write_litematic},
+    {"litematica", ".litematic", read_litematic, material_of_minecraft_block, write_litematic},
     {"minecraft", ".mca", read_minecraft_region, material_of_minecraft_block},
-    {"magicavoxel", ".vox", read_vox, material_of_look, true, write_vox},
+    {"magicavoxel", ".vox", read_vox, material_of_look, write_vox},
+    {"qubicle", ".qb", read_qb, material_of_look},
+    {"luanti schematic", ".mts", read_mts, material_of_luanti_node, write_mts},
+    {"numpy", ".npy", read_npy, material_of_look, write_npy},
+    {"numpy archive", ".npz", read_npz, material_of_look, write_npz},
 };
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }

@@ -82,12 +82,12 @@ struct Format {
   /// MaterialTable::add() accepts it for every block, if the name is not taken. `keep_all`: blocks
   /// that are no whole cube, such as plants, are not empty.
   MaterialInfo (*material_of)(const ForeignBlock& block, bool keep_all);
-  /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
-  bool is_file = true;
   /// Writes a build as one file. Fails with limit_exceeded and the limit in the text if the build is
   /// larger, or has more materials, than a file of this format holds; nothing was written then. Fails
   /// with io_failed if the sink returns false. Null: the format is only read.
   Result<void> (*write)(const FileBuild& build, const FormatSink& sink) = nullptr;
+  /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
+  bool is_file = true;
 };
 
 std::span<const Format> formats();

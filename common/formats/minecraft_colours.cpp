@@ -494,7 +494,7 @@ constexpr Finish kFinishes[] = {
 
 /// Colours by words, for blocks of modifications and of later versions. The first word found
 /// decides, so specific words precede general ones.
-constexpr NamedAppearance kWords[] = {
+constexpr NamedAppearance kBlockWords[] = {
     {"torch", {0xffd27a, Form::thin}},
     {"lantern", {0xffe2a0}},
     {"lamp", {0xffe9ad}},
@@ -743,7 +743,7 @@ Appearance appearance_of(std::string_view name) {
       if (const auto found = known_appearance(standing)) return *found;
     }
     if (const auto found = composed_appearance(name)) return *found;
-    for (const NamedAppearance& word : kWords) {
+    for (const NamedAppearance& word : kBlockWords) {
       if (name.find(word.name) == std::string_view::npos) continue;
       Appearance out = word.appearance;
       // The shade depends on the name, so that different blocks of one kind can be distinguished.

@@ -62,7 +62,7 @@ constexpr EscapeRule kNameRule = {
 constexpr EscapeRule kStatesRule = {'_', 0, is_lower_or_digit};
 
 std::string escaped(std::string_view text, const EscapeRule& rule) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::string_view kHexDigits = "0123456789abcdef";
   std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -71,7 +71,7 @@ std::string escaped(std::string_view text, const EscapeRule& rule) {
     else if (c == ' ' && rule.blank != 0)
       out += rule.blank;
     else
-      (out += rule.sign) += {kDigits[byte >> 4], kDigits[byte & 15u]};
+      (out += rule.sign) += {kHexDigits[byte >> 4], kHexDigits[byte & 15u]};
   }
   return out;
 }

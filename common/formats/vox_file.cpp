@@ -14,7 +14,7 @@ constexpr std::uint32_t kVoxEntriesMax = 4096;
 /// All entries of all dictionaries of a file.
 constexpr std::size_t kVoxAllEntriesMax = std::size_t{1} << 22;
 
-std::string_view text_of(ByteView bytes) {
+std::string_view chars_of(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -80,7 +80,7 @@ class VoxChunks {
 std::string_view VoxChunks::text(ByteReader& in) {
   const std::uint32_t size = in.u32();
   if (size > in.left()) in.reject(ErrorCode::truncated, "vox: a text is longer than its chunk");
-  return text_of(in.bytes(in.ok() ? size : 0));
+  return chars_of(in.bytes(in.ok() ? size : 0));
 }
 
 VoxDictionary VoxChunks::dictionary(ByteReader& in) {
@@ -306,14 +306,14 @@ Result<void> VoxChunks::take(std::string_view id, std::size_t at, ByteView conte
 
 Result<void> VoxChunks::read() {
   ByteReader in(file_);
-  if (text_of(in.bytes(4)) != "VOX ") {
+  if (chars_of(in.bytes(4)) != "VOX ") {
     if (file_.size() < 4) return fail(ErrorCode::truncated, "vox: no bytes of a mark", 0);
     return fail(ErrorCode::bad_value, "vox: is not a .vox of MagicaVoxel", 0);
   }
   const std::uint32_t version = in.u32();
   if (in.ok() && version != 150 && version != 200)
     return fail(ErrorCode::bad_version, "vox: of another version than 150 and 200", 4);
-  const std::string_view main = text_of(in.bytes(4));
+  const std::string_view main = chars_of(in.bytes(4));
   if (in.ok() && main != "MAIN") return fail(ErrorCode::bad_value, "vox: chunk MAIN is missing", 8);
   const std::uint32_t main_bytes = in.u32();
   const std::uint32_t child_bytes_of_main = in.u32();
@@ -326,7 +326,7 @@ Result<void> VoxChunks::read() {
   in.bytes(20 + std::size_t{main_bytes});
   while (!in.at_end()) {
     const std::size_t begin = in.offset();
-    const std::string_view id = text_of(in.bytes(4));
+    const std::string_view id = chars_of(in.bytes(4));
     const std::uint32_t bytes = in.u32();
     const std::uint32_t child_bytes = in.u32();
     if (!in.ok() || bytes > in.left())

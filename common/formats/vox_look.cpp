@@ -67,12 +67,12 @@ ForeignLook vox_look(const VoxFile& file, std::size_t colour) {
 }  // namespace
 
 std::string vox_colour_text(const MaterialColour& colour) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::string_view kHexDigits = "0123456789abcdef";
   std::string out = "#";
   for (const std::uint8_t part : colour) {
     if (out.size() == 7 && part == 255) break;
-    out += kDigits[part >> 4];
-    out += kDigits[part & 15];
+    out += kHexDigits[part >> 4];
+    out += kHexDigits[part & 15];
   }
   return out;
 }

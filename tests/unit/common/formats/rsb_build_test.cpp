@@ -29,7 +29,9 @@ Bytes bytes_of_build(const Build& build, std::span<const MaterialRow> rows, bool
   Bytes out;
   BuildInfo info;
   info.name = "clipboard";
-  const auto written = write_build(build, rows, info, skips_empty, [&](ByteView bytes) {
+  std::vector<BuildMaterial> materials;
+  for (const MaterialRow& row : rows) materials.push_back({row, {}});
+  const auto written = write_build(build, materials, info, skips_empty, [&](ByteView bytes) {
     out.insert(out.end(), bytes.begin(), bytes.end());
     return true;
   });
