@@ -10,8 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/text.hpp"
+#include "common/formats/file_build.hpp"
+#include "common/formats/material_match.hpp"
 #include "common/formats/rsb_build.hpp"
 #include "common/os/file_writer.hpp"
+#include "common/os/private_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
@@ -19,6 +23,7 @@ namespace {
 
 /// The clipboard is written often and read once: fast rather than small.
 constexpr int kClipboardLevel = 3;
+constexpr std::size_t kClipboardFileBytesMax = std::size_t{256} << 20;
 
 /// Returns a source over an open file, which must outlive it.
 RsbSource source_of_file(std::ifstream& in) {
@@ -100,6 +105,42 @@ std::string ClipboardFile::step(const ToolBox& tools) {
     waits_.reset();
   }
   return failed;
+}
+
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
+  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  const auto bytes = read_file(file, kClipboardFileBytesMax, FileKinds::regular);
+  if (!bytes) return failure(bytes.error());
+  ForeignReading reading;
+  reading.name = std::filesystem::path(file).stem().string();
+  auto read = read_file_build(
+      file, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
+  if (!read) return failure(read.error());
+  std::vector<MaterialRow> rows;
+  for (const BuildMaterial& material : read->materials) rows.push_back(world_row_of(material));
+  return tools.set_clipboard(std::move(read->build), EmptyCells::pasted, std::move(rows));
+}
+
+Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
+  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  const ToolClipboard& clipboard = tools.clipboard();
+  if (!clipboard.build)
+    return failure(std::string("the clipboard is empty: copy a selection first"));
+  FileBuild build;
+  build.build = clipboard.build;
+  for (const MaterialRow& row : tools.clipboard_rows()) build.materials.push_back({row, {}});
+  const VoxelPos sides = build.build->sides();
+  build.info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
+                      static_cast<std::uint32_t>(sides.z)};
+  const std::string stem = std::filesystem::path(file).stem().string();
+  build.info.name = is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
+  auto out = FileWriter::replace(file, 0644);
+  if (!out) return failure(file + ": " + out.error());
+  const auto written =
+      write_file_build(file, build, [&](ByteView bytes) { return out->write(bytes); });
+  if (!written) return failure(out->error().empty() ? written.error() : file + ": " + out->error());
+  if (auto done = out->finish(); !done) return failure(file + ": " + done.error());
+  return {};
 }
 
 std::string default_clipboard_file() {

@@ -45,6 +45,14 @@ class ClipboardFile {
   std::future<Result<void, std::string>> writing_;
 };
 
+/// Sets the clipboard to the build of a file, whose ending names the format (docs/formats.md). Returns
+/// text about materials that the world lacks, which may be empty. The error is one line. Blocks on the
+/// disk.
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools);
+/// Writes the clipboard to a file, whose ending names the format. An old file is replaced when the new
+/// one is whole. Fails with one line, also if nothing was copied. Blocks on the disk.
+Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools);
+
 /// Returns the path of the clipboard in the user's data folder, or an empty text if there is none.
 std::string default_clipboard_file();
 

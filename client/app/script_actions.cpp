@@ -1,5 +1,7 @@
 #include "client/app/script_actions.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -78,6 +80,13 @@ void ScriptActions::finish_preview() {
   if (play_.tool().box().step_preview(shown, play_.tool().aim(),
                                       std::numeric_limits<std::size_t>::max()))
     play_.pipeline().moved();
+}
+
+Result<void, std::string> ScriptActions::load_clipboard(const std::string& file) {
+  const auto said = read_clipboard(file, play_.tool().box());
+  if (!said) return failure(said.error());
+  if (!said->empty()) spdlog::info("{}", *said);
+  return {};
 }
 
 bool ScriptActions::loaded() const {

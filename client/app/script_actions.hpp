@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "client/app/client_hud.hpp"
+#include "client/app/clipboard_file.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/play/play.hpp"
 #include "client/replica/copy_box.hpp"
@@ -54,6 +55,10 @@ class ScriptActions final : public ScriptHost {
   Result<void, std::string> propose(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us,
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);
+  }
+  Result<void, std::string> load_clipboard(const std::string& file) override;
+  Result<void, std::string> save_clipboard(const std::string& file) override {
+    return write_clipboard(file, play_.tool().box());
   }
   bool loaded() const override;
   bool sees_horizon() const override;

@@ -231,6 +231,11 @@ struct TypePlaces {
 struct RunToolCommand {
   ToolCommand command;
 };
+/// Reads the clipboard of the tools from a file of any format (docs/formats.md), or writes it to one.
+struct FileOfClipboard {
+  bool is_written = false;
+  std::string file;
+};
 struct Quit {};
 
 using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy,
@@ -238,7 +243,7 @@ using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, S
                           Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
                           Click, ShowInterface, Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback,
                           ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
-                          SetSymmetry, TypePlaces, RunToolCommand, Quit>;
+                          SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
 
 }  // namespace script
 

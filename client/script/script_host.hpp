@@ -76,6 +76,15 @@ class ScriptHost {
     return Result<void, std::string>();
   }
 
+  /// Reads the clipboard of the tools from a file, or writes it to one; the ending names the format.
+  /// Fails with one line. Blocks on the disk.
+  virtual Result<void, std::string> load_clipboard(const std::string& /*file*/) {
+    return failure(std::string("this client reads no files"));
+  }
+  virtual Result<void, std::string> save_clipboard(const std::string& /*file*/) {
+    return failure(std::string("this client writes no files"));
+  }
+
   /// Returns true if every chunk in the view around the player is here and, in a client that draws,
   /// drawn.
   virtual bool loaded() const = 0;

@@ -99,6 +99,7 @@ class ScriptRunner {
   Progress run(const script::SetSymmetry& c);
   Progress run(const script::TypePlaces& c);
   Progress run(const script::RunToolCommand& c);
+  Progress run(const script::FileOfClipboard& c);
   Progress run(const script::Quit& c);
 
   void run_commands();

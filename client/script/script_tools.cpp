@@ -130,6 +130,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::RunToolCommand& c) {
   return propose_edits();
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::FileOfClipboard& c) {
+  const auto done = c.is_written ? host_.save_clipboard(c.file) : host_.load_clipboard(c.file);
+  return done ? Progress::done : give_up(done.error());
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::TypePlaces& c) {
   TypedPlaces typed{c.button, {}, c.face};
   for (const ScriptPosition& place : c.places) {

@@ -145,6 +145,14 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};
   if (verb == "mirror") return script::RunToolCommand{ClipboardTurn{0, read_axis(words)}};
   if (verb == "symmetry") return symmetry_step(words);
+  if (verb == "clipboard") {
+    const std::string_view what = words.word("load or save");
+    if (what != "load" && what != "save")
+      throw LineError{"\"" + std::string(what) + "\" is neither load nor save"};
+    std::string file(words.rest());
+    if (file.empty()) throw LineError{"expected FILE"};
+    return script::FileOfClipboard{what == "save", std::move(file)};
+  }
   if (verb == "preview") return script::RunToolCommand{PreviewChange{read_on_off(words)}};
   if (verb == "places") return places_step(words);
   if (verb == "apply") return script::RunToolCommand{TypedApply{}};

@@ -14,6 +14,7 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/materials/material_lookup.hpp"
+#include "common/materials/nearest_material.hpp"
 
 namespace runstone {
 namespace {
@@ -24,6 +25,8 @@ constexpr std::int32_t kStackMax = 4096;
 constexpr std::int32_t kStepsMax = 4096;
 /// A preview that is refused is planned again after so many calls.
 constexpr unsigned kPlanAgainCalls = 32;
+/// The names of missing materials that a message lists.
+constexpr std::size_t kLackingListed = 8;
 
 std::int32_t side_along(const VoxelBox& box, Axis axis) {
   switch (axis) {
@@ -421,20 +424,26 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
   return fit_clipboard();
 }
 
+Material ToolBox::material_of_row(const MaterialRow& row) const {
+  if (row.visibility == Visibility::empty) return kEmpty;
+  return materials_.find(row.name).value_or(nearest_material(row, materials_));
+}
+
 std::string ToolBox::fit_clipboard() {
   if (!clipboard_.build) return {};
   std::vector<std::optional<Material>> palette;
   std::vector<MaterialRow> rows;
   std::string lacking;
+  std::size_t lacking_count = 0;
   for (const MaterialRow& row : clipboard_rows_) {
-    palette.push_back(materials_.find(row.name));
-    if (palette.back()) {
-      rows.push_back(row);
-      continue;
-    }
-    lacking += (lacking.empty() ? "" : ", ") + row.name;
+    palette.push_back(material_of_row(row));
+    if (materials_.find(row.name) || row.visibility == Visibility::empty) continue;
+    if (++lacking_count <= kLackingListed) lacking += (lacking.empty() ? "" : ", ") + row.name;
   }
   auto made = with_materials(*clipboard_.build, palette);
+  if (made) {
+    for (const Material material : (*made)->palette()) rows.push_back(row_of(materials_[material]));
+  }
   clipboard_rows_ = std::move(rows);
   const bool is_nothing =
       !made || (clipboard_.empty == EmptyCells::skipped && (*made)->solid() == 0);
@@ -444,8 +453,10 @@ std::string ToolBox::fit_clipboard() {
   } else {
     hold_clipboard(*std::move(made), clipboard_.empty);
   }
-  if (lacking.empty()) return {};
-  return "the clipboard lost materials that this world lacks: " + lacking;
+  if (lacking_count == 0) return {};
+  if (lacking_count > kLackingListed)
+    lacking += " and " + std::to_string(lacking_count - kLackingListed) + " more";
+  return "the nearest colours take the place of materials that this world lacks: " + lacking;
 }
 
 bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max) {

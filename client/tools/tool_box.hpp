@@ -103,8 +103,8 @@ class ToolBox {
   void set_symmetry(const Symmetry& symmetry);
 
   /// Takes the materials of the world. The clipboard of another world gets the ids that materials
-  /// of the same names have in this world. Materials that the world lacks become untouched cells;
-  /// the returned text names them, and is empty if there are none.
+  /// of the same names have in this world. Those with the nearest colours take the place of materials
+  /// that the world lacks; the returned text names these, and is empty if there are none.
   std::string set_materials(const MaterialTable& materials);
 
   void show_preview(bool is_shown);
@@ -131,6 +131,8 @@ class ToolBox {
   Result<void, std::string> turn(const Orientation& orientation);
   /// Sets the clipboard, whose rows are set already.
   void hold_clipboard(BuildPtr build, EmptyCells empty);
+  /// Returns the material of this world for a row of another one.
+  Material material_of_row(const MaterialRow& row) const;
   /// Gives the clipboard the materials of this world, by the names in its rows.
   std::string fit_clipboard();
   void show(ToolAction made, std::int32_t chunk_edge);

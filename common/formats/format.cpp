@@ -10,6 +10,7 @@
 #include "common/formats/mts.hpp"
 #include "common/formats/npy.hpp"
 #include "common/formats/qb.hpp"
+#include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_reader.hpp"
 #include "common/formats/schematic_writer.hpp"
 #include "common/formats/vox.hpp"
@@ -19,9 +20,9 @@ namespace {
 
 constexpr Format kFormats[] = {
     {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node, nullptr, false},
-    {"sponge", ".schem", read_schematic, material_of_minecraft_block, write_schem},
-    {"mcedit", ".schematic", read_schematic, material_of_minecraft_block},
-    {"litematica", ".litematic", read_litematic, material_of_minecraft_block, write_litematic},
+    {"sponge", ".schem", read_schematic, material_of_schematic_block, write_schem},
+    {"mcedit", ".schematic", read_schematic, material_of_schematic_block},
+    {"litematica", ".litematic", read_litematic, material_of_schematic_block, write_litematic},
     {"minecraft", ".mca", read_minecraft_region, material_of_minecraft_block},
     {"magicavoxel", ".vox", read_vox, material_of_look, write_vox},
     {"qubicle", ".qb", read_qb, material_of_look},

@@ -28,9 +28,4 @@ struct MaterialMatch {
 /// world_name_of(). Cost: O(materials * log table).
 MaterialMatch match_by_name(std::span<const BuildMaterial> materials, const MaterialTable& table);
 
-/// Returns the material that looks most like a row: of those with the same visibility, or of all that
-/// are not empty if there is none, the one with the nearest colour; of equal ones the lowest id.
-/// Returns 0 if the table has nothing but empty materials. Cost: O(table).
-Material nearest_material(const MaterialRow& row, const MaterialTable& table);
-
 }  // namespace runstone

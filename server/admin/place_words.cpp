@@ -9,6 +9,7 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
 #include "common/formats/material_match.hpp"
+#include "common/materials/nearest_material.hpp"
 #include "server/rollback/count_text.hpp"
 
 namespace runstone {

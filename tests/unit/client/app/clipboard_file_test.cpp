@@ -87,11 +87,36 @@ TEST_CASE("a world without a material of the clipboard does not change the file"
   ToolBox poor;
   REQUIRE(file.load(poor));
   CHECK(poor.set_materials(table_of_names({"sand"})) ==
-        "the clipboard lost materials that this world lacks: ice");
+        "the nearest colours take the place of materials that this world lacks: ice");
   CHECK(file.step(poor).empty());
   ToolBox rich;
   REQUIRE(file.load(rich));
   CHECK(rich.set_materials(table_of_names({"ice", "sand"})).empty());
+}
+
+TEST_CASE("the clipboard goes through files of other programs", "[client_app]") {
+  const ClipboardFolder place;
+  const CopiedBench bench;
+  const std::string file = place.folder / "tower.schem";
+  REQUIRE(write_clipboard(file, bench.box));
+  ToolBox box;
+  static_cast<void>(box.set_materials(table_of_names({"ice", "sand", "clay"})));
+  const auto read = read_clipboard(file, box);
+  REQUIRE(read);
+  CHECK(read->empty());
+  const BuildPtr build = box.clipboard().build;
+  REQUIRE(build);
+  const BuildPtr copied = bench.box.clipboard().build;
+  REQUIRE(build->sides() == copied->sides());
+  CHECK(build->touched() == copied->touched());
+  CHECK(build->solid() == copied->solid());
+
+  CHECK(write_clipboard(place.folder / "tower.exe", bench.box).error().find("endings are .rsb") !=
+        std::string::npos);
+  CHECK(write_clipboard(file, ToolBox()).error() ==
+        "the clipboard is empty: copy a selection first");
+  CHECK_FALSE(read_clipboard(place.folder / "none.schem", box));
+  CHECK(box.clipboard().build == build);
 }
 
 TEST_CASE("a damaged clipboard is refused and stays on disk, and a bad folder is said",

@@ -67,6 +67,13 @@ TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bot
   CHECK(paste->at == VoxelPos{7, 4, 7});  // 2 by 3 voxels with the place in their middle
 }
 
+TEST_CASE_METHOD(ToolScript, "a script names the file of the clipboard", "[bots]") {
+  run("clipboard load my castle.schem\nclipboard save a.vox");
+  REQUIRE(runner->failures().size() == 2);
+  CHECK(runner->failures()[0] == "s.txt:1: this client reads no files");
+  CHECK(runner->failures()[1] == "s.txt:2: this client writes no files");
+}
+
 TEST_CASE_METHOD(ToolScript, "a script sets symmetry and previews", "[bots]") {
   run("symmetry x 5.5 0 0\nhold sand\naim 3 3 3 +y\nuse\nsymmetry none\npreview off\naim look\n"
       "screenshot a.png\nuse");

@@ -258,12 +258,14 @@ TEST_CASE_METHOD(FlatBench, "the clipboard keeps its materials by name from worl
   CHECK(box.set_materials(table({"clay", "stone", "sand", "ice"})).empty());
   CHECK(box.clipboard().whole->palette() == std::vector<Material>{3, 4});
   CHECK(box.set_materials(table({"sand"})) ==
-        "the clipboard lost materials that this world lacks: ice");
+        "the nearest colours take the place of materials that this world lacks: ice");
   CHECK(box.clipboard().whole->palette() == std::vector<Material>{1});
-  CHECK(box.clipboard().build->solid() == 1);
-  static_cast<void>(box.set_materials(table({"clay"})));
-  CHECK(box.clipboard().build == nullptr);
-  CHECK(box.clipboard_rows().empty());
+  CHECK(box.clipboard().build->solid() == 2);
+  CHECK(box.set_materials(table({"clay"})) ==
+        "the nearest colours take the place of materials that this world lacks: sand");
+  CHECK(box.clipboard().build->solid() == 2);
+  REQUIRE(box.clipboard_rows().size() == 1);
+  CHECK(box.clipboard_rows()[0].name == "clay");
 }
 
 namespace {

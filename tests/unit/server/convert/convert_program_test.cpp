@@ -108,8 +108,9 @@ TEST_CASE("runstone-convert refuses with the file and the reason, and keeps an o
 
   Outcome refused = convert({file, folder / "house.exe"});
   CHECK(refused.code == 1);
-  CHECK(refused.err.find("house.exe: no format of this ending is written; the endings are .rsb, ") !=
-        std::string::npos);
+  CHECK(
+      refused.err.find("house.exe: no format of this ending is written; the endings are .rsb, ") !=
+      std::string::npos);
 
   Bytes damaged = bytes_of(file);
   damaged[damaged.size() / 2] ^= 1;

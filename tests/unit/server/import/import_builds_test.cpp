@@ -75,8 +75,7 @@ TEST_CASE("a schematic becomes a world whose voxels are those of the file", "[im
             material ? &build.materials[*build.build->number_of(*material) - 1U] : nullptr;
         const VoxelPos at{x - 13, y + 5, z + 1000};
         const Material here = voxel(at);
-        const bool is_empty =
-            expected == nullptr || expected->row.visibility == Visibility::empty;
+        const bool is_empty = expected == nullptr || expected->row.visibility == Visibility::empty;
         REQUIRE((here == kEmpty) == is_empty);
         if (is_empty) continue;
         ++solid;
