@@ -18,6 +18,7 @@ find_package(SQLite3 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED)
 find_package(zstd REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
+find_package(PNG REQUIRED)  # reads height maps
 find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
@@ -64,7 +65,6 @@ target_link_libraries(runstone_beast INTERFACE Boost::headers OpenSSL::SSL OpenS
 
 if(RUNSTONE_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
-  find_package(PNG REQUIRED)  # reads the pictures of the map
   if(RUNSTONE_BENCH)
     find_package(benchmark 1.7 REQUIRED CONFIG)
   endif()
