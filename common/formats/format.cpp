@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/formats/height_map.hpp"
 #include "common/formats/litematic_reader.hpp"
 #include "common/formats/look_material.hpp"
 #include "common/formats/luanti_block.hpp"
@@ -27,6 +28,7 @@ constexpr Format kFormats[] = {
     {"magicavoxel", ".vox", read_vox, material_of_look, write_vox},
     {"qubicle", ".qb", read_qb, material_of_look},
     {"luanti schematic", ".mts", read_mts, material_of_luanti_node, write_mts},
+    {"height map", ".png", read_height_map, material_of_look, write_height_map},
     {"numpy", ".npy", read_npy, material_of_look, write_npy},
     {"numpy archive", ".npz", read_npz, material_of_look, write_npz},
 };
