@@ -453,6 +453,8 @@ std::string ToolBox::fit_clipboard() {
   } else {
     hold_clipboard(*std::move(made), clipboard_.empty);
   }
+  if (!made)
+    return "the clipboard is lost: with the materials of this world it takes too much memory";
   if (lacking_count == 0) return {};
   if (lacking_count > kLackingListed)
     lacking += " and " + std::to_string(lacking_count - kLackingListed) + " more";

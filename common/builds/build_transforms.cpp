@@ -254,9 +254,10 @@ Result<BuildPtr> stacked(const Build& build, VoxelPos offset, std::int32_t times
 }
 
 Result<BuildPtr> with_materials(const Build& build,
-                                std::span<const std::optional<Material>> palette) {
+                                std::span<const std::optional<Material>> palette,
+                                std::size_t bytes_max) {
   RUNSTONE_ASSERT(palette.size() == build.palette().size());
-  auto out = BuildBuilder::of(build.cuts());
+  auto out = BuildBuilder::of(build.cuts(), bytes_max);
   if (!out) return failure(out.error());
   std::vector<std::uint16_t> numbers = {0};
   for (const auto& material : palette)

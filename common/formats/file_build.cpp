@@ -1,7 +1,9 @@
 #include "common/formats/file_build.hpp"
 
 #include <utility>
+#include <vector>
 
+#include "common/formats/build_rows.hpp"
 #include "common/formats/rsb_block.hpp"
 
 namespace runstone {
@@ -53,6 +55,15 @@ Result<void, std::string> write_file_build(const std::string& file, const FileBu
   if (!is_written) return failure(file + ": cannot be written");
   if (!done) return failure(file + ": " + done.error().what);
   return {};
+}
+
+std::uint64_t solid_cells(const FileBuild& build) {
+  const std::vector<std::uint64_t> counts = count_cells(*build.build);
+  std::uint64_t sum = 0;
+  for (std::size_t number = 1; number < counts.size(); ++number) {
+    if (build.materials[number - 1].row.visibility != Visibility::empty) sum += counts[number];
+  }
+  return sum;
 }
 
 std::string ending_refusal(std::string_view file, bool is_written) {

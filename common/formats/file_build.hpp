@@ -1,6 +1,7 @@
 // Builds as files of any format, chosen by the ending of the file's name: .rsb, and the formats of the
 // table in format.cpp that are whole files.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,9 @@ Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView
 /// reason; it is "cannot be written" if the sink returned false.
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
                                            const FormatSink& sink);
+
+/// Returns the number of cells whose material is not empty. Cost: O(sections + runs).
+std::uint64_t solid_cells(const FileBuild& build);
 
 /// Returns why a file of this name can be neither read (or written, with `is_written`), as a sentence
 /// with the endings that can be, or an empty text.

@@ -244,6 +244,7 @@ Result<void> read_minecraft_region(ByteView file, const PieceSink& sink,
 }
 
 Result<ForeignInfo> read_minecraft_region(ByteView file, const PieceSink& sink) {
+  if (file.empty()) return fail(ErrorCode::truncated, "region: the file is empty");
   std::vector<RegionFault> faults;
   if (const auto read = read_minecraft_region(file, sink, faults); !read)
     return failure(read.error());

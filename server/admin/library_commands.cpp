@@ -207,7 +207,7 @@ void place_stored_build(const CommandCall& call, const PlacedBuild& wanted) {
         return std::make_shared<const FileBuild>(*std::move(build));
       },
       [call, wanted](const std::shared_ptr<const FileBuild>& build) {
-        place_build(call, "builds place", '"' + build->info.name + '"', *build, wanted.words);
+        place_build(call, "builds place", '"' + build->info.name + '"', build, wanted.words);
       });
 }
 
@@ -232,7 +232,7 @@ void import_file(const CommandCall& call, const PlacedFile& wanted) {
         return std::make_shared<const FileBuild>(*std::move(build));
       },
       [call, wanted](const std::shared_ptr<const FileBuild>& build) {
-        place_build(call, "import", '"' + build->info.name + '"', *build, wanted.words);
+        place_build(call, "import", '"' + build->info.name + '"', build, wanted.words);
       });
 }
 

@@ -1,12 +1,15 @@
 #include "server/admin/place_words.hpp"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "common/builds/build_transforms.hpp"
+#include "common/core/assert.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/materials/nearest_material.hpp"
@@ -27,49 +30,77 @@ std::string missing_text(const FileBuild& build, const MaterialMatch& match) {
   return text;
 }
 
-/// Orders the rows that the world lacks, and gives them their ids.
-Result<void, std::string> add_missing(const CommandCall& call, const FileBuild& build,
-                                      MaterialMatch& match) {
-  if (match.missing.size() > kPlacedMaterialsMax) {
-    return failure(missing_text(build, match) + "; one command adds at most " +
-                   std::to_string(kPlacedMaterialsMax) + ": `materials nearest` adds none");
+/// A build as it will lie in the world, and the materials of the world for those of the file.
+struct MatchedBuild {
+  BuildPtr build;  // turned; its materials are those of the file
+  std::vector<BuildMaterial> materials;
+  MaterialMatch match;
+};
+
+/// Gives each missing material the nearest one of the table. Cost: O(looks that differ * table).
+void match_nearest(std::span<const BuildMaterial> materials, const MaterialTable& table,
+                   MaterialMatch& match) {
+  std::map<std::pair<MaterialColour, Visibility>, Material> found;
+  for (const std::size_t i : match.missing) {
+    const MaterialRow& row = materials[i].row;
+    const auto [known, is_new] = found.try_emplace({row.colour, row.visibility}, kEmpty);
+    if (is_new) known->second = nearest_material(row, table);
+    match.ids[i] = known->second;
   }
-  const std::size_t known = call.world().order().materials().size();
-  if (match.missing.size() > kMaterialCountMax - known) {
-    return failure(missing_text(build, match) + "; the world has " + std::to_string(known) +
-                   " of at most " + std::to_string(kMaterialCountMax) +
-                   ": `materials nearest` adds none");
-  }
-  for (std::size_t begin = 0; begin < match.missing.size(); begin += kAddedMaterialsMax) {
-    const std::size_t end = std::min(begin + kAddedMaterialsMax, match.missing.size());
-    std::vector<MaterialRow> rows;
-    for (std::size_t i = begin; i < end; ++i)
-      rows.push_back(world_row_of(build.materials[match.missing[i]]));
-    const auto added = call.world().changes().add_materials(rows, call.now);
-    if (!added) return failure("the materials cannot be added: " + std::string(added.error().what));
-    for (std::size_t i = begin; i < end; ++i) {
-      match.ids[match.missing[i]] =
-          static_cast<Material>(added->first + static_cast<Material>(i - begin));
-    }
-  }
-  return {};
+  match.missing.clear();
 }
 
-Result<void, std::string> resolve_missing(const CommandCall& call, const FileBuild& build,
-                                          MissingMaterials how, MaterialMatch& match) {
-  if (match.missing.empty()) return {};
-  switch (how) {
-    case MissingMaterials::added:
-      return add_missing(call, build, match);
-    case MissingMaterials::nearest:
-      for (const std::size_t i : match.missing)
-        match.ids[i] = nearest_material(build.materials[i].row, call.world().order().materials());
-      return {};
-    default:
-      return failure(missing_text(build, match) +
-                     "; repeat the line with `materials add` (rows of the table stay for ever) or "
-                     "`materials nearest` (the nearest colours of this world)");
+/// Turns the build and matches its materials. Thread: a worker.
+Result<std::shared_ptr<MatchedBuild>, std::string> match_build(WorldReader& reader,
+                                                               const FileBuild& build,
+                                                               const PlaceWords& words) {
+  const auto table = reader.materials();
+  if (!table) return failure(table.error().message());
+  auto turned_build = turned(*build.build, words.orientation);
+  if (!turned_build) return failure(std::string(turned_build.error().what));
+  auto out = std::make_shared<MatchedBuild>();
+  // The palette of a turned build has the order of the palette before.
+  RUNSTONE_ASSERT((*turned_build)->palette() == build.build->palette());
+  out->build = *std::move(turned_build);
+  out->materials = build.materials;
+  out->match = match_by_name(build.materials, *table);
+  if (words.missing == MissingMaterials::nearest)
+    match_nearest(build.materials, *table, out->match);
+  if (words.missing == MissingMaterials::refused && !out->match.missing.empty()) {
+    return failure(missing_text(build, out->match) +
+                   "; repeat the line with `materials add` (rows of the table stay for ever) or "
+                   "`materials nearest` (the nearest colours of this world)");
   }
+  if (out->match.missing.size() > kPlacedMaterialsMax) {
+    return failure(missing_text(build, out->match) + "; one command adds at most " +
+                   std::to_string(kPlacedMaterialsMax) + ": `materials nearest` adds none");
+  }
+  return out;
+}
+
+/// Orders the rows that the world lacks, and gives them their ids.
+Result<void, std::string> add_missing(const CommandCall& call, MatchedBuild& made) {
+  const MaterialTable& table = call.world().order().materials();
+  std::map<std::string, std::size_t> index;  // in rows, by name
+  std::vector<MaterialRow> rows;
+  for (const std::size_t i : made.match.missing) {
+    MaterialRow row = world_row_of(made.materials[i]);
+    // Somebody may have added it meanwhile, and two materials may have one name.
+    if (table.find(row.name) || !index.try_emplace(row.name, rows.size()).second) continue;
+    rows.push_back(std::move(row));
+  }
+  if (const auto fits = table.check_rows(rows); !fits)
+    return failure("the materials cannot be added: " + std::string(fits.error().what));
+  for (std::size_t begin = 0; begin < rows.size(); begin += kAddedMaterialsMax) {
+    const std::size_t end = std::min(begin + kAddedMaterialsMax, rows.size());
+    const std::vector<MaterialRow> some(rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                                        rows.begin() + static_cast<std::ptrdiff_t>(end));
+    const auto added = call.world().changes().add_materials(some, call.now);
+    if (!added) return failure("the materials cannot be added: " + std::string(added.error().what));
+  }
+  for (const std::size_t i : made.match.missing)
+    made.match.ids[i] = call.world().order().materials().find(world_name_of(made.materials[i]));
+  return {};
 }
 
 }  // namespace
@@ -109,27 +140,41 @@ PlaceWords take_place_words(WordReader& reader) {
 }
 
 void place_build(const CommandCall& call, const std::string& command, const std::string& name,
-                 const FileBuild& build, const PlaceWords& words) {
-  MaterialMatch match = match_by_name(build.materials, call.world().order().materials());
-  if (const auto done = resolve_missing(call, build, words.missing, match); !done)
-    return call.refuse(command + ": " + done.error());
+                 std::shared_ptr<const FileBuild> build, const PlaceWords& words) {
+  const bool is_host = call.caller.author == 0 || call.caller.actor.is_operator;
+  if (words.missing == MissingMaterials::added && !is_host) {
+    return call.refuse(command +
+                       ": materials add is for the console and operators, because rows of "
+                       "the table stay for ever: materials nearest adds none");
+  }
   call.on_worker(
       command + ": ",
-      [built = build.build, ids = std::move(match.ids),
-       words](WorldReader&) -> Result<BuildPtr, std::string> {
-        auto known = with_materials(*built, ids);
-        if (known) known = turned(**known, words.orientation);
-        if (!known) return failure(std::string(known.error().what));
-        return *std::move(known);
+      [build = std::move(build), words](WorldReader& reader) {
+        return match_build(reader, *build, words);
       },
-      [call, name, words](const BuildPtr& made) {
+      [call, command, name, words](const std::shared_ptr<MatchedBuild>& made) {
         PlaceOrder order;
         order.author = order.payer = call.caller.author;
-        order.build = made;
+        order.build = made->build;
         order.at = words.at;
         order.mask = words.mask;
         order.empty = words.empty;
-        call.services.placing.place(std::move(order), name, call.now, call.reply);
+        if (const auto why = call.services.placing.refusal(order))
+          return call.refuse(command + ": " + *why);
+        if (const auto done = add_missing(call, *made); !done)
+          return call.refuse(command + ": " + done.error());
+        call.on_worker(
+            command + ": ",
+            [made](WorldReader&) -> Result<BuildPtr, std::string> {
+              auto known = with_materials(*made->build, made->match.ids);
+              if (!known) return failure(std::string(known.error().what));
+              return *std::move(known);
+            },
+            [call, name, order](const BuildPtr& known) {
+              PlaceOrder ready = order;
+              ready.build = known;
+              call.services.placing.place(std::move(ready), name, call.now, call.reply);
+            });
       });
 }
 

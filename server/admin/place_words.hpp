@@ -1,7 +1,8 @@
-// The words that say where and how a command places a build, and placing it.
+// Commands that place a build: the words that say where and how, and the steps up to PlaceService.
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "common/builds/paste_source.hpp"
@@ -12,7 +13,7 @@
 
 namespace runstone {
 
-/// What becomes of the materials of a build that the world lacks.
+/// How a command treats the materials of a build that the world lacks.
 enum class MissingMaterials : std::uint8_t {
   refused,  // the command lists them and asks
   added,    // they become new rows of the world's table, for ever
@@ -34,9 +35,9 @@ inline constexpr std::size_t kPlacedMaterialsMax = 1024;
 PlaceWords take_place_words(WordReader& reader);
 
 /// Places a build from a file as an action of the caller. If the world lacks materials of it and the
-/// words do not say what to do, refuses and lists them. `name` is how answers call the build, `command`
-/// how they call the command.
+/// words do not say how to treat them, refuses and lists them. Only console and operators may add
+/// materials. Answers begin with `name`, and refusals with `command`.
 void place_build(const CommandCall& call, const std::string& command, const std::string& name,
-                 const FileBuild& build, const PlaceWords& words);
+                 std::shared_ptr<const FileBuild> build, const PlaceWords& words);
 
 }  // namespace runstone

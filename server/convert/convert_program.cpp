@@ -63,7 +63,7 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   }
   const BuildSides& sides = build->info.sides;
   out << (options.out.empty() ? options.in : options.out) << ": \"" << build->info.name << "\", "
-      << sides.x << " x " << sides.y << " x " << sides.z << " voxels, " << build->build->solid()
+      << sides.x << " x " << sides.y << " x " << sides.z << " voxels, " << solid_cells(*build)
       << " of them not empty, " << build->materials.size() << " materials, "
       << build->build->run_count() << " runs\n";
   if (!options.lists) return {};

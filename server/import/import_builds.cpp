@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/builds/build_transforms.hpp"
+#include "common/formats/file_build.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/runs/reorder.hpp"
 
@@ -25,25 +26,33 @@ VoxelBox moved(const VoxelBox& box, VoxelPos by, int sign) {
           {box.max.x + sign * by.x, box.max.y + sign * by.y, box.max.z + sign * by.z}};
 }
 
-/// Returns the chunks that a box meets, ascending by (z, y, x).
-std::vector<ChunkCoord> chunks_of(const VoxelBox& box, std::int32_t edge) {
-  const ChunkCoord first = chunk_of(box.min, edge);
-  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
-  std::vector<ChunkCoord> out;
-  for (std::int32_t z = first.z; z <= last.z; ++z) {
-    for (std::int32_t y = first.y; y <= last.y; ++y) {
-      for (std::int32_t x = first.x; x <= last.x; ++x) out.push_back({x, y, z});
-    }
-  }
-  return out;
+/// The cells that are looked at for the place where players arrive.
+constexpr std::uint32_t kLooksMax = 1'000'000;
+/// The memory of a build with the ids of the world.
+constexpr std::size_t kIdsBytesMax = std::size_t{4} << 30;
+/// The chunks that the box of a part may have.
+constexpr std::uint64_t kChunksMax = std::uint64_t{1} << 26;
+
+/// Returns the chunks from the lowest to the highest one that a box meets, both inside.
+std::pair<ChunkCoord, ChunkCoord> chunks_of(const VoxelBox& box, std::int32_t edge) {
+  return {chunk_of(box.min, edge), chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge)};
+}
+
+std::uint64_t count_of(const std::pair<ChunkCoord, ChunkCoord>& chunks) {
+  const auto& [first, last] = chunks;
+  const auto side = [](std::int32_t a, std::int32_t b) {
+    return static_cast<std::uint64_t>(b - a) + 1;
+  };
+  return side(first.x, last.x) * side(first.y, last.y) * side(first.z, last.z);
 }
 
 /// Returns the place above the highest voxel that is not empty in the middle column of a part, or in
 /// the column nearest to it along x and z that has one; the top of the box if these have none.
 VoxelPos top_of_middle(const FileBuild& build, const VoxelBox& box) {
   const VoxelPos sides = build.build->sides();
+  std::uint32_t looks = 0;
   const auto top = [&](std::int32_t x, std::int32_t z) -> std::optional<std::int32_t> {
-    for (std::int32_t y = sides.y - 1; y >= 0; --y) {
+    for (std::int32_t y = sides.y - 1; y >= 0 && looks < kLooksMax; --y, ++looks) {
       const auto material = build.build->at({x, y, z});
       if (material && *material != kEmpty) return y + 1;
     }
@@ -51,7 +60,7 @@ VoxelPos top_of_middle(const FileBuild& build, const VoxelBox& box) {
   };
   const std::int32_t x = sides.x / 2, z = sides.z / 2;
   const std::int32_t reach = std::max(x, z);
-  for (std::int32_t away = 0; away <= reach; ++away) {
+  for (std::int32_t away = 0; away <= reach && looks < kLooksMax; ++away) {
     const std::array<std::pair<std::int32_t, std::int32_t>, 4> columns = {
         {{x + away, z}, {x - away, z}, {x, z + away}, {x, z - away}}};
     for (const auto& [at_x, at_z] : columns) {
@@ -75,11 +84,11 @@ VoxelPos spawn_of(const VoxelBox& bounds, const std::vector<VoxelPos>& tops) {
   });
 }
 
-/// Returns a build of the ids of a table, or the name of a material that the table lacks.
+/// Returns a build of the ids of a table.
 Result<BuildPtr, std::string> with_ids(const FileBuild& build, const MaterialTable& table) {
   const MaterialMatch match = match_by_name(build.materials, table);
-  if (!match.missing.empty()) return failure(world_name_of(build.materials[match.missing[0]]));
-  auto made = with_materials(*build.build, match.ids);
+  if (!match.missing.empty()) return failure("it changed while it was read: import a copy");
+  auto made = with_materials(*build.build, match.ids, kIdsBytesMax);
   if (!made) return failure(std::string(made.error().what));
   return *std::move(made);
 }
@@ -96,7 +105,7 @@ Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
     if (progress) progress(i, 2 * parts.count());
     const auto part = parts.read(i, faults);
     if (!part) return failure(part.error());
-    if (!*part || (*part)->build.build->solid() == 0) continue;
+    if (!*part || solid_cells((*part)->build) == 0) continue;
     const FileBuild& build = (*part)->build;
     for (const BuildMaterial& material : build.materials) {
       if (material.row.visibility == Visibility::empty) continue;
@@ -131,18 +140,29 @@ Result<BuildsReport, std::string> import_builds(ImportParts& parts, const Materi
     if (progress) progress(parts.count() + i, 2 * parts.count());
     const auto part = parts.read(i, report.faults);
     if (!part) return failure(part.error());
-    if (!*part || (*part)->build.build->solid() == 0) continue;
+    if (!*part || solid_cells((*part)->build) == 0) continue;
     const auto build = with_ids((*part)->build, materials);
-    if (!build) return failure("it changed while it was read: import a copy");
+    if (!build) return failure(build.error());
     ++report.parts;
     const VoxelPos at = (*part)->at;
-    for (const ChunkCoord coord : chunks_of(moved((*build)->box(), at, 1), edge)) {
-      RunChunk voxels = materials_in(**build, moved(box_of(coord, edge), at, -1));
-      if (voxels.is_uniform() && voxels.runs.material(0) == kEmpty) continue;
-      voxels = in_cheapest_order(std::move(voxels));
-      ++report.chunks;
-      report.runs += voxels.runs.size();
-      if (!chunk({0, coord}, std::move(voxels))) return failure("the world cannot be written");
+    const auto chunks = chunks_of(moved((*build)->box(), at, 1), edge);
+    if (count_of(chunks) > kChunksMax) {
+      return failure("its box has " + std::to_string(count_of(chunks)) + " chunks of edge " +
+                     std::to_string(edge) + ", and at most " + std::to_string(kChunksMax) +
+                     " are imported");
+    }
+    const auto& [first, last] = chunks;
+    for (ChunkCoord c = first; c.z <= last.z; ++c.z) {
+      for (c.y = first.y; c.y <= last.y; ++c.y) {
+        for (c.x = first.x; c.x <= last.x; ++c.x) {
+          RunChunk voxels = materials_in(**build, moved(box_of(c, edge), at, -1));
+          if (voxels.is_uniform() && voxels.runs.material(0) == kEmpty) continue;
+          voxels = in_cheapest_order(std::move(voxels));
+          ++report.chunks;
+          report.runs += voxels.runs.size();
+          if (!chunk({0, c}, std::move(voxels))) return failure("the world cannot be written");
+        }
+      }
     }
     report.voxels += (*build)->solid();
   }

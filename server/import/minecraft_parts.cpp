@@ -36,7 +36,10 @@ class MinecraftParts final : public ImportParts {
     const auto bytes = read_file(file, kRegionBytesMax, FileKinds::regular);
     if (!bytes) return failure(bytes.error());
     const auto region = open_minecraft_region(view_of(*bytes), region_of_file_name(file));
-    if (!region) return failure(file + ": " + region.error().what);
+    if (!region) {
+      faults.push_back(file + ": " + region.error().what);
+      return std::optional<ImportPart>();
+    }
     PieceJoiner joiner(*format_, keep_all_, kRegionBuildBytesMax);
     for (unsigned slot = 0; slot < kRegionSlots; ++slot) {
       const auto read = read_slot(file, *region, slot, joiner);
@@ -46,7 +49,7 @@ class MinecraftParts final : public ImportParts {
     if (!joiner.has_pieces()) return std::optional<ImportPart>();
     const VoxelPos at = joiner.box().min;
     auto build = joiner.join();
-    // Nothing but parts of which the chunks say nothing.
+    // The chunks say nothing of any voxel.
     if (!build && build.error().code == ErrorCode::bad_value) return std::optional<ImportPart>();
     if (!build) return failure(file + ": " + build.error().what);
     return std::optional(ImportPart{*std::move(build), at});
@@ -91,15 +94,23 @@ class MinecraftParts final : public ImportParts {
   bool joiner_failed_ = false;
 };
 
-/// Returns the region files of a folder, in the order of their names.
-std::vector<std::string> region_files(const std::filesystem::path& folder) {
+/// Returns true if a file has the name that the game gives a region, so that no two files are one.
+bool is_region_file(const std::filesystem::path& file) {
+  const auto at = region_of_file_name(file.string());
+  return at &&
+         file.filename() == "r." + std::to_string(at->x) + "." + std::to_string(at->z) + ".mca";
+}
+
+/// Returns the region files of a folder, in the order of their names; none if there is no such folder.
+Result<std::vector<std::string>, std::string> region_files(const std::filesystem::path& folder) {
   std::vector<std::string> out;
-  std::error_code unreadable;
-  for (std::filesystem::directory_iterator at(folder, unreadable), end; !unreadable && at != end;
-       at.increment(unreadable)) {
-    const std::string file = at->path().string();
-    if (has_ending(file, kRegionEnding) && region_of_file_name(file)) out.push_back(file);
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return out;
+  std::filesystem::directory_iterator at(folder, error);
+  for (const std::filesystem::directory_iterator end; !error && at != end; at.increment(error)) {
+    if (is_region_file(at->path())) out.push_back(at->path().string());
   }
+  if (error) return failure(folder.string() + ": " + error.message());
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -111,8 +122,10 @@ Result<std::unique_ptr<ImportParts>, std::string> open_minecraft_parts(const std
   std::error_code unknown;
   std::vector<std::string> files;
   if (std::filesystem::is_directory(place, unknown)) {
-    files = region_files(std::filesystem::path(place) / "region");
-    if (files.empty()) files = region_files(place);
+    auto found = region_files(std::filesystem::path(place) / "region");
+    if (found && found->empty()) found = region_files(place);
+    if (!found) return failure(found.error());
+    files = *std::move(found);
     if (files.empty()) {
       return failure(place +
                      ": no region file (r.X.Z.mca) is there or in its folder region; other "

@@ -48,6 +48,7 @@ std::shared_ptr<PasteSource> PlaceJob::next_work() {
 void PlaceJob::computed(PlacedParts parts) {
   RUNSTONE_ASSERT(is_working_);
   is_working_ = false;
+  if (state_ != State::placing) return;
   is_cut_ = parts.is_last;
   const std::uint64_t before = parts_.empty() ? progress_.cells_done : parts_.back().cells_done;
   const std::uint64_t cut = parts.cells_done - before;
@@ -60,9 +61,18 @@ void PlaceJob::computed(PlacedParts parts) {
 
 void PlaceJob::work_failed(std::string what) {
   is_working_ = false;
+  fail(std::move(what));
+}
+
+void PlaceJob::fail(std::string what) {
   if (state_ != State::placing) return;
   state_ = State::failed;
   progress_.error = std::move(what);
+}
+
+bool PlaceJob::has_queued(const WorldServer& world) const {
+  const OperationId newest{order_.author, order_.instance, next_seq_ - 1};
+  return first_op_ && world.order().authority().queue().has(newest);
 }
 
 void PlaceJob::cancel() {
@@ -72,8 +82,8 @@ void PlaceJob::cancel() {
 void PlaceJob::step(WorldServer& world, const Clocks& now) {
   if (state_ != State::placing) return;
   if (!world.order().accepts_edits()) {
-    return work_failed(
-        "the server stops, its log cannot be written, or another server owns the world");
+    // A worker may still cut. Its answer is dropped.
+    return fail("the server stops, its log cannot be written, or another server owns the world");
   }
   const Authority& authority = world.order().authority();
   if (first_op_ && authority.large_actions().find(*first_op_) == LargeActions::Standing::ended) {
@@ -81,8 +91,7 @@ void PlaceJob::step(WorldServer& world, const Clocks& now) {
     return;
   }
   // Large edits wait for their turn in the queue. The next slice comes behind them.
-  const OperationId newest{order_.author, order_.instance, next_seq_ - 1};
-  if (first_op_ && authority.queue().has(newest)) return;
+  if (has_queued(world)) return;
   note_sequences(world);
   order_slice(world, now);
   end_if_done(world);
@@ -111,13 +120,14 @@ void PlaceJob::order_slice(WorldServer& world, const Clocks& now) {
     EditOffer offer{op, Cause::player, now.steady_us, part.edit};
     offer.action = first_op_->seq;
     offer.is_of_large_action = true;
+    offer.arrived_us = now.steady_us;
     offers.push_back(std::move(offer));
     slice.push_back(std::move(part));
   }
   if (offers.empty()) return;
   const ServerEditsResult answer = world.changes().order_edits(offers, order_.payer, now);
   if (answer.state == ServerEditsResult::State::taken)
-    return work_failed("a client has come under the job's instance and taken its client sequences");
+    return fail("a client has come under the job's instance and taken its client sequences");
   progress_.waits_for = answer.reason;
   for (std::size_t i = 0; i < answer.count; ++i) {
     progress_.voxels += counted_voxels(slice.front().edit);
@@ -141,15 +151,15 @@ std::optional<std::string> PlaceJob::refusal(const WorldServer& world,
 
 void PlaceJob::note_sequences(const WorldServer& world) {
   if (progress_.edits == 0) return;
-  progress_.first = world.order().authority().large_actions().first_of(*first_op_);
+  if (progress_.first == 0)
+    progress_.first = world.order().authority().large_actions().first_of(*first_op_);
   // Edits of others may be among them.
   progress_.last = world.order().head();
 }
 
 void PlaceJob::end_if_done(const WorldServer& world) {
   if (state_ != State::placing || is_working_ || !is_cut_ || !parts_.empty()) return;
-  const OperationId newest{order_.author, order_.instance, next_seq_ - 1};
-  if (first_op_ && world.order().authority().queue().has(newest)) return;
+  if (has_queued(world)) return;
   note_sequences(world);
   progress_.cells_done = progress_.cells;
   state_ = State::done;

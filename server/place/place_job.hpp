@@ -24,7 +24,7 @@ namespace runstone {
 
 struct PlaceOrder {
   AuthorId author = 0;          // 0: the console
-  ClientInstance instance = 0;  // that nobody else uses
+  ClientInstance instance = 0;  // drawn for this job alone
   AuthorId payer = 0;           // as for Changes::order_edits()
   BuildPtr build;               // of materials of the world
   VoxelPos at;                  // of its corner; the box of the build lies in the world
@@ -53,8 +53,8 @@ class PlaceJob {
 
   PlaceJob(PlaceOrder order, const PasteLimits& paste, PlaceLimits limits = {});
 
-  /// Returns what a worker shall cut next, or null while it cuts or enough is cut. Call computed() or
-  /// work_failed() with its outcome.
+  /// Returns the source from which a worker cuts next, or null while one cuts and when enough is cut.
+  /// Call computed() or work_failed() with its outcome.
   std::shared_ptr<PasteSource> next_work();
   void computed(PlacedParts parts);
   void work_failed(std::string what);
@@ -65,6 +65,11 @@ class PlaceJob {
 
   State state() const { return state_; }
   const PlaceOrder& order() const { return order_; }
+  /// Returns true if an accepted edit of the job is not ordered yet. After the end of the job, too, such
+  /// edits become part of the world.
+  bool has_queued(const WorldServer& world) const;
+  /// Notes in progress() which sequences the ordered edits have.
+  void note_sequences(const WorldServer& world);
   struct Progress {
     std::uint64_t cells = 0, cells_done = 0;  // of the build, touched or not
     std::uint64_t edits = 0, voxels = 0;      // ordered; a masked edit may change fewer voxels
@@ -85,8 +90,7 @@ class PlaceJob {
   void order_slice(WorldServer& world, const Clocks& now);
   /// Returns why the author may not make the edit, or nullopt.
   std::optional<std::string> refusal(const WorldServer& world, const EditDescriptor& edit) const;
-  /// Notes which sequences the ordered edits have.
-  void note_sequences(const WorldServer& world);
+  void fail(std::string what);
   void end_if_done(const WorldServer& world);
 
   PlaceOrder order_;

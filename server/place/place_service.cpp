@@ -12,6 +12,7 @@ namespace runstone {
 namespace {
 
 constexpr TimeUs kReportIntervalUs = 2'000'000;
+constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 
 /// Returns how far a job is, such as "is at 40 percent: 120000 voxels a second, 30 s left".
 std::string progress_text(const PlaceJob::Progress& p, TimeUs elapsed_us) {
@@ -47,6 +48,7 @@ struct PlaceService::Job {
   PlaceJob job;
   std::string name;
   CommandReply reply;
+  std::optional<TimeUs> wrote_us;      // when it last ordered a slice, steady clock
   TimeUs began_us = 0, report_us = 0;  // steady clock: the begin, and when it next answers
 };
 
@@ -55,23 +57,25 @@ PlaceService::PlaceService(WorldServer& world, RollbackService& rollback,
     : world_(world), rollback_(rollback), workers_(workers), random_(std::move(random)) {}
 PlaceService::~PlaceService() = default;
 
-void PlaceService::place(PlaceOrder order, const std::string& name, const Clocks& now,
-                         CommandReply reply) {
-  if (const auto why = box_refusal(order)) return refuse(reply, name + ": " + *why);
+std::optional<std::string> PlaceService::refusal(const PlaceOrder& order) const {
+  if (auto why = box_refusal(order)) return why;
   if (!world_.order().accepts_edits()) {
-    return refuse(reply, name +
-                             ": not now: the server stops, its log cannot be written, or another "
-                             "server owns the world");
+    return "not now: the server stops, its log cannot be written, or another server owns the world";
   }
   for (const auto& job : jobs_) {
     if (job->job.order().author != order.author) continue;
-    return refuse(reply, name + ": " + job->name + ", which you place, is still under way " +
-                             "(`builds cancel` ends it and takes it back)");
+    return job->name +
+           ", which you place, is still under way (`builds cancel` ends it and takes it back)";
   }
   if (jobs_.size() >= kJobsMax) {
-    return refuse(reply, name + ": " + std::to_string(kJobsMax) +
-                             " builds are being placed: try again when one is done");
+    return std::to_string(kJobsMax) + " builds are being placed: try again when one is done";
   }
+  return std::nullopt;
+}
+
+void PlaceService::place(PlaceOrder order, const std::string& name, const Clocks& now,
+                         CommandReply reply) {
+  if (const auto why = refusal(order)) return refuse(reply, name + ": " + *why);
   std::array<std::uint8_t, 8> bytes{};
   random_(bytes);
   order.instance = 0;
@@ -86,6 +90,7 @@ void PlaceService::cancel(AuthorId author, const Clocks& now, CommandReply reply
   std::string names;
   for (const auto& job : jobs_) {
     if (author != 0 && job->job.order().author != author) continue;
+    if (job->job.state() != PlaceJob::State::placing) continue;
     names += (names.empty() ? "" : ", ") + job->name;
     job->job.cancel();
   }
@@ -95,7 +100,12 @@ void PlaceService::cancel(AuthorId author, const Clocks& now, CommandReply reply
 }
 
 void PlaceService::step(const std::shared_ptr<Job>& job, const Clocks& now) {
-  job->job.step(world_, now);
+  // tick() is also called whenever a worker has answered, so the interval bounds the rate of edits.
+  if (!job->wrote_us || now.steady_us - *job->wrote_us >= kSliceIntervalUs) {
+    const std::uint64_t written = job->job.progress().edits;
+    job->job.step(world_, now);
+    if (job->job.progress().edits != written) job->wrote_us = now.steady_us;
+  }
   auto source = job->job.next_work();
   if (!source) return;
   auto parts = std::make_shared<PlacedParts>();
@@ -116,11 +126,14 @@ void PlaceService::report(Job& job, const Clocks& now) const {
 
 bool PlaceService::answer_if_ended(Job& job, const Clocks& now) {
   using State = PlaceJob::State;
-  const PlaceJob::Progress& p = job.job.progress();
   const State state = job.job.state();
   if (state == State::placing) return false;
+  const bool is_open = world_.order().accepts_edits();
+  if (is_open && job.job.has_queued(world_)) return false;
+  job.job.note_sequences(world_);
+  const PlaceJob::Progress& p = job.job.progress();
   const bool is_on_disk = world_.order().durable() >= p.last;
-  if (!is_on_disk && world_.order().accepts_edits()) return false;  // the answer waits for the disk
+  if (!is_on_disk && is_open) return false;  // the answer waits for the disk
   std::string text = job.name;
   if (state == State::done) {
     text += " is placed: " + counted(p.voxels, "voxel") + " in " + counted(p.edits, "edit");
@@ -135,12 +148,13 @@ bool PlaceService::answer_if_ended(Job& job, const Clocks& now) {
   if (!is_on_disk)
     text += " (not all of it is on disk yet: what is not will be missing after a restart)";
   if (state == State::cancelled && p.first != 0) {
-    job.reply(CommandAnswer::progress(text + "; it is taken back"));
+    job.reply(CommandAnswer::progress(text + "; it is being taken back"));
     rollback_.undo_action(job.job.order().author, job.job.order().instance, p.first, now,
                           job.reply);
     return true;
   }
-  job.reply(CommandAnswer::last(text, state == State::done && is_on_disk));
+  const bool is_nothing = p.edits == 0 && p.edits_refused > 0;
+  job.reply(CommandAnswer::last(text, state == State::done && is_on_disk && !is_nothing));
   return true;
 }
 

@@ -19,7 +19,7 @@ namespace runstone {
 class PlaceService {
  public:
   /// Jobs that are under way at a time, of all authors. A further one is refused.
-  static constexpr std::size_t kJobsMax = 16;
+  static constexpr std::size_t kJobsMax = 4;
 
   /// All arguments must outlive the service.
   PlaceService(WorldServer& world, RollbackService& rollback, RollbackService::Workers& workers,
@@ -28,7 +28,9 @@ class PlaceService {
   PlaceService(const PlaceService&) = delete;
   PlaceService& operator=(const PlaceService&) = delete;
 
-  /// Begins to place a build. `name` is how the answers call it, such as `"Mill"`. The order's instance
+  /// Returns why place() would refuse this order now, as a sentence, or nullopt.
+  std::optional<std::string> refusal(const PlaceOrder& order) const;
+  /// Begins to place a build. Answers begin with `name`, such as `"Mill"`. The instance of the order
   /// is drawn here. Refuses if the author has a job under way, if there are too many, if the box of the
   /// build does not lie in the world, or if the server takes no edits.
   void place(PlaceOrder order, const std::string& name, const Clocks& now, CommandReply reply);

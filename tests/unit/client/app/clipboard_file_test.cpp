@@ -98,7 +98,9 @@ TEST_CASE("the clipboard goes through files of other programs", "[client_app]") 
   const ClipboardFolder place;
   const CopiedBench bench;
   const std::string file = place.folder / "tower.schem";
-  REQUIRE(write_clipboard(file, bench.box));
+  const auto wrote = write_clipboard(file, bench.box);
+  INFO((wrote ? "" : wrote.error()));
+  REQUIRE(wrote);
   ToolBox box;
   static_cast<void>(box.set_materials(table_of_names({"ice", "sand", "clay"})));
   const auto read = read_clipboard(file, box);

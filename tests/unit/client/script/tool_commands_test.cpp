@@ -68,10 +68,11 @@ TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bot
 }
 
 TEST_CASE_METHOD(ToolScript, "a script names the file of the clipboard", "[bots]") {
-  run("clipboard load my castle.schem\nclipboard save a.vox");
-  REQUIRE(runner->failures().size() == 2);
+  run("clipboard load my castle.schem");
+  REQUIRE(runner->failures().size() == 1);
   CHECK(runner->failures()[0] == "s.txt:1: this client reads no files");
-  CHECK(runner->failures()[1] == "s.txt:2: this client writes no files");
+  run("clipboard save a.vox");
+  CHECK(runner->failures().back() == "s.txt:1: this client writes no files");
 }
 
 TEST_CASE_METHOD(ToolScript, "a script sets symmetry and previews", "[bots]") {

@@ -49,7 +49,7 @@ FileBuild read_back(const std::string& file) {
 /// Writes a build of random cells as an .rsb, and returns it.
 FileBuild make_rsb(const std::string& file) {
   SplitMix64 rng(11);
-  FileBuild build = random_file_build(rng, {40, 9, 21}, 12, false);
+  FileBuild build = random_file_build(rng, {40, 9, 21}, 12, true);
   Bytes bytes;
   REQUIRE(write_file_build(file, build, [&](ByteView part) {
             bytes.insert(bytes.end(), part.begin(), part.end());
@@ -70,7 +70,8 @@ TEST_CASE("a build keeps its cells through the files of other programs", "[conve
   const Outcome done = convert({first, there});
   INFO(done.err);
   REQUIRE(done.code == 0);
-  CHECK(done.out.find("40 x 9 x 21 voxels") != std::string::npos);
+  CHECK(done.out.find("40 x 9 x 21 voxels, " + std::to_string(solid_cells(build)) +
+                      " of them not empty") != std::string::npos);
   REQUIRE(convert({there, back}).code == 0);
   const FileBuild read = read_back(back);
   REQUIRE(read.build->sides() == build.build->sides());

@@ -116,6 +116,22 @@ TEST_CASE("a build that is cancelled is taken back, whatever its author did sinc
   CHECK(bench.digests().size() == 1);
 }
 
+TEST_CASE("a build whose log fails while a worker cuts is answered, and nothing breaks",
+          "[place]") {
+  PlaceBench bench;
+  const AuthorId author = bench.join(kGriefer);
+  bench.placing.place(order_of(author, {0, 0, 0}, box_of({128, 64, 128}, 3, 4)), "\"Wall\"",
+                      bench.bench.now(), bench.reply());
+  bench.placing.tick(bench.bench.now());
+  REQUIRE(bench.works.size() == 1);  // a worker cuts
+  bench.bench.server.log_failed();
+  bench.placing.tick(bench.bench.now());
+  CHECK(bench.placing.is_idle());
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text.find("its log cannot be written") != std::string::npos);
+  CHECK(bench.work());  // the answer of the worker comes late
+}
+
 TEST_CASE("an undo while a build is placed ends it", "[place]") {
   PlaceBench bench;
   const AuthorId author = bench.join(kGriefer);
