@@ -45,8 +45,9 @@ Result<void> scan_minecraft_chunk(ByteView plain, MinecraftChunk& out);
 /// key.
 ForeignBlock read_palette_block(NbtReader& in);
 
-/// Returns the bits of one value of a section, from the number of longs. `crossing` is set to whether
-/// values cross from long to long. Returns 0 if no layout has that many longs.
+/// Returns the bits of one value of a section, from the number of longs. Sets `crossing` to true if
+/// values cross from long to long. Returns 0 if no layout has that many longs. Requires a palette that
+/// is not empty.
 unsigned section_bits(std::size_t palette_size, std::size_t longs, std::int64_t version,
                       bool& crossing);
 
