@@ -97,6 +97,7 @@ TEST_CASE("a world without a material of the clipboard does not change the file"
 TEST_CASE("the clipboard goes through files of other programs", "[client_app]") {
   const ClipboardFolder place;
   const CopiedBench bench;
+  std::filesystem::create_directories(place.folder);
   const std::string file = place.folder / "tower.schem";
   const auto wrote = write_clipboard(file, bench.box);
   INFO((wrote ? "" : wrote.error()));
