@@ -29,6 +29,26 @@ TEST_CASE("the last one of two equal flags wins", "[server_options]") {
   CHECK(import.options->import->world == "c");
 }
 
+TEST_CASE("an import names its kind and source, and the place of a file", "[server_options]") {
+  const auto file = parse({"import", "file", "castle.schem", "--world", "w", "--at", "-10,20,30"});
+  REQUIRE(file.options);
+  REQUIRE(file.options->import);
+  CHECK(file.options->import->kind == ImportKind::file);
+  CHECK(file.options->import->source == "castle.schem");
+  CHECK(file.options->import->at == VoxelPos{-10, 20, 30});
+  const auto minecraft = parse({"import", "minecraft", "saves/valley", "--world", "w"});
+  REQUIRE(minecraft.options);
+  CHECK(minecraft.options->import->kind == ImportKind::minecraft);
+  CHECK(parse({"import", "--luanti", "a", "--world", "w"}).options->import->source == "a");
+  for (const char* bad : {"10,20", "10 20 30", "10,20,30,40", "1,2,x", "", "1,2,600000000"}) {
+    CAPTURE(bad);
+    CHECK_FALSE(parse({"import", "file", "a.schem", "--world", "w", "--at", bad}).options);
+  }
+  CHECK_FALSE(parse({"import", "--world", "w"}).options);
+  CHECK_FALSE(parse({"import", "file", "--world", "w"}).options);
+  CHECK_FALSE(parse({"import", "obj", "a.obj", "--world", "w"}).options);
+}
+
 TEST_CASE("a switch needs no value and may have one", "[server_options]") {
   const auto parsed = parse({"--insecure", "--i-know", "--world", "/world"});
   REQUIRE(parsed.options);
