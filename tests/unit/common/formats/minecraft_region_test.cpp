@@ -100,14 +100,14 @@ void check_truncations(const Bytes& packed, std::uint8_t compression) {
   MinecraftChunkReader reader;
   const PieceSink none = [](ForeignPiece&&) -> Result<void> { return {}; };
   REQUIRE(reader.read(*region, 0, nullptr, none).has_value());
+  std::size_t refused = 0;
   for (std::size_t size = 0; size < packed.size(); ++size) {
     for (std::size_t i = 0; i < 4; ++i)
       file[8192 + i] = static_cast<std::uint8_t>((size + 1) >> (24 - 8 * i));
     const auto read = reader.read(*region, 0, nullptr, none);
-    CAPTURE(size);
-    REQUIRE_FALSE(read.has_value());
-    REQUIRE(std::strlen(read.error().what) > 0);
+    refused += !read && std::strlen(read.error().what) > 0;
   }
+  CHECK(refused == packed.size());
 }
 
 void check_section(const std::vector<ForeignPiece>& pieces, const McSection& section,
@@ -421,20 +421,20 @@ TEST_CASE("every truncation of a chunk and of a region fails or gives less", "[f
   const Bytes file = mc_region({slot});
   MinecraftChunkReader reader;
   const PieceSink none = [](ForeignPiece&&) -> Result<void> { return {}; };
+  std::size_t wrong = 0;
   for (std::size_t size = 0; size < file.size(); ++size) {
     const auto region = open_minecraft_region(ByteView(file).first(size));
-    CAPTURE(size);
     if (size != 0 && size < 8192) {
-      REQUIRE_FALSE(region.has_value());
-      REQUIRE(region.error().code == ErrorCode::truncated);
+      wrong += region || region.error().code != ErrorCode::truncated;
       continue;
     }
     REQUIRE(region.has_value());
     const auto read = reader.read(*region, 0, nullptr, none);
     // Bytes behind the chunk only fill its last sector.
     if (size < 8192 + 4 + 1 + slot.packed.size() && size != 0)
-      REQUIRE_FALSE(read.has_value());
+      wrong += read.has_value();
     else
-      REQUIRE((read.has_value() && *read == (size != 0)));
+      wrong += !read || *read != (size != 0);
   }
+  CHECK(wrong == 0);
 }
