@@ -29,7 +29,7 @@
 
 namespace runstone {
 
-/// What the refusal of one edit means for the others of its action.
+/// The effect of the refusal of one edit on the other edits of its action.
 enum class OnRefusal : std::uint8_t {
   skip,  // they go on
   stop,  // they need it: nothing more is sent

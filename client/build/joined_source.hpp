@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-/// Whether the edits of a part need those of the part before it: a move clears the old place only if
+/// True if the edits of a part need those of the part before it: a move clears the old place only if
 /// the copy was placed.
 enum class PartOrder : std::uint8_t { free, after_all_before };
 

@@ -1,4 +1,4 @@
-// What the tools say about builds: why one cannot be made, and its size.
+// Texts for the player about builds: the reason why one cannot be made, and its size.
 #pragma once
 #include <string>
 

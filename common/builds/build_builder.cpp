@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-/// What a section takes besides its runs: the object, the counts of its pointer, and its entries in
+/// The memory of a section besides its runs: the object, the counts of its pointer, and its entries in
 /// the lists of the build.
 constexpr std::size_t kSectionBytes = sizeof(RunChunk) + 48;
 

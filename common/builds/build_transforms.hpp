@@ -35,7 +35,8 @@ VoxelPos stack_corner(VoxelPos offset, std::int32_t times);
 
 /// Returns the build with other materials, by palette entry. Cells of an entry without a new material
 /// become untouched. Entries may become equal. Fails with bad_value if no cell is left touched, and
-/// with limit_exceeded if the result takes more than `bytes_max`. Requires one entry for each of the palette. Cost: O(sections + runs).
+/// with limit_exceeded if the result takes more than `bytes_max`. Requires one entry for each of
+/// the palette. Cost: O(sections + runs).
 Result<BuildPtr> with_materials(const Build& build,
                                 std::span<const std::optional<Material>> palette,
                                 std::size_t bytes_max = kBuildBytesMax);

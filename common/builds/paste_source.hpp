@@ -21,7 +21,7 @@ namespace runstone {
 
 inline constexpr std::int32_t kPasteBlockEdge = 64;
 
-/// What one edit may have.
+/// The limits of one edit.
 struct PasteLimits {
   std::int32_t chunk_edge = 32;
   std::uint64_t volume_max = 1'000'000;                  // voxels
@@ -30,7 +30,7 @@ struct PasteLimits {
   friend bool operator==(const PasteLimits&, const PasteLimits&) = default;
 };
 
-/// How the empty cells of a build are pasted.
+/// The effect of the empty cells of a build when it is pasted.
 enum class EmptyCells : std::uint8_t {
   pasted,   // they clear voxels
   skipped,  // as untouched cells

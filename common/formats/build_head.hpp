@@ -37,7 +37,8 @@ struct BuildMaterial {
 /// bad_value, limit_exceeded or not_canonical; the offset is the index of the material.
 Result<void> validate_build_materials(std::span<const BuildMaterial> materials);
 
-/// Writes and reads the payload of the head. Writing requires valid values. The offset of an error is a byte of the payload.
+/// Writes and reads the payload of the head. Writing requires valid values. The offset of an error
+/// is a byte of the payload.
 struct BuildHead {
   BuildInfo info;
   std::uint32_t material_count = 0;

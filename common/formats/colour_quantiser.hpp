@@ -1,5 +1,5 @@
-// ColourQuantiser: at most 255 colours for the colours of a picture. It counts colours in bins of 5 bits a
-// channel, and cuts the bins by medians. Few colours stay exact.
+// ColourQuantiser: at most 255 colours for the colours of a picture. It counts colours in bins of 5
+// bits a channel, and cuts the bins by medians. Few colours stay exact.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -31,7 +31,7 @@ namespace runstone {
 
 struct FileBuild;
 
-/// What a block looks like, in formats that say it. A block with alpha below 255 is transparent.
+/// The look of a block, in formats that give it. A block with alpha below 255 is transparent.
 struct ForeignLook {
   MaterialColour colour{0, 0, 0, 255};
   std::optional<MaterialLook> surface = std::nullopt;
@@ -57,7 +57,7 @@ struct ForeignPiece {
   std::vector<ForeignBlock> blocks;  // may have blocks that do not occur
 };
 
-/// What a file says of itself. Nothing proves it.
+/// The information that a file has about its contents. It is not verified.
 struct ForeignInfo {
   std::string name, author;  // any bytes; empty: the file does not say
   TimeUs created_us = 0;     // UTC, microseconds since 1970; 0: the file does not say

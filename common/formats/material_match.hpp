@@ -13,9 +13,9 @@
 namespace runstone {
 
 /// Returns the name of a world's row for a material of a build: its name, and its states in brackets
-/// if it has any, unless the name has them (minecraft_material_name()): "default:stair[param2=3]". A name of more than kMaterialNameBytesMax bytes
-/// is cut, and ends with '~' and 8 hexadecimal digits of a hash of all of it, so that different
-/// materials have different names. Deterministic.
+/// if it has any, unless the name has them (minecraft_material_name()): "default:stair[param2=3]".
+/// A name of more than kMaterialNameBytesMax bytes is cut, and ends with '~' and 8 hexadecimal
+/// digits of a hash of all of it, so that different materials have different names. Deterministic.
 std::string world_name_of(const BuildMaterial& material);
 /// Returns the material as a row for a world: it has world_name_of() as its name.
 MaterialRow world_row_of(const BuildMaterial& material);

@@ -386,7 +386,7 @@ constexpr NamedAppearance kDyes16[] = {
     {"black", {0x141519}},
 };
 
-/// What is dyed: the share of the dye's colour, in percent, and the colour of the rest.
+/// A kind of dyed block: the share of the dye's colour, in percent, and the colour of the rest.
 struct DyedKind {
   std::string_view name;
   std::uint32_t rest;

@@ -18,8 +18,8 @@ inline constexpr std::size_t kMtsNameBytesMax = std::size_t{32} << 20;
 
 /// Reads an .mts. Nodes and layers that are never placed, and "ignore", are untouched. Nodes that are
 /// placed by chance are placed; their chance is not kept. The param2 of a node is the state "param2=N",
-/// if it is not 0. A name such as "a:b[c=d]" of write_mts() is a name with states. The offset of an error is a byte of the file. Cost: O(nodes). Memory: the runs of 64
-/// layers, the names and 1 MiB.
+/// if it is not 0. A name such as "a:b[c=d]" of write_mts() is a name with states. The offset of an
+/// error is a byte of the file. Cost: O(nodes). Memory: the runs of 64 layers, the names and 1 MiB.
 Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink);
 
 /// Writes an .mts of version 4. Untouched cells are never placed, and the others always. States

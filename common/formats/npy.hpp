@@ -1,5 +1,6 @@
-// Arrays of numpy: .npy and .npz, in and out. An array has three axes, x, y (up) and z, in this order, and
-// whole numbers. Format: numpy's documentation of numpy.lib.format, versions 1 to 3, and zip.
+// Arrays of numpy: .npy and .npz, in and out. An array has three axes, x, y (up) and z, in this
+// order, and whole numbers. Format: numpy's documentation of numpy.lib.format, versions 1 to 3, and
+// zip.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,8 @@ inline constexpr std::uint64_t kNpzBytesMax = 0xf000'0000;
 
 /// Reads an .npy: an array of bool or of integers of 1 to 8 bytes, of both byte orders, in C or Fortran
 /// order. The number 0 is air, and a number n is a block "material n", 1 .. 65535. Fails with bad_value
-/// for other numbers. The offset of an error is a byte of the file. Cost: O(cells). Memory: the runs of 64
-/// layers and 1 MiB.
+/// for other numbers. The offset of an error is a byte of the file. Cost: O(cells). Memory: the
+/// runs of 64 layers and 1 MiB.
 Result<ForeignInfo> read_npy(ByteView file, const PieceSink& sink);
 
 /// Reads an .npz, whose members are stored or deflated:

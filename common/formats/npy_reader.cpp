@@ -20,7 +20,7 @@ constexpr std::uint64_t kNpyNumbersMax = 65'536;
 /// A number that no cell may have.
 constexpr std::uint64_t kNpyBadNumber = UINT64_MAX;
 
-/// What the numbers of the cells are.
+/// The meaning of the cell numbers.
 struct NpyBlocks {
   std::optional<std::vector<std::string>> names, states;
   std::optional<std::vector<std::uint8_t>> colours;  // 4 each

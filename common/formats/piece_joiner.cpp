@@ -22,7 +22,7 @@ constexpr std::int32_t kJoinEdge = 64;
 constexpr std::size_t kJoinBatchBytes = std::size_t{4} << 20;
 /// The sections that a piece of kSideMax voxels a side meets at most.
 constexpr std::size_t kMeetingsMax = 27;
-/// What a section takes besides its runs.
+/// The memory of a section besides its runs, in bytes.
 constexpr std::size_t kJoinSectionBytes = sizeof(RunChunk) + 64;
 
 VoxelBox box_at(VoxelPos origin, Extent extent) {
@@ -181,7 +181,7 @@ std::vector<PieceJoiner::Meeting> PieceJoiner::meetings(const BuildCuts& cuts) {
 }
 
 RunChunk PieceJoiner::cells_of(const VoxelBox& section, std::span<const Meeting> meetings) {
-  // Nothing shows of what lies below a piece that fills the section with one material.
+  // A piece that fills the section with one material hides all pieces before it.
   std::size_t first = meetings.size() - 1;
   for (std::size_t i = meetings.size(); i-- > 0;) {
     const Piece& piece = pieces_[meetings[i].piece];

@@ -19,7 +19,8 @@ inline constexpr std::uint64_t kPieceRowsVolumeMax = (std::uint64_t{1} << 31) - 
 class PieceRows {
  public:
   /// Material i + 1 of the cells is blocks[i], and 0 is a cell of which the file says nothing. Blocks and
-  /// sink must outlive it; blocks may be added while cells are appended. Requires sides of at least 1 with at most kPieceRowsVolumeMax cells.
+  /// sink must outlive it; blocks may be added while cells are appended. Requires sides of at least
+  /// 1 with at most kPieceRowsVolumeMax cells.
   PieceRows(const VoxelBox& box, const std::vector<ForeignBlock>& blocks, const PieceSink& sink);
 
   /// Returns the number of cells that are not appended yet.

@@ -69,7 +69,7 @@ Result<void> QbReader::read_slice(GridPieces& pieces, std::uint64_t cells) {
     cells -= count;
     if (auto done = append(pieces, count, data); !done) return done;
   }
-  // What a slice leaves out at its end is empty.
+  // Layers that a slice lacks at its end are empty.
   return pieces.append(cells, 0);
 }
 

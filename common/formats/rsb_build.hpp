@@ -22,9 +22,9 @@ struct FileBuild {
 
 /// Writes a build. `materials` are those of its palette, by entry; one without a name gets one from its
 /// number. Sets the sides of `info`. With `skips_empty`, empty cells are written as
-/// untouched. Fails as RsbWriter does: if two materials have one name and the same states, a field is outside its range, the
-/// sink fails, or no cell is touched. Cost: O(runs + lines of the sections). Memory: that of one
-/// section and one block.
+/// untouched. Fails as RsbWriter does: if two materials have one name and the same states, a field
+/// is outside its range, the sink fails, or no cell is touched. Cost: O(runs + lines of the
+/// sections). Memory: that of one section and one block.
 RsbResult<void> write_build(const Build& build, std::span<const BuildMaterial> materials,
                             BuildInfo info, bool skips_empty, const RsbSink& sink,
                             int zstd_level = 9);

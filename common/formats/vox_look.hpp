@@ -1,4 +1,4 @@
-// What a colour of a .vox is as a block, and back. Internal to .vox.
+// Blocks for the colours of a .vox, and colours for blocks. Internal to .vox.
 #pragma once
 #include <string>
 #include <string_view>

@@ -103,7 +103,7 @@ Result<std::vector<VoxPart>> VoxModels::sort(const VoxModel& model) {
       const auto x = static_cast<std::uint32_t>(voxel[0] - low[0]),
                  y = static_cast<std::uint32_t>(voxel[1] - low[1]),
                  z = static_cast<std::uint32_t>(voxel[2] - low[2]);
-      // What lies below the part is large, too.
+      // A coordinate below the part wraps to a large number, so it is outside, too.
       if (x < extent.x && y < extent.y && z < extent.z)
         voxels_.push_back((x + extent.x * (y + extent.y * z)) << 8 | voxel[3]);
     }

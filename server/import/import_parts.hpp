@@ -1,6 +1,7 @@
 // ImportParts: what an import reads besides a Luanti map: a file with a build, or the region files of a
-// Minecraft world. Each part is a build with its place in the new world, and is read when it is asked for,
-// so that only one is in memory. Parts do not overlap. Threads: any, one at a time. It blocks on the disk.
+// Minecraft world. Each part is a build with its place in the new world, and is read when it is
+// asked for, so that only one is in memory. Parts do not overlap. Threads: any, one at a time. It
+// blocks on the disk.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +22,7 @@ struct ImportPart {
   VoxelPos at;  // of its lowest corner
 };
 
-/// What an import left out, a line for each.
+/// The parts that an import left out because they are damaged, one line for each.
 using ImportFaults = std::vector<std::string>;
 
 class ImportParts {

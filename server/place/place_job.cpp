@@ -8,7 +8,7 @@
 namespace runstone {
 namespace {
 
-// What a worker cuts in one go. Its answer must not take much memory.
+// The most edits, and the most work of edits, that a worker cuts in one call: its answer takes memory.
 constexpr std::size_t kCutEditsMax = 128;
 constexpr std::size_t kCutWorkMax = 512 * 1024;
 

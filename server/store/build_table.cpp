@@ -15,7 +15,7 @@
 namespace runstone {
 namespace {
 
-/// What is searched of a build. A text of a build has no line feed.
+/// The text of a build in which a search looks. Texts of a build have no line feed.
 struct BuildWords {
   std::string name, author, tags;
 };

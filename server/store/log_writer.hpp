@@ -9,17 +9,20 @@
 //     is not offered again. The file of a build has a place of its own, and may be offered again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
-//   - A full disk, or a database that takes no writes: what was to be written stays queued and is written again once a second, until
-//     it can be written. has_room() returns false meanwhile. It also returns false while less space is
-//     free than the reserve: the reserve is for what is queued already. Jobs for keyframes,
-//     tiles and files of builds end with an error meanwhile, because they hold nothing that the log does not.
+//   - A full disk, or a database that takes no writes: what was to be written stays queued and is
+//     written again once a second, until it can be written. has_room() returns false meanwhile. It
+//     also returns false while less space is free than the reserve: the reserve is for what is queued
+//     already. Jobs for keyframes,
+//     tiles and files of builds end with an error meanwhile, because they hold nothing that the log
+//     does not.
 //   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
 //     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe, a tile or a file that cannot be written ends only its job.
 // Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles(),
-// save_build_file() and has_room() from any thread. The writer thread calls the callbacks, which must return soon. The mutex is a
+// save_build_file() and has_room() from any thread. The writer thread calls the callbacks,
+// which must return soon. The mutex is a
 // leaf: no callback and no disk access happens while it is locked.
 #pragma once
 #include <atomic>

@@ -24,9 +24,9 @@ MetaRows rows_of(const WorldMeta& meta);
 Result<WorldMeta, std::string> meta_of(const MetaRows& rows);
 
 /// The number of rows of a table, and the sum of a hash of each row. `meta` holds one for each of
-/// the tables base, snapshot, player, player_instance, name_claim, build and build_part. It detects a row that
-/// vanished or changed its key, although every remaining row is sound. A change of one row costs
-/// O(1).
+/// the tables base, snapshot, player, player_instance, name_claim, build and build_part. It detects
+/// a row that vanished or changed its key, although every remaining row is sound. A change of one
+/// row costs O(1).
 struct RowFold {
   std::uint64_t count = 0, sum = 0;
   friend bool operator==(const RowFold&, const RowFold&) = default;

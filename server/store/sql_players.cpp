@@ -19,8 +19,8 @@ constexpr const char* kPlayers = "player";
 constexpr const char* kWatermarks = "player_instance";
 constexpr const char* kClaims = "name_claim";
 constexpr const char* kRights = "rights_record";
-/// A damaged or missing mark does not say how many starts are lost. No more than these, we trust: clients keep
-/// chunks by epoch, so an epoch must not be used twice.
+/// A damaged or missing mark does not say how many starts are lost. No more than these, we trust:
+/// clients keep chunks by epoch, so an epoch must not be used twice.
 constexpr Epoch kEpochsSkipped = 10'000;
 
 std::string fold_key_of(const std::string& table) { return table + "_fold"; }

@@ -42,9 +42,10 @@ class Changes {
   /// except large ones that wait for room (LargeEditPace) and the edits behind those. Requires that
   /// they pass check_server_edit(), that their client sequences ascend, that they have one author
   /// and instance, and that their cause is not player. The edits of a large action are the exception:
-  /// they have the cause player, pass check_edit(), and large ones wait for room as those of clients. Each offer costs its edit_price(), paid by
-  /// the key of the author `payer` and the address of the author's first session. An author without
-  /// a session pays by the key alone. Nobody pays if `payer` is 0.
+  /// they have the cause player, pass check_edit(), and large ones wait for room as those of
+  /// clients. Each offer costs its edit_price(), paid by the key of the author `payer` and the
+  /// address of the author's first session. An author without a session pays by the key alone.
+  /// Nobody pays if `payer` is 0.
   ServerEditsResult order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                 const Clocks& now);
   /// Orders a change of rights as a record of the log, made by the author (0: the console), who

@@ -47,7 +47,7 @@ struct FoundLogMarks {
   std::vector<LogMark> marks;  // as in LogMarks
 };
 
-/// What the log has of an action.
+/// An action as the log holds it.
 struct FoundAction {
   Sequence first = 0;      // its first edit; 0: the log does not have it
   bool is_undone = false;  // its last toggle is an undo

@@ -43,7 +43,8 @@ BuildMaterial schem_material(std::string name, std::string states = "") {
   return out;
 }
 
-/// Makes a build whose sections have the given edges and random axis orders. The material of place i is i.
+/// Makes a build whose sections have the given edges and random axis orders. The material of place
+/// i is i.
 FileBuild schem_file_build(SplitMix64& random, VoxelPos sides, const SchemCells& cells,
                            const std::vector<BuildMaterial>& materials, std::int32_t edge) {
   auto builder = BuildBuilder::of(
