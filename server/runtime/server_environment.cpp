@@ -200,17 +200,17 @@ void ServerEnvironment::read_log_marks(SessionId session, const LogMarksRequest&
 }
 
 void ServerEnvironment::find_builds(SessionId session, const BuildsRequest& request) {
-  readers_.find_builds(request, [this, session, request = request.request](
-                                    WorldReaders::FoundBuildsResult found) {
-    world_->build_reads().found(session, request, std::move(found), read_clocks());
-  });
+  readers_.find_builds(
+      request, [this, session, request = request.request](WorldReaders::FoundBuildsResult found) {
+        world_->build_reads().found(session, request, std::move(found), read_clocks());
+      });
 }
 
 void ServerEnvironment::read_build_piece(SessionId session, const BuildPieceRequest& request) {
-  readers_.read_build_piece(request, [this, session, request = request.request](
-                                         WorldReaders::BuildPieceResult piece) {
-    world_->build_reads().piece_read(session, request, std::move(piece), read_clocks());
-  });
+  readers_.read_build_piece(
+      request, [this, session, request = request.request](WorldReaders::BuildPieceResult piece) {
+        world_->build_reads().piece_read(session, request, std::move(piece), read_clocks());
+      });
 }
 
 void ServerEnvironment::verify_build(UploadNumber upload, std::vector<Bytes> parts) {

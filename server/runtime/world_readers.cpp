@@ -37,8 +37,8 @@ StoreResult<FoundBuilds> read_builds(LibraryReader& reader, const BuildsRequest&
   if (found.has_more) builds->resize(request.count);
   for (StoredBuild& build : *builds) {
     const AddBuild& added = build.build();
-    found.builds.push_back({build.number(), added.info, added.touched, added.file_bytes,
-                            build.record.op.author, ""});
+    found.builds.push_back(
+        {build.number(), added.info, added.touched, added.file_bytes, build.record.op.author, ""});
   }
   return found;
 }
@@ -167,8 +167,7 @@ void WorldReaders::verify_build(std::vector<Bytes> parts,
     } else {
       verified = failure("the file is no sound .rsb: " + build.error());
     }
-    strand_.post(
-        [then, verified = std::move(verified)]() mutable { then(std::move(verified)); });
+    strand_.post([then, verified = std::move(verified)]() mutable { then(std::move(verified)); });
   });
 }
 

@@ -61,7 +61,7 @@ class BuildReads {
   struct Of {
     std::optional<BuildsRequest> list;  // that waits
     bool is_list_read = false;
-    TimeUs list_due_us = 0;               // when the next list may be read
+    TimeUs list_due_us = 0;                // when the next list may be read
     std::deque<BuildPieceRequest> pieces;  // under way; the first one is read if is_piece_read
     bool is_piece_read = false;
     std::deque<EncodedMessage> unsent;  // at most one list and kBuildPiecesMax pieces

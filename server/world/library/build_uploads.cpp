@@ -58,8 +58,7 @@ std::optional<std::string> BuildUploads::refusal(const Session& session,
 /// Returns why there is no room for the file of this session, or nullopt.
 std::optional<std::string> BuildUploads::slot_refusal(const Session& session) const {
   for (const Upload& other : uploads_) {
-    if (other.key == session.key)
-      return "a build that you add is under way: wait until it is done";
+    if (other.key == session.key) return "a build that you add is under way: wait until it is done";
     if (other.address == session.address && is_of_one_owner(other.address))
       return "a build from your address is being added: try again when it is done";
   }
@@ -103,8 +102,7 @@ void BuildUploads::on_offer(Session& session, const BuildOffer& offer, const Clo
   auto why = refusal(session, offer.file_bytes);
   if (!why) why = slot_refusal(session);
   if (why) {
-    return answer(session,
-                  {offer.request, 0, 0, std::string(cut_utf8(*why, kTextBytesMax))});
+    return answer(session, {offer.request, 0, 0, std::string(cut_utf8(*why, kTextBytesMax))});
   }
   Upload upload;
   upload.number = UploadNumber{++last_number_};
@@ -179,8 +177,8 @@ Result<Sequence, std::string> BuildUploads::add(const Upload& upload, const Cloc
 void BuildUploads::saved(UploadNumber number, const std::string& error, const Clocks& now) {
   Upload* const upload = find(number);
   if (upload == nullptr) return;
-  const auto added = error.empty() ? add(*upload, now)
-                                   : Result<Sequence, std::string>(failure(error));
+  const auto added =
+      error.empty() ? add(*upload, now) : Result<Sequence, std::string>(failure(error));
   if (!added) {
     // Parts of the file may be on disk also after an error.
     world_.environment.remove_build_file(upload->build.content);
@@ -217,8 +215,7 @@ std::optional<std::string> BuildUploads::lateness(const Upload& upload, const Cl
   }
   if (upload.stage != Stage::receiving) return std::nullopt;
   if (silent_us >= kUploadSilenceUs) return "no byte of the file came for 30 s";
-  const auto file_us =
-      static_cast<TimeUs>(upload.file_bytes * 1'000'000 / kUploadBytesPerSecond);
+  const auto file_us = static_cast<TimeUs>(upload.file_bytes * 1'000'000 / kUploadBytesPerSecond);
   if (now.steady_us - upload.began_us < file_us + kUploadSilenceUs) return std::nullopt;
   return "the file came too slowly: at least 32 KiB each second are needed";
 }

@@ -13,7 +13,8 @@ constexpr std::uint64_t kReadFileBytes = kBuildPieceBytes * 2 + 100;
 
 /// A world whose library has the build 1, added by the console.
 struct BuildReadsBench : WorldBench {
-  explicit BuildReadsBench(TimeUs view_interval_us = 0) : WorldBench(config_with(view_interval_us)) {
+  explicit BuildReadsBench(TimeUs view_interval_us = 0)
+      : WorldBench(config_with(view_interval_us)) {
     AddBuild build;
     build.info.name = "Mill";
     build.file_bytes = kReadFileBytes;

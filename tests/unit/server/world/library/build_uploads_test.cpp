@@ -69,8 +69,8 @@ struct UploadsBench : WorldBench {
   std::string refusal(SessionId session) const { return answer(session).refusal; }
   void set_default_role(const RightSet& rights) {
     const RightsActor console;
-    REQUIRE(server.changes().change_rights(DefineRole{{"guest", rights, 0, 0, 0}}, console, 0,
-                                           now()));
+    REQUIRE(
+        server.changes().change_rights(DefineRole{{"guest", rights, 0, 0, 0}}, console, 0, now()));
     REQUIRE(server.changes().change_rights(SetDefaultRole{"guest"}, console, 0, now()));
   }
   std::vector<AddBuild> added() const {
@@ -268,8 +268,7 @@ TEST_CASE("two files of all sessions are taken at a time, and one of a key or an
   bench.join(5, 1, 2, {}, kFeatureBuilds);  // another client of the first player
   bench.offer(1, 1);
   bench.offer(2, 1);
-  CHECK(bench.refusal(2) ==
-        "a build from your address is being added: try again when it is done");
+  CHECK(bench.refusal(2) == "a build from your address is being added: try again when it is done");
   bench.offer(5, 1);
   CHECK(bench.refusal(5) == "a build that you add is under way: wait until it is done");
   bench.offer(3, 1);
@@ -337,8 +336,7 @@ TEST_CASE("a log that fails before the record is on disk is a refusal", "[world]
   bench.verify();
   bench.save();
   bench.server.log_failed();
-  CHECK(bench.answer(1) ==
-        BuildAnswer{1, kUploadedBytes, 0, "the log cannot be written any more"});
+  CHECK(bench.answer(1) == BuildAnswer{1, kUploadedBytes, 0, "the log cannot be written any more"});
 }
 
 TEST_CASE("a server that follows answers reads itself and takes no builds", "[world][library]") {
