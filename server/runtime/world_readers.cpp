@@ -24,7 +24,7 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
 
 constexpr const char* kNotReadNow = "the library cannot be read now";
 
-// A file of 64 MiB has fewer, unless it was made to keep the reader busy. Some 3 s of one core.
+// A file of 64 MiB has fewer, unless it was made to keep the reader busy. They take some 5 s of one core.
 constexpr std::uint64_t kUploadedRunsMax = std::uint64_t{1} << 29;
 
 StoreResult<FoundBuilds> read_builds(LibraryReader& reader, const BuildsRequest& request) {

@@ -147,6 +147,7 @@ void BuildUploads::verified(UploadNumber number, Result<VerifiedBuild, std::stri
   if (!result) return refuse(*upload, result.error());
   upload->build = std::move(result->build);
   upload->build.info.author = is_plain_name(session->name) ? session->name : std::string();
+  upload->build.content = world_.changes.next_build_content();
   upload->file = std::move(result->file);
   upload->stage = Stage::waiting;
   upload->heard_us = now.steady_us;
@@ -157,7 +158,6 @@ std::optional<std::string> BuildUploads::begin_saving(Upload& upload) {
   const Session* const session = std::as_const(world_.sessions).find(*upload.session);
   if (session == nullptr) return "the session has ended";
   if (auto why = refusal(*session, upload.file_bytes)) return why;
-  upload.build.content = world_.changes.next_build_content();
   if (!world_.environment.save_build_file(upload.number, upload.build.content, upload.file))
     return std::nullopt;
   upload.stage = Stage::saving;

@@ -24,8 +24,7 @@ BuildAnswer add_build_as(RawClient& client, std::uint32_t request, const Bytes& 
     CHECK(answer->request == request);
     if (answer->number != 0 || !answer->refusal.empty()) return *answer;
     while (sent < file.size() && sent - answer->received < kWindow) {
-      const std::uint64_t count =
-          std::min<std::uint64_t>(kBuildUploadBytesMax, file.size() - sent);
+      const std::uint64_t count = std::min<std::uint64_t>(kBuildUploadBytesMax, file.size() - sent);
       const auto begin = file.begin() + static_cast<std::ptrdiff_t>(sent);
       client.send(
           BuildUpload{request, sent, Bytes(begin, begin + static_cast<std::ptrdiff_t>(count))});

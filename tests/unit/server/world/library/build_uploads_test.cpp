@@ -339,6 +339,25 @@ TEST_CASE("a log that fails before the record is on disk is a refusal", "[world]
   CHECK(bench.answer(1) == BuildAnswer{1, kUploadedBytes, 0, "the log cannot be written any more"});
 }
 
+TEST_CASE("no build is added while a server of an older version follows",
+          "[world][library][servers]") {
+  UploadsBench bench;
+  bench.join_with(1);
+  constexpr SessionId kOldServer = 9;
+  bench.server.connected(kOldServer, bench.now());
+  Hello hello = bench.hello(200, kOldServer);  // the world's own key
+  hello.features = kFeatureServers;
+  bench.server.received(kOldServer, hello, bench.now());
+  const Welcome welcome = bench.environment.messages<Welcome>(kOldServer, 0).at(0);
+  bench.server.received(kOldServer, bench.client_auth(200, hello, welcome), bench.now());
+  REQUIRE(bench.server.cluster().follower_count() == 1);
+  bench.offer(1, 1);
+  CHECK(bench.refusal(1).find("a server that follows is of an older version") == 0);
+  bench.server.disconnected(kOldServer);
+  bench.offer(1, 2);
+  CHECK(bench.refusal(1).empty());
+}
+
 TEST_CASE("a server that follows answers reads itself and takes no builds", "[world][library]") {
   ClusterBench bench;
   AddBuild build;
