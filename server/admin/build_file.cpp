@@ -47,6 +47,27 @@ Result<Bytes, std::string> stored_bytes(LibraryReader& reader, const StoredBuild
 
 }  // namespace
 
+Result<AddBuild, std::string> verify_build(ByteView file, std::uint64_t runs_max,
+                                           const std::function<bool()>& should_continue) {
+  auto reader = RsbReader::open(rsb_source(file));
+  if (!reader) return failure(reader.error().message());
+  std::uint64_t runs = 0;
+  while (true) {
+    if (should_continue && !should_continue()) return failure("the server stops");
+    const auto section = reader->next();
+    if (!section) return failure(section.error().message());
+    if (!section->has_value()) break;
+    runs += kRunsOfSection + (*section)->cells.runs.size();
+    if (runs > runs_max) return failure("the build is too finely divided: divide it into several");
+  }
+  AddBuild build;
+  build.info = reader->info();
+  build.touched = reader->touched();
+  build.file_bytes = file.size();
+  build.file_digest = XXH3_64bits(file.data(), file.size());
+  return build;
+}
+
 Result<BuildFile, std::string> read_build_file(const std::string& file, std::uint64_t bytes_max) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
@@ -57,19 +78,10 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
   const auto read = read_file(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
   if (!read) return failure(read.error());
   BuildFile out;
-  auto bytes = std::make_shared<Bytes>(read->begin(), read->end());
-  auto reader = RsbReader::open(rsb_source(*bytes));
-  if (!reader) return failure(file + ": " + reader.error().message());
-  while (true) {
-    const auto section = reader->next();
-    if (!section) return failure(file + ": " + section.error().message());
-    if (!section->has_value()) break;
-  }
-  out.build.info = reader->info();
-  out.build.touched = reader->touched();
-  out.build.file_bytes = bytes->size();
-  out.build.file_digest = XXH3_64bits(bytes->data(), bytes->size());
-  out.bytes = std::move(bytes);
+  out.bytes = std::make_shared<const Bytes>(read->begin(), read->end());
+  auto build = verify_build(*out.bytes);
+  if (!build) return failure(file + ": " + build.error());
+  out.build = *std::move(build);
   return out;
 }
 
