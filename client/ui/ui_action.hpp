@@ -5,6 +5,7 @@
 
 #include "client/render/inspection.hpp"
 #include "client/tools/tool_command.hpp"
+#include "client/ui/library_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
 
@@ -30,6 +31,7 @@ struct SetInspection {
 };
 
 using UiAction =
-    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, ToolCommand>;
+    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, LibraryOrder,
+                 ToolCommand>;
 
 }  // namespace runstone
