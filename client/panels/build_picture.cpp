@@ -24,10 +24,12 @@ struct CoarseCells {
   }
 };
 
-/// Returns the offsets at which a coarse cell of `width` cells is looked up, the highest first.
-std::vector<std::int32_t> offsets_of(std::int32_t width) {
-  if (width == 1) return {0};
-  return {width - 1 - (width - 1) / 4, (width - 1) / 4};
+/// Returns the two cells along an axis, the farther one first, at which coarse cell `index` of `width`
+/// cells is looked up. They may be one. Requires index * width < side.
+std::array<std::int32_t, 2> looked_up(std::int32_t index, std::int32_t width, std::int32_t side) {
+  const std::int32_t first = index * width;
+  const std::int32_t last = std::min(width, side - first) - 1;
+  return {first + last - last / 4, first + last / 4};
 }
 
 CoarseCells coarse_cells(const Build& build, const std::vector<std::uint32_t>& shown) {
@@ -36,14 +38,15 @@ CoarseCells coarse_cells(const Build& build, const std::vector<std::uint32_t>& s
   const std::int32_t width = (longest + kBuildPictureCells - 1) / kBuildPictureCells;
   const auto along = [&](std::int32_t side) { return (side + width - 1) / width; };
   CoarseCells out{along(sides.x), along(sides.y), along(sides.z), {}};
-  const std::vector<std::int32_t> offsets = offsets_of(width);
   const auto look_up = [&](std::int32_t i, std::int32_t j, std::int32_t k) -> std::uint32_t {
-    for (const std::int32_t dy : offsets) {
-      for (const std::int32_t dx : offsets) {
-        for (const std::int32_t dz : offsets) {
-          const VoxelPos cell{i * width + dx, j * width + dy, k * width + dz};
-          if (cell.x >= sides.x || cell.y >= sides.y || cell.z >= sides.z) continue;
-          const auto material = build.at(cell);
+    if (width == 1) {
+      const auto material = build.at({i, j, k});
+      return material ? shown[*material] : 0;
+    }
+    for (const std::int32_t y : looked_up(j, width, sides.y)) {
+      for (const std::int32_t x : looked_up(i, width, sides.x)) {
+        for (const std::int32_t z : looked_up(k, width, sides.z)) {
+          const auto material = build.at({x, y, z});
           if (material && shown[*material] != 0) return shown[*material];
         }
       }

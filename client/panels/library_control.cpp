@@ -12,8 +12,7 @@ namespace {
 /// Returns true if the result can be taken. A file that no thread reads or writes is made by get().
 template <class T>
 bool is_ready(const std::future<T>& result) {
-  return result.valid() &&
-         result.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
+  return result.valid() && result.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
 }
 
 std::string listed_line(const ListedBuild& build) {
@@ -108,10 +107,11 @@ void LibraryControl::reach_goal() {
   const LibraryBuild& held = held_->build;
   if (goal_ == Goal::picture) return end_fetch({}, true);
   if (goal_ != Goal::clipboard) return;
-  const std::string lost = with_unseen_replaced(
-      tools_.set_clipboard(held.build, EmptyCells::pasted, held.rows));
+  const std::string lost =
+      with_unseen_replaced(tools_.set_clipboard(held.build, EmptyCells::pasted, held.rows));
   if (!tools_.clipboard().build) return end_fetch(lost, false);
   static_cast<void>(tools_.choose("paste"));
+  ++taken_;
   std::string text = "\"" + held.info.name + "\" is in the clipboard: click to paste it";
   if (!lost.empty()) text += "; " + lost;
   end_fetch(std::move(text), true);
@@ -280,10 +280,10 @@ bool LibraryControl::step(TimeUs now_us) {
     forget();
     world_ = welcome->world_id;
   }
-  session_.step_library(now_us);
   bool has_changed = step_removal();
   has_changed = step_fetch() || has_changed;
   has_changed = step_adding() || has_changed;
+  session_.step_library(now_us);
   step_listing();
   const bool is_open = session_.has_library();
   has_changed = std::exchange(was_open_, is_open) != is_open || has_changed;
@@ -313,8 +313,7 @@ void LibraryControl::fill(LibraryState& state) const {
   state.list_refusal = listing.refusal;
   state.me = session_.author();
   const auto& permissions = session_.replica().ground().permissions();
-  state.removes_all =
-      permissions && RightSet::of_bits(permissions->rights).has(Right::administer);
+  state.removes_all = permissions && RightSet::of_bits(permissions->rights).has(Right::administer);
   if (goal_ != Goal::none) {
     state.fetching = wanted_;
     state.fetched_bytes = library.fetched().bytes.size();
@@ -326,6 +325,7 @@ void LibraryControl::fill(LibraryState& state) const {
     state.picture = held_->build.picture;
   }
   state.fetch_text = fetch_text_;
+  state.taken = taken_;
   if (tools_.clipboard().build) state.clipboard = size_text(*tools_.clipboard().build);
   state.is_adding = is_adding_;
   state.added_bytes = library.addition().received_bytes;

@@ -30,6 +30,10 @@ class LibraryControl {
   /// Lists the newest builds if nothing was listed yet. Call it every turn while the window is open.
   void list_first();
 
+  /// Forgets the build whose picture is shown, because the window is closed. Its memory may be that of a
+  /// town.
+  void drop_picture() { held_.reset(); }
+
   /// Begin one of these for a script. Poll is_busy(); then has_succeeded() and answer() hold the
   /// result. `name` is a part of the names of the listed builds.
   void list(const std::string& name);
@@ -84,13 +88,14 @@ class LibraryControl {
   std::optional<WorldId> world_;  // whose library it is
 
   Goal goal_ = Goal::none;
-  Sequence wanted_ = 0;        // the build of goal_
-  std::optional<Held> held_;   // the build that was read last
-  Sequence reading_ = 0;       // the build of read_
+  Sequence wanted_ = 0;       // the build of goal_
+  std::optional<Held> held_;  // the build that was read last
+  Sequence reading_ = 0;      // the build of read_
   std::future<Result<LibraryBuild, std::string>> read_;
   std::string fetch_text_;
+  std::uint64_t taken_ = 0;  // builds that went to the clipboard
 
-  bool is_adding_ = false;      // until the answer is complete, the writing of the file included
+  bool is_adding_ = false;         // until the answer is complete, the writing of the file included
   bool is_adding_wanted_ = false;  // the file of written_ is to be sent
   std::future<Result<Bytes, std::string>> written_;
   std::string add_name_, add_text_;

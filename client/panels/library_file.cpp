@@ -54,8 +54,8 @@ Result<Bytes, std::string> write_library_file(const Build& build,
   const auto written =
       write_build(build, materials, std::move(info), empty == EmptyCells::skipped, sink);
   if (!fits) {
-    return failure("the file of the build would have more than " +
-                   std::to_string(bytes_max >> 20) + " MiB: copy a smaller box");
+    return failure("the file of the build would have more than " + std::to_string(bytes_max >> 20) +
+                   " MiB: copy a smaller box");
   }
   if (!written) return failure("the build cannot be written: " + written.error().message());
   return out;

@@ -34,7 +34,11 @@ bool WorldPanels::step(const ShownPanels& shown, TimeUs now_us) {
   players_.update(session_.others(), now_us);
   poses_ = players_.at(now_us);
   bool has_changed = rollback_.step();
-  if (shown.library) library_.list_first();
+  if (shown.library) {
+    library_.list_first();
+  } else {
+    library_.drop_picture();
+  }
   has_changed = library_.step(now_us) || has_changed;
   if (shown.map && session_.replica().opened()) {
     map_.open(session_.replica());

@@ -26,7 +26,10 @@ class WorldPanels {
  public:
   /// Session and tools must outlive the object. `has_threads`: as in LibraryControl.
   WorldPanels(ClientSession& session, ToolBox& tools, bool has_threads)
-      : session_(session), tools_(tools), rollback_(session), library_(session, tools, has_threads) {}
+      : session_(session),
+        tools_(tools),
+        rollback_(session),
+        library_(session, tools, has_threads) {}
 
   void set_materials(const MaterialTable& materials);
   /// Takes what changed in the replica.

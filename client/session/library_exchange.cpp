@@ -222,10 +222,9 @@ void LibraryExchange::set_file_bytes(std::uint64_t file_bytes) {
 }
 
 void LibraryExchange::receive(BuildPiece answer, TimeUs now_us) {
-  const auto at =
-      std::find_if(pieces_.begin(), pieces_.end(), [&](const PendingPiece& piece) {
-        return piece.request == answer.request;
-      });
+  const auto at = std::find_if(pieces_.begin(), pieces_.end(), [&](const PendingPiece& piece) {
+    return piece.request == answer.request;
+  });
   if (at == pieces_.end()) return;
   const PendingPiece piece = *at;
   pieces_.erase(at);
@@ -291,7 +290,8 @@ void LibraryExchange::refuse(const std::string& why) {
 void LibraryExchange::disconnected() {
   const bool is_sent = !file_.empty() && sent_bytes_ == file_.size();
   if (addition_.state == TransferState::under_way && is_sent)
-    fail_addition("the connection ended before the answer came: see the list before you add it again");
+    fail_addition(
+        "the connection ended before the answer came: see the list before you add it again");
   refuse("the connection ended");
   pending_page_.reset();
   pieces_.clear();

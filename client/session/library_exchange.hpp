@@ -142,9 +142,9 @@ class LibraryExchange {
   std::deque<PendingPiece> pieces_;  // also those of fetches that were dropped
   std::optional<TimeUs> fetch_us_;   // when the fetch advanced last
 
-  Bytes file_;                     // of the addition
-  std::uint64_t sent_bytes_ = 0;   // of file_
-  std::uint32_t offer_ = 0;        // its request; 0: the offer was not sent
+  Bytes file_;                    // of the addition
+  std::uint64_t sent_bytes_ = 0;  // of file_
+  std::uint32_t offer_ = 0;       // its request; 0: the offer was not sent
   bool is_offer_accepted_ = false;
   TimeUs add_us_ = 0;  // when the addition advanced last
 };

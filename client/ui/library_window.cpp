@@ -56,10 +56,11 @@ std::string adder_text(const ListedBuild& build) {
 }
 
 void show_progress(const char* what, std::uint64_t done, std::uint64_t all) {
-  const std::string text = all == 0 ? std::string(what)
-                                    : fmt::format("{} {} of {}", what, file_size_text(done),
-                                                  file_size_text(all));
-  const float share = all == 0 ? 0 : static_cast<float>(static_cast<double>(done) / static_cast<double>(all));
+  const std::string text =
+      all == 0 ? std::string(what)
+               : fmt::format("{} {} of {}", what, file_size_text(done), file_size_text(all));
+  const float share =
+      all == 0 ? 0 : static_cast<float>(static_cast<double>(done) / static_cast<double>(all));
   ImGui::ProgressBar(share, {-1, 0}, text.c_str());
 }
 
@@ -79,12 +80,11 @@ void LibraryWindow::set_open(bool is_open) {
 
 void LibraryWindow::build_search(const LibraryState& state, double scale) {
   bool is_entered = false;
-  for (const auto& [label, hint, text] :
-       {std::tuple{"##name", "part of the name", &name_},
-        std::tuple{"##author", "part of the author", &author_}, std::tuple{"##tag", "tag", &tag_}}) {
+  for (const auto& [label, hint, text] : {std::tuple{"##name", "part of the name", &name_},
+                                          std::tuple{"##author", "part of the author", &author_},
+                                          std::tuple{"##tag", "tag", &tag_}}) {
     ImGui::SetNextItemWidth(static_cast<float>(150 * scale));
-    is_entered =
-        text_field(label, hint, *text, ImGuiInputTextFlags_EnterReturnsTrue) || is_entered;
+    is_entered = text_field(label, hint, *text, ImGuiInputTextFlags_EnterReturnsTrue) || is_entered;
     ImGui::SameLine();
   }
   const bool is_pressed = ImGui::Button("Search");
@@ -101,9 +101,12 @@ void LibraryWindow::build_list(const LibraryState& state, double scale) {
                                      ImGuiTableFlags_NoSavedSettings;
   if (ImGui::BeginTable("builds", 6, kFlags, {0, static_cast<float>(kListHeight * scale)})) {
     ImGui::TableSetupScrollFreeze(0, 1);
-    constexpr std::array<std::pair<const char*, float>, 6> kColumns = {
-        {{"Number", 1}, {"Name", 2.4F}, {"Author", 1.5F}, {"Size", 1.7F}, {"File", 1.1F},
-         {"Tags", 2}}};
+    constexpr std::array<std::pair<const char*, float>, 6> kColumns = {{{"Number", 1},
+                                                                        {"Name", 2.4F},
+                                                                        {"Author", 1.5F},
+                                                                        {"Size", 1.7F},
+                                                                        {"File", 1.1F},
+                                                                        {"Tags", 2}}};
     for (const auto& [title, weight] : kColumns)
       ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthStretch, weight);
     ImGui::TableHeadersRow();
@@ -137,10 +140,10 @@ void LibraryWindow::build_list(const LibraryState& state, double scale) {
   if (state.is_listing) {
     ImGui::TextDisabled("the server searches ...");
   } else if (state.builds != nullptr) {
-    ImGui::TextDisabled("%s", fmt::format("{}{} shown; the library has {}", state.builds->size(),
-                                          state.builds->size() == 1 ? " build" : " builds",
-                                          state.total)
-                                  .c_str());
+    ImGui::TextDisabled("%s",
+                        fmt::format("{}{} shown; the library has {}", state.builds->size(),
+                                    state.builds->size() == 1 ? " build" : " builds", state.total)
+                            .c_str());
   }
 }
 
@@ -194,8 +197,8 @@ void LibraryWindow::build_selected(const LibraryState& state, UiContext& context
     ImGui::TextDisabled("Select a build in the list.");
   } else {
     show_wrapped(build->info.name);
-    show_text(fmt::format("{} voxels, {} of them set", sides_text(build->info.sides),
-                          build->touched));
+    show_text(
+        fmt::format("{} voxels, {} of them set", sides_text(build->info.sides), build->touched));
     show_text("file: " + file_size_text(build->file_bytes));
     if (!build->info.author.empty()) show_text("author: " + build->info.author);
     show_text("added by: " + adder_text(*build));
@@ -240,6 +243,11 @@ void LibraryWindow::build_adding(const LibraryState& state, double scale) {
 
 std::optional<LibraryOrder> LibraryWindow::build(const LibraryState& state, UiContext& context) {
   if (!is_open_) return std::nullopt;
+  const bool has_taken = std::exchange(taken_, state.taken) != state.taken && !is_new_;
+  if (has_taken) {
+    is_open_ = false;
+    return std::nullopt;
+  }
   order_.reset();
   const double scale = context.scale();
   const auto margin = static_cast<float>(10 * scale);
@@ -250,6 +258,7 @@ std::optional<LibraryOrder> LibraryWindow::build(const LibraryState& state, UiCo
                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
   if (!state.unavailable.empty()) {
     show_wrapped(state.unavailable);
+    is_new_ = false;
   } else {
     build_search(state, scale);
     build_list(state, scale);

@@ -30,9 +30,10 @@ struct LibraryState {
   Sequence fetching = 0;  // the build whose file is fetched or read; 0: none
   std::uint64_t fetched_bytes = 0, fetch_bytes = 0;
   bool is_taking = false;  // it goes to the clipboard
-  Sequence pictured = 0;  // the build of `picture`
+  Sequence pictured = 0;   // the build of `picture`
   std::shared_ptr<const OverlayImage> picture;
-  std::string fetch_text;  // the end of the last fetch
+  std::string fetch_text;   // the end of the last fetch
+  std::uint64_t taken = 0;  // how many builds went to the clipboard
 
   std::string clipboard;  // its size in words; empty: nothing was copied
   bool is_adding = false;
@@ -81,7 +82,8 @@ class LibraryWindow {
   bool is_open() const { return is_open_; }
   /// Returns the selected build, or 0.
   Sequence selected() const { return selected_; }
-  /// Makes the window with ImGui. Returns what the user ordered.
+  /// Makes the window with ImGui. Returns what the user ordered. When a build has gone to the clipboard,
+  /// the window closes, so that the next click pastes it.
   std::optional<LibraryOrder> build(const LibraryState& state, UiContext& context);
 
  private:
@@ -92,7 +94,8 @@ class LibraryWindow {
   void build_adding(const LibraryState& state, double scale);
 
   bool is_open_ = false;
-  bool is_new_ = false;  // the window was opened since the last frame
+  std::uint64_t taken_ = 0;  // as LibraryState::taken in the last frame
+  bool is_new_ = false;      // the window was opened since the last frame
   std::string name_, author_, tag_;
   Sequence selected_ = 0;
   Sequence drop_ = 0;  // the build for which the user was asked whether it is to be removed

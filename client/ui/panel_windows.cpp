@@ -34,9 +34,8 @@ bool PanelWindows::has_fields() const {
 
 unsigned PanelWindows::count_with_mouse() const {
   unsigned out = 0;
-  for (const bool is_open :
-       {map_.is_open(), timeline_.is_open(), rollback_.is_open(), library_.is_open(),
-        tools_.has_mouse()})
+  for (const bool is_open : {map_.is_open(), timeline_.is_open(), rollback_.is_open(),
+                             library_.is_open(), tools_.has_mouse()})
     out += is_open ? 1 : 0;
   return out;
 }

@@ -30,8 +30,7 @@ struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction =
-    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, LibraryOrder,
-                 ToolCommand>;
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
+                              LibraryOrder, ToolCommand>;
 
 }  // namespace runstone
