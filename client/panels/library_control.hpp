@@ -1,6 +1,7 @@
 // LibraryControl: what the player does with the library of builds of the world. It is between the
 // window (or a script), the session, and the clipboard of the tools. Files are read and written on a
-// thread of their own, or in step() if the client has no threads. Thread: the main thread.
+// thread of their own, or in step() if the client has no threads. The destructor waits for that thread.
+// Thread: the main thread.
 #pragma once
 #include <cstdint>
 #include <future>

@@ -197,8 +197,8 @@ void LibraryWindow::build_selected(const LibraryState& state, UiContext& context
     ImGui::TextDisabled("Select a build in the list.");
   } else {
     show_wrapped(build->info.name);
-    show_text(
-        fmt::format("{} voxels, {} of them set", sides_text(build->info.sides), build->touched));
+    show_text(fmt::format("{} voxels, {} of them in the build", sides_text(build->info.sides),
+                          build->touched));
     show_text("file: " + file_size_text(build->file_bytes));
     if (!build->info.author.empty()) show_text("author: " + build->info.author);
     show_text("added by: " + adder_text(*build));

@@ -7,8 +7,8 @@
 
 #include "client/panels/build_picture.hpp"
 #include "common/builds/build_transforms.hpp"
-#include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/builds/paste_source.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
 namespace runstone::test::session_bench {
@@ -40,8 +40,8 @@ Bytes small_file(const std::string& name) {
   const BuildPtr build = small_build();
   auto info = named_build(name, {}, "ana");
   REQUIRE(info.has_value());
-  auto file = write_library_file(*build, rows_of(*build), *std::move(info), EmptyCells::pasted,
-                                 1 << 20);
+  auto file =
+      write_library_file(*build, rows_of(*build), *std::move(info), EmptyCells::pasted, 1 << 20);
   REQUIRE(file.has_value());
   return *std::move(file);
 }
@@ -122,7 +122,8 @@ TEST_CASE_METHOD(LibraryClient, "the window gets the listing, and the picture of
   CHECK(tools.clipboard().build->sides() == VoxelPos{3, 2, 2});
 }
 
-TEST_CASE_METHOD(LibraryClient, "a build that is taken is pasted next, with materials of this world",
+TEST_CASE_METHOD(LibraryClient,
+                 "a build that is taken is pasted next, with materials of this world",
                  "[client_app]") {
   const Bytes file = small_file("mill");
   list({{9, file.size()}});

@@ -91,11 +91,11 @@ TEST_CASE_METHOD(ExchangeBench, "a listing that is refused, repeated or lost say
   exchange.receive(Builds{asked.request, {}, false, 0, "this needs the right see"}, now);
   CHECK(exchange.listing().refusal == "this needs the right see");
   exchange.list({});
-  exchange.receive(
-      Builds{step<BuildsRequest>().at(0).request, {listed_build(9)}, true, 2, {}}, now);
+  exchange.receive(Builds{step<BuildsRequest>().at(0).request, {listed_build(9)}, true, 2, {}},
+                   now);
   exchange.list_more();
-  exchange.receive(
-      Builds{step<BuildsRequest>().at(0).request, {listed_build(9)}, true, 2, {}}, now);
+  exchange.receive(Builds{step<BuildsRequest>().at(0).request, {listed_build(9)}, true, 2, {}},
+                   now);
   CHECK(exchange.listing().refusal == "the server sent builds again that are in the list");
   CHECK(exchange.listing().builds.size() == 1);
   exchange.list({});
@@ -145,7 +145,8 @@ TEST_CASE_METHOD(ExchangeBench, "a file comes in pieces, four of them under way"
   CHECK(exchange.fetched().state == TransferState::none);
 }
 
-TEST_CASE_METHOD(ExchangeBench, "wrong pieces, a refusal, silence and a lost connection end a fetch",
+TEST_CASE_METHOD(ExchangeBench,
+                 "wrong pieces, a refusal, silence and a lost connection end a fetch",
                  "[client_session]") {
   const Bytes file = some_file(3 * kBuildPieceBytes);
   list_one(12, file.size());
@@ -267,7 +268,8 @@ TEST_CASE_METHOD(ExchangeBench, "a file is sent in uploads, four of them without
   CHECK(exchange.addition().number == 77);
 }
 
-TEST_CASE_METHOD(ExchangeBench, "a refusal, wrong counts, silence and a lost connection end an addition",
+TEST_CASE_METHOD(ExchangeBench,
+                 "a refusal, wrong counts, silence and a lost connection end an addition",
                  "[client_session]") {
   exchange.add(some_file(2 * kBuildUploadBytesMax));
   const std::uint32_t offer = step<BuildOffer>().at(0).request;
