@@ -47,6 +47,7 @@ class ClientHud {
   ShownPanels shown_panels() const;
   MapWindow& map() { return hud_.panels().map(); }
   void show_timeline(bool is_shown) { hud_.panels().timeline().set_open(is_shown); }
+  void show_library(bool is_shown) { hud_.panels().library().set_open(is_shown); }
 
  private:
   HudState state(const HudScene& scene) const;

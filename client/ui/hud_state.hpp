@@ -11,6 +11,7 @@
 #include "client/input/action.hpp"
 #include "client/render/inspection.hpp"
 #include "client/tools/tool_box.hpp"
+#include "client/ui/library_window.hpp"
 #include "client/ui/map_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "client/ui/statistics_window.hpp"
@@ -76,6 +77,7 @@ struct HudState {
   InspectionModes inspection;
   MapState map;
   RollbackState rollback;
+  LibraryState library;
   StatisticsState statistics;  // filled only while Hud::shows_statistics()
 };
 

@@ -5,6 +5,7 @@
 
 #include "client/render/inspection.hpp"
 #include "client/tools/tool_command.hpp"
+#include "client/ui/library_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
 
@@ -29,7 +30,7 @@ struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction =
-    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, ToolCommand>;
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
+                              LibraryOrder, ToolCommand>;
 
 }  // namespace runstone
