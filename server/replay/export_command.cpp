@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string_view>
 
+#include "common/build_files/build_files.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/file_build.hpp"
-#include "common/os/output_file.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/history/build_at.hpp"
 #include "server/replay/command_world.hpp"
@@ -59,26 +58,6 @@ Result<int, std::string> export_log(const ExportOptions& options, std::ostream& 
   return code_of_output(**store);
 }
 
-/// Writes a build to a file, which replaces an old one when it is whole. Returns its bytes.
-Result<std::uint64_t, std::string> write_build_to(const std::string& file, const FileBuild& build) {
-  auto to = open_output_file(file);
-  if (!to) return failure(to.error());
-  std::uint64_t bytes = 0;
-  const auto written = write_file_build(file, build, [&](ByteView part) {
-    bytes += part.size();
-    return to->write(part);
-  });
-  if (!written) return failure(to->error().empty() ? written.error() : file + ": " + to->error());
-  if (const auto done = to->finish(); !done) return failure(file + ": " + done.error());
-  return bytes;
-}
-
-std::string name_of_build(const ExportOptions& options) {
-  if (!options.name.empty()) return options.name;
-  const std::string stem = std::filesystem::path(options.file).stem().string();
-  return is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
-}
-
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
   if (auto why = ending_refusal(options.file, true); !why.empty()) return failure(std::move(why));
   const auto world = open_for_reading(options.common.world, options.at);
@@ -101,8 +80,8 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
                     });
   }();
   if (!build) return failure(options.common.world + ": " + build.error());
-  build->info.name = name_of_build(options);
-  const auto bytes = write_build_to(options.file, *build);
+  build->info.name = options.name.empty() ? build_name_of_file(options.file) : options.name;
+  const auto bytes = write_build_to_file(options.file, *build);
   if (!bytes) return failure(bytes.error());
   const BuildSides& sides = build->info.sides;
   print_world(out, store);
