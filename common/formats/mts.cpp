@@ -193,8 +193,8 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
                               static_cast<std::uint64_t>(sides.y) *
                               static_cast<std::uint64_t>(sides.z);
   // The stream has all ids, then all chances, and then every param2, so it is read in three places.
-  const auto kind = InflateSource::Kind::zlib;
-  InflateSource ids(packed, kind), chances(packed, kind), params(packed, kind);
+  const auto form = DeflateForm::zlib;
+  InflateSource ids(packed, form), chances(packed, form), params(packed, form);
   const auto cut = [&](const InflateSource& source) {
     return fail(source.is_damaged() ? ErrorCode::bad_value : ErrorCode::truncated,
                 source.is_damaged() ? "mts: nodes are no zlib stream, or a damaged one"

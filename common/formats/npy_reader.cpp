@@ -366,7 +366,7 @@ class NpzReader {
 }  // namespace
 
 Result<ForeignInfo> read_npy(ByteView file, const PieceSink& sink) {
-  InflateSource source(file, InflateSource::Kind::stored);
+  InflateSource source(file, std::nullopt);
   const auto header = read_npy_header(source);
   if (!header) return failure(header.error());
   NpyItems items(source, *header, 0);
