@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/core/build_info.hpp"
+#include "common/formats/grid_pieces.hpp"
 #include "common/formats/nbt_file.hpp"
-#include "common/formats/piece_rows.hpp"
 #include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_palette.hpp"
 
@@ -257,7 +257,7 @@ class PackedNumbers {
 Result<void> read_region_cells(NbtArrayCursor& in, const LitematicRegion& region,
                                const VoxelBox& box, const PieceSink& sink) {
   in.go_to(region.cells);
-  PieceRows rows(box, region.palette.blocks(), sink);
+  GridPieces rows(box, AxisOrder::xzy, region.palette.blocks(), sink);
   PackedNumbers numbers(in, number_bits(region));
   std::uint64_t left = rows.left();
   std::uint32_t number = numbers.next();
@@ -293,7 +293,7 @@ Result<ForeignInfo> read_litematic(ByteView file, const PieceSink& sink) {
   if (head.regions.empty()) return fail(ErrorCode::bad_value, "litematic: there are no Regions");
   // Every region is checked before the first piece is given.
   std::vector<VoxelBox> boxes;
-  std::uint64_t volume_left = kPieceRowsVolumeMax;
+  std::uint64_t volume_left = kGridVolumeMax;
   for (const LitematicRegion& region : head.regions) {
     const auto box = box_of_region(region, volume_left);
     if (!box) return failure(box.error());

@@ -206,9 +206,9 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
   if (!params.skip(3 * count)) return cut(params);
   if (!chances.skip(2 * count)) return cut(chances);
   MtsBlocks blocks(*head);
-  auto pieces = GridPieces::of(sides, {}, AxisOrder::xyz, blocks.blocks(), sink);
-  if (!pieces)
+  if (!GridPieces::are_sides(sides, AxisOrder::xyz))
     return fail(ErrorCode::limit_exceeded, "mts: a layer has more than 268435456 nodes", 6);
+  GridPieces pieces({{0, 0, 0}, sides}, AxisOrder::xyz, blocks.blocks(), sink);
   std::array<std::uint8_t, 2 * kMtsPart> id_bytes;
   std::array<std::uint8_t, kMtsPart> chance_bytes, param_bytes;
   std::uint64_t place = 0;
@@ -234,7 +234,7 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
                       head->nodes_at + ids.offset());
         material = *found;
       }
-      if (auto done = pieces->append(1, material); !done) return failure(done.error());
+      if (auto done = pieces.append(1, material); !done) return failure(done.error());
     }
   }
   if (!params.finish()) {

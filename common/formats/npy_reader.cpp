@@ -182,9 +182,11 @@ Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyI
   std::vector<Material> materials(static_cast<std::size_t>(known.numbers), 0);
   std::vector<bool> is_known(materials.size(), false);
   const auto side = [&](std::size_t axis) { return static_cast<std::int32_t>(header.shape[axis]); };
-  auto pieces = GridPieces::of({side(0), side(1), side(2)}, {},
-                               header.is_fortran ? AxisOrder::xyz : AxisOrder::zyx, blocks, sink);
-  if (!pieces) return items.at(pieces.error().code, "npy: a layer has more than 268435456 cells");
+  const VoxelPos sides{side(0), side(1), side(2)};
+  const AxisOrder order = header.is_fortran ? AxisOrder::xyz : AxisOrder::zyx;
+  if (!GridPieces::are_sides(sides, order))
+    return items.at(ErrorCode::limit_exceeded, "npy: a layer has more than 268435456 cells");
+  GridPieces pieces({{0, 0, 0}, sides}, order, blocks, sink);
   std::uint64_t open_number = 0;  // of the cells that are not appended yet
   std::uint64_t open_count = 0;
   const auto flush = [&]() -> Result<void> {
@@ -203,7 +205,7 @@ Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyI
       }
     }
     const std::uint64_t cells = std::exchange(open_count, 0);
-    return pieces->append(cells, materials[number]);
+    return pieces.append(cells, materials[number]);
   };
   auto read = items.numbers(count, [&](std::span<const std::uint64_t> numbers) -> Result<void> {
     for (const std::uint64_t number : numbers) {

@@ -56,9 +56,8 @@ TEST_CASE("the walk over a build gives every cell, in each order of the axes", "
     const std::vector<std::uint64_t> counts = count_cells(*build.build);
     for (std::size_t number = 0; number < counts.size(); ++number) {
       const auto cells = cells_one_by_one(*build.build, AxisOrder::xyz);
-      CHECK(counts[number] == static_cast<std::uint64_t>(
-                                  std::count(cells.begin(), cells.end(),
-                                             static_cast<std::uint16_t>(number))));
+      CHECK(counts[number] == static_cast<std::uint64_t>(std::count(
+                                  cells.begin(), cells.end(), static_cast<std::uint16_t>(number))));
     }
   }
 }
@@ -79,11 +78,11 @@ TEST_CASE("the walk over a build gives long stretches in parts, and ends at a fa
   CHECK(cells == 180'000);
   CHECK(calls == 3);
   calls = 0;
-  const auto ended = walk_cells(*build.build, AxisOrder::zyx,
-                                [&](std::uint32_t, std::uint16_t) -> Result<void> {
-                                  if (++calls < 2) return {};
-                                  return fail(ErrorCode::io_failed, "the disk is full");
-                                });
+  const auto ended =
+      walk_cells(*build.build, AxisOrder::zyx, [&](std::uint32_t, std::uint16_t) -> Result<void> {
+        if (++calls < 2) return {};
+        return fail(ErrorCode::io_failed, "the disk is full");
+      });
   REQUIRE_FALSE(ended);
   CHECK(ended.error().code == ErrorCode::io_failed);
   CHECK(calls == 2);
