@@ -1,12 +1,11 @@
 #include "server/replay/replay_commands.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <string_view>
 
 #include "common/build_files/build_files.hpp"
+#include "common/core/coords_text.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/os/progress_line.hpp"
@@ -17,25 +16,6 @@
 
 namespace runstone {
 namespace {
-
-/// Returns the box of "X,Y,Z,X,Y,Z", two opposite corners that are both inside, or nullopt.
-std::optional<VoxelBox> parse_box(std::string_view text) {
-  std::array<std::int32_t, 6> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
-    if (error != std::errc()) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    const bool is_last = i + 1 == numbers.size();
-    if (is_last != text.empty() || (!is_last && text.front() != ',')) return std::nullopt;
-    if (!is_last) text.remove_prefix(1);
-  }
-  for (const std::int32_t number : numbers) {
-    if (number < -kWorldLimit || number >= kWorldLimit) return std::nullopt;
-  }
-  const auto low = [&](std::size_t i) { return std::min(numbers[i], numbers[i + 3]); };
-  const auto high = [&](std::size_t i) { return std::max(numbers[i], numbers[i + 3]) + 1; };
-  return VoxelBox{{low(0), low(1), low(2)}, {high(0), high(1), high(2)}};
-}
 
 Result<int, std::string> export_log(const ExportOptions& options, std::ostream& out) {
   const auto store = open_world(options.common.world, StoreAccess::read_only);
@@ -112,7 +92,7 @@ void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
   command_line.parsed(
       "--box",
       [&options](const std::string& text) -> std::string {
-        options.box = parse_box(text);
+        options.box = parse_voxel_box(text);
         return options.box ? "" : "X,Y,Z,X,Y,Z: two opposite corners, both inside";
       },
       "X,Y,Z,X,Y,Z: export this box of the world as a build, in the format of the ending");
