@@ -54,9 +54,8 @@ GridPieces::GridPieces(const VoxelBox& box, AxisOrder order,
 
 bool GridPieces::are_sides(VoxelPos sides, AxisOrder order) {
   const auto all = by_axis(sides);
-  const bool are_valid = std::all_of(all.begin(), all.end(), [](std::int32_t side) {
-    return side >= 1 && side <= static_cast<std::int32_t>(kBuildSideMax);
-  });
+  const bool are_valid = std::all_of(
+      all.begin(), all.end(), [](std::int32_t side) { return side >= 1 && side <= kBuildSideMax; });
   return are_valid && static_cast<std::uint64_t>(all[axis_of(order, 0)]) *
                               static_cast<std::uint64_t>(all[axis_of(order, 1)]) <=
                           kGridLayerMax;

@@ -194,7 +194,7 @@ Result<VoxelBox> box_of_region(const LitematicRegion& region, std::uint64_t volu
   const auto set = [&](std::int32_t VoxelPos::* axis) {
     const std::int64_t size = region.size.*axis, side = size < 0 ? -size : size;
     const std::int64_t low = std::int64_t{region.position.*axis} + (size < 0 ? size + 1 : 0);
-    if (side < 1 || side > std::int64_t{kBuildSideMax}) return false;
+    if (side < 1 || side > kBuildSideMax) return false;
     if (low < -kWorldLimit || low + side > kWorldLimit) return false;
     box.min.*axis = static_cast<std::int32_t>(low);
     box.max.*axis = static_cast<std::int32_t>(low + side);

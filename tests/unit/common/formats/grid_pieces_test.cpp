@@ -76,8 +76,8 @@ TEST_CASE("the pieces of a box are its cells, cut at the planes of the grid", "[
         for (std::uint32_t i = 0; i < piece.voxels.extent.volume(); ++i) {
           const LocalPos local = pos_of(i, piece.voxels.extent, piece.voxels.order);
           const Material found = material_at(piece.voxels, local);
-          const Material expected = listed.at({piece.origin.x + local.x, piece.origin.y + local.y,
-                                               piece.origin.z + local.z});
+          const Material expected = listed.at(
+              {piece.origin.x + local.x, piece.origin.y + local.y, piece.origin.z + local.z});
           if (found == 0 ? expected != 0
                          : piece.blocks[found - 1U].name != std::to_string(expected))
             ++wrong;
