@@ -8,9 +8,7 @@
 namespace runstone::test {
 namespace {
 
-EditDescriptor fill(const VoxelBox& box, Material material) {
-  return {FillBox{box}, {}, material};
-}
+EditDescriptor fill(const VoxelBox& box, Material material) { return {FillBox{box}, {}, material}; }
 
 }  // namespace
 
