@@ -1,12 +1,9 @@
 #include "common/formats/mts.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +11,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/formats/deflate.hpp"
 #include "common/formats/grid_cells.hpp"
 #include "common/formats/grid_pieces.hpp"
 #include "common/formats/inflate_source.hpp"
@@ -22,6 +20,7 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kMtsPart = 8192;  // nodes
+constexpr int kMtsLevel = 6;
 constexpr std::string_view kMtsParam = "param2=";
 
 std::uint16_t mts_u16(ByteReader& in) {
@@ -134,26 +133,17 @@ MtsNode mts_node(const BuildMaterial& material) {
 
 class MtsWriter {
  public:
-  explicit MtsWriter(const FormatSink& sink) : sink_(sink), packed_(kMtsPart) {
-    const int begun = deflateInit(&stream_, Z_DEFAULT_COMPRESSION);
-    RUNSTONE_ASSERT(begun == Z_OK);
-  }
-  ~MtsWriter() { deflateEnd(&stream_); }
-  MtsWriter(const MtsWriter&) = delete;
-  MtsWriter& operator=(const MtsWriter&) = delete;
+  explicit MtsWriter(const FormatSink& sink) : sink_(sink) {}
 
-  /// Packs bytes.
-  Result<void> give(ByteView bytes, int flush = Z_NO_FLUSH) {
-    stream_.next_in = const_cast<Bytef*>(bytes.data());
-    stream_.avail_in = static_cast<uInt>(bytes.size());
-    do {
-      stream_.next_out = packed_.data();
-      stream_.avail_out = static_cast<uInt>(packed_.size());
-      deflate(&stream_, flush);
-      if (!sink_(ByteView(packed_).first(packed_.size() - stream_.avail_out)))
-        return fail(ErrorCode::io_failed, "mts: cannot be written");
-    } while (stream_.avail_out == 0);
-    return {};
+  /// Packs bytes, and gives what is packed to the sink.
+  Result<void> give(ByteView bytes) {
+    deflater_.write(bytes);
+    return flush();
+  }
+  /// Ends the stream.
+  Result<void> finish() {
+    deflater_.finish();
+    return flush();
   }
 
   /// Packs what `bytes_of` gives for each cell: `width` bytes a cell, the upper one first.
@@ -177,9 +167,16 @@ class MtsWriter {
   }
 
  private:
+  Result<void> flush() {
+    const bool is_taken = packed_.empty() || sink_(packed_);
+    packed_.clear();
+    if (!is_taken) return fail(ErrorCode::io_failed, "mts: cannot be written");
+    return {};
+  }
+
   const FormatSink& sink_;
-  z_stream stream_{};
   Bytes packed_;
+  Deflater deflater_{DeflateForm::zlib, kMtsLevel, packed_};
 };
 
 }  // namespace
@@ -292,7 +289,7 @@ Result<void> write_mts(const FileBuild& build, const FormatSink& sink) {
   if (auto done = out.give_plane(voxels, 1, [&](std::uint16_t cell) { return cells[cell].param2; });
       !done)
     return done;
-  return out.give({}, Z_FINISH);
+  return out.finish();
 }
 
 }  // namespace runstone
