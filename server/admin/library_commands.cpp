@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/place_words.hpp"
@@ -227,7 +228,7 @@ void import_file(const CommandCall& call, const PlacedFile& wanted) {
   call.on_worker(
       "import: ",
       [file = wanted.file](WorldReader&) -> Result<std::shared_ptr<const FileBuild>, std::string> {
-        auto build = read_any_build_file(file);
+        auto build = read_build_of_file(file);
         if (!build) return failure(build.error());
         return std::make_shared<const FileBuild>(*std::move(build));
       },

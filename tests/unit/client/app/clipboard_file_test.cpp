@@ -1,5 +1,6 @@
 #include "client/app/clipboard_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -137,6 +138,12 @@ TEST_CASE("a damaged clipboard is refused and stays on disk, and a bad folder is
     CHECK_FALSE(box.clipboard().build);
   }
   CHECK(std::filesystem::file_size(place.file()) == 8);
+  std::filesystem::create_directories(place.folder / "pipe");
+  const std::string pipe = place.folder / "pipe" / "clipboard.rsb";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  ToolBox box;
+  CHECK(ClipboardFile(pipe).load(box).error() ==
+        pipe + ": is a device, a pipe or a socket, and no file");
   ClipboardFile nowhere((place.folder / "sub" / "clipboard.rsb" / "no" / "folder").string());
   CHECK(nowhere.step(bench.box).empty());
   std::string failed;
