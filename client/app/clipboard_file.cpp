@@ -84,16 +84,13 @@ std::string ClipboardFile::step(const ToolBox& tools) {
   return failed;
 }
 
-Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
-  auto read = read_build_of_file(file);
-  if (!read) return failure(read.error());
+std::string set_clipboard(FileBuild read, ToolBox& tools) {
   std::vector<MaterialRow> rows;
-  for (const BuildMaterial& material : read->materials) rows.push_back(world_row_of(material));
-  return tools.set_clipboard(std::move(read->build), EmptyCells::pasted, std::move(rows));
+  for (const BuildMaterial& material : read.materials) rows.push_back(world_row_of(material));
+  return tools.set_clipboard(std::move(read.build), EmptyCells::pasted, std::move(rows));
 }
 
-Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
-  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+Result<FileBuild, std::string> build_of_clipboard(const std::string& file, const ToolBox& tools) {
   const ToolClipboard& clipboard = tools.clipboard();
   if (!clipboard.build)
     return failure(std::string("the clipboard is empty: copy a selection first"));
@@ -104,7 +101,20 @@ Result<void, std::string> write_clipboard(const std::string& file, const ToolBox
   build.info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
                       static_cast<std::uint32_t>(sides.z)};
   build.info.name = build_name_of_file(file);
-  if (const auto written = write_build_to_file(file, build); !written)
+  return build;
+}
+
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
+  auto read = read_build_of_file(file);
+  if (!read) return failure(read.error());
+  return set_clipboard(*std::move(read), tools);
+}
+
+Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
+  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  const auto build = build_of_clipboard(file, tools);
+  if (!build) return failure(build.error());
+  if (const auto written = write_build_to_file(file, *build); !written)
     return failure(written.error());
   return {};
 }
