@@ -17,9 +17,7 @@ bool has_outcome(const std::future<Outcome>& work) {
   return work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-PlayerNotice transfer_warning(std::string text) {
-  return {std::move(text), NoticeKind::warning};
-}
+PlayerNotice transfer_warning(std::string text) { return {std::move(text), NoticeKind::warning}; }
 
 std::string last_part(const std::string& file) {
   return std::filesystem::path(file).filename().string();
@@ -56,8 +54,7 @@ std::optional<PlayerNotice> ClipboardTransfer::begin(const ClipboardOfFile& orde
                           });
   } else {
     state_ = "reading " + last_part(file_);
-    reading_ =
-        std::async(std::launch::async, [file = file_] { return read_build_of_file(file); });
+    reading_ = std::async(std::launch::async, [file = file_] { return read_build_of_file(file); });
   }
   return std::nullopt;
 }
@@ -75,8 +72,7 @@ std::optional<PlayerNotice> ClipboardTransfer::step(ToolBox& tools) {
   if (!read) return transfer_warning(read.error());
   const std::string said = set_clipboard(*std::move(read), tools);
   has_loaded_ = true;
-  std::string text = "clipboard: " + last_part(file_) + ", " +
-                     size_text(*tools.clipboard().build);
+  std::string text = "clipboard: " + last_part(file_) + ", " + size_text(*tools.clipboard().build);
   if (!said.empty()) text += ". " + said;
   return PlayerNotice{std::move(text)};
 }
