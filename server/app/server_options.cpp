@@ -105,6 +105,9 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
+  made->add_option("--map", out.map,
+                   "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
+                   "\"planks\" below [materials]");
   made->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
   made->add_flag("--progress", out.progress,
                  "print progress even if standard error is no terminal");

@@ -28,7 +28,7 @@ class Importer {
         format_(format),
         options_(options),
         sink_(sink),
-        block_materials_(format, options.keep_all) {}
+        block_materials_(format, options.keep_all, options.map) {}
 
   Result<LuantiImportReport, ImportError> run() {
     if (const auto scanned = scan(); !scanned) return error(scanned.error());
@@ -36,6 +36,7 @@ class Importer {
     if (!table) return error(table.error().what);
     std::sort(positions_.begin(), positions_.end());  // a damaged map may have another order
     report_.materials = *std::move(table);
+    report_.applied = block_materials_.applied();
     sink_.materials(report_.materials);
     report_.voxels.assign(report_.materials.size(), 0);
     report_.spawn = {(report_.bounds.min.x + report_.bounds.max.x) / 2, report_.bounds.max.y,

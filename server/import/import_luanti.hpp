@@ -16,6 +16,7 @@
 
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
+#include "common/formats/material_map.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "server/import/import_error.hpp"
@@ -26,6 +27,8 @@ struct LuantiImportOptions {
   std::int32_t edge = 32;  // of the chunks to make: 16, 32, 64 or 128
   /// Plants, torches and similar nodes become see-through cubes. Otherwise they are left out.
   bool keep_all = false;
+  /// Chooses materials, if it is not null. It must outlive the import.
+  const MaterialMap* map = nullptr;
 };
 
 struct LuantiImportSink {
@@ -56,6 +59,7 @@ struct LuantiImportReport {
   std::uint64_t chunks = 0;  // that the sink got
   std::uint64_t runs = 0;    // in all of them
   MaterialTable materials;
+  AppliedRows applied;  // of the map
   /// Number of voxels by material id, in the chunks that the sink got. [0] counts their empty
   /// voxels.
   std::vector<std::uint64_t> voxels;

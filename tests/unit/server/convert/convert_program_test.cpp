@@ -100,6 +100,28 @@ TEST_CASE("runstone-convert says what a file is, and lists its materials", "[con
     CHECK(said.out.find('\n' + material.row.name) != std::string::npos);
 }
 
+TEST_CASE("runstone-convert maps materials, and names the rows that fit none", "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb", map = folder / "map.toml";
+  make_rsb(file);
+  std::ofstream(map) << "[materials]\n\"m100*\" = \"planks\"\n\"m1003\" = \"air\"\n"
+                        "\"other:*\" = \"sand\"\n";
+  const Outcome done = convert({file, folder / "out.rsb", "--map", map});
+  INFO(done.err);
+  REQUIRE(done.code == 0);
+  CHECK(done.out.find(map + ": these rows fit no material: \"other:*\"\n") != std::string::npos);
+  const FileBuild read = read_back(folder / "out.rsb");
+  REQUIRE(read.materials.size() == 2);
+  CHECK(read.materials[0].row.name == "air");
+  CHECK(read.materials[1].row.name == "planks");
+
+  std::ofstream(map) << "[materials]\na = 4\n";
+  const Outcome refused = convert({file, folder / "new.rsb", "--map", map});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("map.toml:2: \"a\": must be") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "new.rsb"));
+}
+
 TEST_CASE("runstone-convert refuses with the file and the reason, and keeps an old file",
           "[convert]") {
   const TempFolder folder;

@@ -86,6 +86,35 @@ TEST_CASE("a schematic becomes a world whose voxels are those of the file", "[im
   CHECK(solid == build.build->solid());
 }
 
+TEST_CASE("an import makes a world of the materials that a map chooses", "[import]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  const auto bytes = written(write_schem, random_file_build(rng, {20, 20, 20}, 6, true));
+  REQUIRE(bytes.has_value());
+  write_bytes(folder / "house.schem", *bytes);
+  ImportRequest request = request_of(folder, "house.schem");
+  request.palette = false;
+  request.map = folder / "map.toml";
+  std::ofstream(request.map) << "[materials]\n\"*\" = \"planks\"\n\"no:*\" = \"sand\"\n";
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  INFO((imported ? out.str() : imported.error()));
+  REQUIRE(imported.has_value());
+  CHECK(out.str().find("map.toml: these rows fit no material: \"no:*\"\n") != std::string::npos);
+  const auto store = open_world(request.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  const MaterialTable& table = (*store)->meta().materials;
+  REQUIRE(table.size() == 2);
+  CHECK(table[1].name == "planks");
+
+  request.world = folder / "second";
+  std::ofstream(request.map) << "[materials\n";
+  const auto refused = import_world(request, out);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().find("map.toml:1: ") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(request.world));
+}
+
 TEST_CASE("an import of a file that cannot be read makes no world", "[import]") {
   const TempFolder folder;
   write_bytes(folder / "bad.schem", {0, 1, 2});
