@@ -61,8 +61,8 @@ Result<MaterialMap> MaterialMap::of(std::vector<MaterialMapRow> rows) {
     const std::size_t star = from.find('*');
     const bool is_beginning = star == from.size() - 1;
     if (star != std::string::npos && !is_beginning)
-      return fail(ErrorCode::bad_value, "has a * before its end: only the last character may be one",
-                  i);
+      return fail(ErrorCode::bad_value,
+                  "has a * before its end: only the last character may be one", i);
     const bool is_new = is_beginning ? out.beginnings_.try_emplace(from.substr(0, star), i).second
                                      : out.exact_.try_emplace(from, i).second;
     if (!is_new) return fail(ErrorCode::bad_value, "is there twice", i);

@@ -77,7 +77,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           ->option_text("luanti|minecraft|file");
   CLI::Option* const source = made->add_option(
       "SOURCE", out.source,
-      "luanti: folder that holds map.sqlite; minecraft: folder of the world, or a region file; "
+      "luanti: folder that holds world.mt and its map; minecraft: folder of the world, or a region file; "
       "file: such as castle.schem");
   kind->needs(source);
   CLI::Option* const luanti = made->add_option_function<std::string>(

@@ -1,4 +1,4 @@
-// Import of a Luanti world: its map.sqlite, if world.mt names no other map, is read block by block
+// Import of a Luanti world: its map, in map.sqlite or in a LevelDB as world.mt says, is read block by block
 // and becomes chunks of runs. A sink takes the chunks and decides where they go. There are two
 // passes: the first finds names and places, because materials must be known before the first chunk;
 // the second makes one chunk at a time.
@@ -68,8 +68,8 @@ struct LuantiImportReport {
 };
 
 /// Imports the map of a world, which is opened for reading only. Fails if
-///   - world.mt says that the map is not in map.sqlite, or the folder holds no Luanti world;
-///   - map.sqlite cannot be read as a Luanti map, or has no blocks;
+///   - world.mt names another backend than sqlite3 and leveldb, or the folder holds no Luanti world;
+///   - the map cannot be read as a Luanti map, or has no blocks;
 ///   - it has more names than a material table can hold;
 ///   - the sink returns false.
 Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,

@@ -14,10 +14,9 @@ enum class ImportKind : std::uint8_t { luanti, minecraft, file };
 
 struct ImportRequest {
   ImportKind kind = ImportKind::luanti;
-  std::string
-      source;  // a folder with map.sqlite; a world folder or region file; a file with a build
-  std::string world;  // folder to be made
-  VoxelPos at;        // of the lowest corner of a build
+  std::string source;  // the folder of a world; a world folder or region file; a file with a build
+  std::string world;   // folder to be made
+  VoxelPos at;         // of the lowest corner of a build
   std::uint16_t edge = 32;
   bool keep_all = false;
   bool progress = false;  // print progress on standard error even if it is no terminal

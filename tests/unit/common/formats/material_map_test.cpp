@@ -118,9 +118,12 @@ TEST_CASE("the rows that applied to nothing are listed, at most eight of them", 
 }
 
 TEST_CASE("a mapped build has the same cells with other materials", "[formats]") {
-  const std::vector<BuildMaterial> materials = {
-      file_material("air", "", {0, 0, 0, 0}), grey("m:a"), grey("m:b"), grey("m:b", "half=top"),
-      grey("m:water"), file_material("z", "", {1, 2, 3, 255})};
+  const std::vector<BuildMaterial> materials = {file_material("air", "", {0, 0, 0, 0}),
+                                                grey("m:a"),
+                                                grey("m:b"),
+                                                grey("m:b", "half=top"),
+                                                grey("m:water"),
+                                                file_material("z", "", {1, 2, 3, 255})};
   SplitMix64 rng(3);
   const FileBuild build = file_build({30, 20, 70}, materials, [&](VoxelPos) {
     return static_cast<std::uint16_t>(rng.below(static_cast<std::uint32_t>(materials.size()) + 1));
