@@ -26,7 +26,8 @@ std::string words_of_leveldb(const leveldb::Status& status) {
            ". Restore it from a backup. If Luanti still starts with a copy of the world, run it "
            "once, and import the copy";
   }
-  if (status.IsInvalidArgument()) return "not a LevelDB, or not all of its files are there: " + what;
+  if (status.IsInvalidArgument())
+    return "not a LevelDB, or not all of its files are there: " + what;
   return "cannot be read: " + what;
 }
 

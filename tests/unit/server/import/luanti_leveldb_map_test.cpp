@@ -42,9 +42,8 @@ Rows rows_of_sqlite_world() {
   Rows out;
   while (sqlite3_step(rows) == SQLITE_ROW) {
     const auto* data = static_cast<const char*>(sqlite3_column_blob(rows, 1));
-    out.emplace_back(
-        std::to_string(sqlite3_column_int64(rows, 0)),
-        std::string(data, static_cast<std::size_t>(sqlite3_column_bytes(rows, 1))));
+    out.emplace_back(std::to_string(sqlite3_column_int64(rows, 0)),
+                     std::string(data, static_cast<std::size_t>(sqlite3_column_bytes(rows, 1))));
   }
   sqlite3_finalize(rows);
   sqlite3_close(db);
@@ -133,8 +132,8 @@ TEST_CASE("a map in a LevelDB gives the chunks of the same map in SQLite, and st
   const std::string world = folder / "world";
   // The rows lie in the log alone, in some tables and the log, and in so many tables that LevelDB wants to
   // compact them when it opens.
-  const auto [buffer, times] = GENERATE(table<std::size_t, int>(
-      {{std::size_t{4} << 20, 1}, {kSmallBuffer, 1}, {kSmallBuffer, 30}}));
+  const auto [buffer, times] = GENERATE(
+      table<std::size_t, int>({{std::size_t{4} << 20, 1}, {kSmallBuffer, 1}, {kSmallBuffer, 30}}));
   CAPTURE(buffer, times);
   const Rows rows = rows_of_sqlite_world();
   make_leveldb_world(world, rows, buffer, times);
