@@ -41,12 +41,13 @@ Bytes encode_luanti_block(const RunChunk& voxels, const LuantiNodeOf& node_of) {
   nodes.reserve(4 * kWrittenNodes);
   for (std::size_t i = 0; i < voxels.runs.size(); ++i) {
     const Material material = voxels.runs.material(i);
-    const auto [known, is_new] = ids.try_emplace(material, static_cast<std::uint16_t>(names.size()));
+    const auto [known, is_new] =
+        ids.try_emplace(material, static_cast<std::uint16_t>(names.size()));
     if (is_new) names.push_back(node_of(material));
     for (std::uint32_t node = voxels.runs.begin(i); node < voxels.runs.end(i); ++node)
       put_u16(nodes, known->second);
   }
-  nodes.insert(nodes.end(), kWrittenNodes, kDayLight);       // param1
+  nodes.insert(nodes.end(), kWrittenNodes, kDayLight);        // param1
   nodes.insert(nodes.end(), kWrittenNodes, std::uint8_t{0});  // param2
   // Version, flags, which sides have complete light (all), the bytes of an id and of the parameters.
   Bytes out = {kWrittenVersion, 0, 0xff, 0xff, 2, 2};

@@ -230,6 +230,7 @@ Result<void, std::string> import_parts(const ImportRequest& request, ImportParts
                  });
   if (!materials) return failure(materials.error());
   print(report, request, *survey, materials->size(), out);
+  for (const std::string& notice : parts.notices()) out << notice << '\n';
   return {};
 }
 

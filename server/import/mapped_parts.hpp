@@ -18,6 +18,7 @@ class MappedParts final : public ImportParts {
   Result<std::optional<ImportPart>, std::string> read(std::size_t index,
                                                       ImportFaults& faults) override;
   std::optional<VoxelPos> spawn() const override { return parts_->spawn(); }
+  std::vector<std::string> notices() const override { return parts_->notices(); }
   /// Returns the rows that applied to a material of a part that was read.
   const AppliedRows& applied() const { return applied_; }
 

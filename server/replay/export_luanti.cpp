@@ -72,13 +72,11 @@ Result<std::uint64_t, std::string> export_luanti(const WorldAt& world, WorldRead
     return luanti_node_name(materials[material].name);
   };
   const ChunkCoord first = chunk_of(box.min, chunk_edge);
-  const ChunkCoord last =
-      chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, chunk_edge);
+  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, chunk_edge);
   const auto side = [](std::int32_t a, std::int32_t b) {
     return static_cast<std::uint64_t>(b - a) + 1;
   };
-  const std::uint64_t total =
-      side(first.x, last.x) * side(first.y, last.y) * side(first.z, last.z);
+  const std::uint64_t total = side(first.x, last.x) * side(first.y, last.y) * side(first.z, last.z);
   std::uint64_t done = 0, solid = 0;
   ReplayScratch scratch;
   for (ChunkCoord at = first; at.z <= last.z; ++at.z) {
@@ -96,10 +94,9 @@ Result<std::uint64_t, std::string> export_luanti(const WorldAt& world, WorldRead
           for (block.y = low.y; block.y <= high.y; ++block.y) {
             for (block.x = low.x; block.x <= high.x; ++block.x) {
               const VoxelBox whole = box_of(block, kLuantiBlockEdge);
-              const RunChunk cells =
-                  only_part(cut(*voxels, local_of(whole.min, chunk_edge),
-                                Extent::cube(kLuantiBlockEdge)),
-                            whole, intersect(whole, box));
+              const RunChunk cells = only_part(
+                  cut(*voxels, local_of(whole.min, chunk_edge), Extent::cube(kLuantiBlockEdge)),
+                  whole, intersect(whole, box));
               if (cells.is_uniform() && cells.runs.material(0) == kEmpty) continue;
               solid += solid_voxels(cells);
               const auto put = writer.put(block, encode_luanti_block(cells, node_of));

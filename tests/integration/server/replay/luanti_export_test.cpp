@@ -28,7 +28,8 @@ void make_edited_world(const std::string& folder, std::uint16_t edge) {
   meta.generator = {"terrain", 1, 77, ""};
   for (const char* name : {"default:dirt", "minecraft:oak_stairs[facing=east]", "é ~", "ignore",
                            "runstone:red__bricks", "my flower"})
-    REQUIRE(meta.materials.add({name, {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
+    REQUIRE(
+        meta.materials.add({name, {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
   auto store = create_world(folder, meta);
   REQUIRE(store.has_value());
   REQUIRE((*store)->raise_epoch().has_value());
@@ -59,8 +60,9 @@ TEST_CASE("a box of a world is exported as a Luanti world and imported with the 
   const auto edge = GENERATE(as<std::uint16_t>{}, 16, 64);
   make_edited_world(world, edge);
   const VoxelBox box{{-37, -21, -40}, {43, 30, 39}};
-  const ReplayOutcome done = run_replay({"export", "--world", world, "--box", "-37,-21,-40,42,29,38",
-                                         "--luanti", luanti, "--name", "My town"});
+  const ReplayOutcome done =
+      run_replay({"export", "--world", world, "--box", "-37,-21,-40,42,29,38", "--luanti", luanti,
+                  "--name", "My town"});
   INFO(done.out << done.err);
   REQUIRE(done.code == 0);
   CHECK(done.out.find("80 x 51 x 79 voxels, ") != std::string::npos);
@@ -80,14 +82,13 @@ TEST_CASE("a box of a world is exported as a Luanti world and imported with the 
   CHECK(report->damaged.empty());
   const auto imported = [&](VoxelPos at) -> std::string {
     const auto found = chunks.find({0, chunk_of(at, 32)});
-    return found == chunks.end() ? "air"
-                                 : table[material_at(found->second, local_of(at, 32))].name;
+    return found == chunks.end() ? "air" : table[material_at(found->second, local_of(at, 32))].name;
   };
 
   const auto source = open_for_reading(world);
   REQUIRE(source.has_value());
-  const auto then = WorldAt::open(*source->store, *source->generator,
-                                  *source->store->last_sequence());
+  const auto then =
+      WorldAt::open(*source->store, *source->generator, *source->store->last_sequence());
   REQUIRE(then.has_value());
   const auto materials = source->store->materials(kSequenceMax);
   REQUIRE(materials.has_value());
@@ -101,8 +102,7 @@ TEST_CASE("a box of a world is exported as a Luanti world and imported with the 
       for (std::int32_t x = box.min.x - 16; x < box.max.x + 16; ++x) {
         std::string expected = "air";
         if (box.contains({x, y, z})) {
-          const auto material =
-              build->build->at({x - box.min.x, y - box.min.y, z - box.min.z});
+          const auto material = build->build->at({x - box.min.x, y - box.min.y, z - box.min.z});
           if (*material != kEmpty) expected = (*materials)[*material].name;
         }
         if (expected != "air") ++solid;

@@ -23,9 +23,9 @@ TEST_CASE("names that Luanti allows stay, and others are written so that they ca
   CHECK(luanti_node_name("minecraft:oak_stairs[facing=east]") ==
         "runstone:minecraft_3aoak_5fstairs_5bfacing_3deast_5d");
   CHECK(luanti_node_name("\xc3\xa9") == "runstone:_c3_a9");
-  for (const char* other :
-       {"default:stone", "stone", "runstone:a_", "runstone:a_5", "runstone:a_5F", "runstone:a_zz",
-        "runstone:a b", "runstone:", "runstone:air", "runstone:stone", "runstone:_c3", "runstone:_0a"})
+  for (const char* other : {"default:stone", "stone", "runstone:a_", "runstone:a_5",
+                            "runstone:a_5F", "runstone:a_zz", "runstone:a b", "runstone:",
+                            "runstone:air", "runstone:stone", "runstone:_c3", "runstone:_0a"})
     CHECK_FALSE(material_of_luanti_name(other).has_value());
   CHECK_FALSE(material_of_luanti_name("runstone:__" + std::string(64, 'x')).has_value());
 }
@@ -40,7 +40,8 @@ TEST_CASE("random names lead back from Luanti, and to a material of the same nam
     if (!is_printable_utf8(name)) continue;
     CAPTURE(name);
     const std::string node = luanti_node_name(name);
-    CHECK(node.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:") ==
+    CHECK(node.find_first_not_of(
+              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:") ==
           std::string::npos);
     if (node != name) CHECK(material_of_luanti_name(node) == name);
     CHECK(material_of_luanti_node({node, ""}, false).name == name);
@@ -80,7 +81,8 @@ TEST_CASE("the bytes of a written block are those that Luanti's format says", "[
   const Bytes block = encode_luanti_block(uniform_chunk(Extent::cube(16), kEmpty),
                                           [](Material) { return std::string("air"); });
   CHECK(Bytes(block.begin(), block.begin() + 6) == Bytes{28, 0, 0xff, 0xff, 2, 2});
-  const Bytes ending = {0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0, 0, 1, 0, 0, 0, 3, 'a', 'i', 'r', 10, 0, 0};
+  const Bytes ending = {0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0,  0, 1,
+                        0, 0, 0, 3,    'a',  'i',  'r',  10, 0, 0};
   REQUIRE(block.size() > ending.size());
   CHECK(Bytes(block.end() - static_cast<std::ptrdiff_t>(ending.size()), block.end()) == ending);
 }
