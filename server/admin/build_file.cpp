@@ -12,6 +12,7 @@
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
 #include "server/map/build_picture.hpp"
+#include "server/mapping/colour_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -83,12 +84,16 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
   return {};
 }
 
-Result<FileBuild, std::string> read_any_build_file(const std::string& file) {
+Result<FileBuild, std::string> read_any_build_file(const std::string& file,
+                                                   const std::string& colours) {
   if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
   const auto bytes = read_file(file, kPlacedFileBytesMax, FileKinds::regular);
   if (!bytes) return failure(bytes.error());
   ForeignReading reading;
   reading.name = std::filesystem::path(file).stem().string();
+  std::string picture;
+  if (const auto added = add_colour_map(colours, picture, reading); !added)
+    return failure(added.error());
   return read_file_build(
       file, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
 }

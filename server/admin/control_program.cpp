@@ -34,7 +34,8 @@ std::vector<std::string> with_whole_paths(std::vector<std::string> words) {
   if (row == nullptr || !row->words.ends_with(" FILE")) return words;
   const auto file = static_cast<std::size_t>(std::count(row->words.begin(), row->words.end(), ' '));
   for (std::size_t i = file; i < words.size(); ++i) {
-    const bool is_file = i == file || (row->words == kImportFileWords && words[i - 1] == kMapWord);
+    const bool is_behind_word = words[i - 1] == kMapWord || words[i - 1] == kColoursWord;
+    const bool is_file = i == file || (row->words == kImportFileWords && is_behind_word);
     std::error_code ignored;
     if (is_file && !is_quoted(words[i]))
       words[i] = std::filesystem::absolute(words[i], ignored).string();

@@ -234,7 +234,7 @@ struct ReadFile {
 };
 
 Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
-  auto build = read_any_build_file(wanted.file);
+  auto build = read_any_build_file(wanted.file, wanted.file_words.colours);
   if (!build) return failure(build.error());
   ReadFile out;
   if (const std::string& file = wanted.file_words.map; !file.empty()) {
@@ -302,7 +302,8 @@ constexpr std::array<CommandRow, 9> kLibraryRows = {{
      parsed_by<parse_place, place_stored_build>()},
     {kImportFileWords, kLocal,
      "import FILE at X Y Z ...  place a build from a file (.rsb, .schem, .vox and others), with the\n"
-     "                          words of builds place and [map FILE], which chooses materials",
+     "                          words of builds place, [map FILE], which chooses materials, and\n"
+     "                          [colours FILE], a PNG with the colours of a height map",
      parsed_by<parse_import_file, import_file>()},
     {"builds cancel", needs(Right::administer),
      "builds cancel             end what you place, and take it back; the console ends all",

@@ -133,10 +133,13 @@ PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file) {
       out.missing = is_add ? MissingMaterials::added : MissingMaterials::nearest;
     } else if (file != nullptr && reader.take_word(kMapWord)) {
       file->map = reader.take(std::string(kMapWord), "a TOML file that chooses materials");
+    } else if (file != nullptr && reader.take_word(kColoursWord)) {
+      file->colours =
+          reader.take(std::string(kColoursWord), "a PNG with the colours of a height map");
     } else {
       reader.wrong(reader.command() + " \"" + reader.peek() +
                    "\": turn, mirror, only-into, without" +
-                   (file != nullptr ? ", materials or map" : " or materials"));
+                   (file != nullptr ? ", materials, map or colours" : " or materials"));
     }
   }
   return out;

@@ -32,12 +32,13 @@ struct PlaceWords {
 /// The materials that one command adds at most. Rows of a world's table are for ever.
 inline constexpr std::size_t kPlacedMaterialsMax = 1024;
 
-/// The command that reads a file and places its build, and the word before the file of its map.
+/// The command that reads a file and places its build, and the words before the names of further files.
 inline constexpr std::string_view kImportFileWords = "import FILE";
-inline constexpr std::string_view kMapWord = "map";
+inline constexpr std::string_view kMapWord = "map", kColoursWord = "colours";
 /// The words of a command that reads a file, besides those that place its build.
 struct PlacedFileWords {
-  std::string map;  // the TOML file that chooses materials (material_map_file.hpp); empty: none
+  std::string map;      // the TOML file that chooses materials (material_map_file.hpp); empty: none
+  std::string colours;  // the PNG with the colours of a height map; empty: none
 };
 
 /// Takes `at X Y Z` and the words behind it. If `file` is not null, also takes the words for it.

@@ -105,6 +105,8 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
+  made->add_option("--colours", out.colours,
+                   "file: PNG with the colours of the columns, if SOURCE is a height map");
   made->add_option("--map", out.map,
                    "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
                    "\"planks\" below [materials]");

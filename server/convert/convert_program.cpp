@@ -14,6 +14,7 @@
 #include "common/formats/mapped_build.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
+#include "server/mapping/colour_map_file.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -22,7 +23,7 @@ namespace {
 constexpr std::size_t kFileBytesMax = std::size_t{4} << 30;
 
 struct ConvertOptions {
-  std::string in, out, name, map;
+  std::string in, out, name, map, colours;
   std::uint64_t memory_mib = 2048;
   bool keep_all = true;
   bool lists = false;
@@ -36,6 +37,9 @@ Result<FileBuild, std::string> read(const ConvertOptions& options) {
   reading.keep_all = options.keep_all;
   reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
   reading.name = std::filesystem::path(options.in).stem().string();
+  std::string colours;
+  if (auto added = add_colour_map(options.colours, colours, reading); !added)
+    return failure(added.error());
   auto build = read_file_build(
       options.in, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
   if (build && !options.name.empty()) build->info.name = options.name;
@@ -114,6 +118,8 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
                  "program only says what IN is");
   app.add_option("--name", options.name, "name of the build; default: that of IN")
       ->check(name_refusal);
+  app.add_option("--colours", options.colours,
+                 "PNG with the colours of the columns, if IN is a height map");
   app.add_option("--map", options.map,
                  "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
                  "\"planks\" below [materials]");

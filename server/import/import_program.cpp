@@ -242,6 +242,8 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
     return failure("--edge " + std::to_string(request.edge) +
                    ": chunks have an edge of 16, 32, 64 or 128");
   }
+  if (!request.colours.empty() && request.kind != ImportKind::file)
+    return failure("--colours: only import file takes it, for a height map");
   if (const auto free = NewFolder::check(request.world); !free) return failure(free.error());
   std::optional<MaterialMap> map;
   if (!request.map.empty()) {
@@ -252,7 +254,7 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   const MaterialMap* const chosen = map ? &*map : nullptr;
   if (request.kind == ImportKind::luanti) return import_luanti_world(request, chosen, out);
   auto parts = request.kind == ImportKind::file
-                   ? open_file_parts(request.source, request.at, request.keep_all)
+                   ? open_file_parts(request.source, request.at, request.keep_all, request.colours)
                    : open_minecraft_parts(request.source, request.keep_all);
   if (!parts) return failure(parts.error());
   if (chosen == nullptr) return import_parts(request, **parts, out);

@@ -21,6 +21,7 @@ struct ImportRequest {
   bool keep_all = false;
   bool progress = false;  // print progress on standard error even if it is no terminal
   bool palette = true;    // add the materials of the built-in table that the world lacks
+  std::string colours;    // of a file that is a height map: the PNG with its colours; empty: none
   std::string map;        // TOML file that chooses materials (material_map_file.hpp); empty: none
 };
 

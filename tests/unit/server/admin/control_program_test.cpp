@@ -35,8 +35,10 @@ TEST_CASE("names of files in the words of a shell become whole paths", "[admin][
   CHECK(with_whole_paths({"import", "a.schem", "at", "1", "2", "3", "map", "m.toml", "without",
                           "air"}) == Words{"import", here + "a.schem", "at", "1", "2", "3", "map",
                                            here + "m.toml", "without", "air"});
-  CHECK(with_whole_paths({"import", "\"a b.schem\"", "at", "1", "2", "3", "map", "/m.toml"}) ==
-        Words{"import", "\"a b.schem\"", "at", "1", "2", "3", "map", "/m.toml"});
+  CHECK(with_whole_paths({"import", "\"a b.schem\"", "at", "1", "2", "3", "map", "/m.toml",
+                          "colours", "c.png"}) == Words{"import", "\"a b.schem\"", "at", "1", "2",
+                                                        "3", "map", "/m.toml", "colours",
+                                                        here + "c.png"});
   CHECK(with_whole_paths({"say", "map", "file"}) == Words{"say", "map", "file"});
 }
 

@@ -202,6 +202,10 @@ TEST_CASE("a file is placed with the materials that a map chooses", "[admin][lib
   REQUIRE(bench.answers.size() == 2);
   CHECK(bench.answers[0].text == map + ": these rows fit no material: \"a:b\"");
 
+  std::ofstream(bench.folder / "c.png") << "x";
+  answer = bench.give("import " + file + " at 0 0 0 colours " + (bench.folder / "c.png"));
+  CHECK(answer.text.find("mill.rsb: is no height map (.png)") != std::string::npos);
+
   std::ofstream(map) << "[materials]\n\"*\" = 4\n";
   answer = bench.give("import " + file + " at 0 0 0 map " + map);
   CHECK_FALSE(answer.is_ok);

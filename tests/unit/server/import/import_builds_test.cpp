@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/formats/file_build.hpp"
+#include "common/formats/height_map.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/formats/schematic_writer.hpp"
 #include "server/import/import_program.hpp"
@@ -175,6 +176,31 @@ TEST_CASE("an import makes a world of the materials that a map chooses", "[impor
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().find("map.toml:1: ") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(request.world));
+}
+
+TEST_CASE("a height map becomes a world with the colours of a second file", "[import]") {
+  const TempFolder folder;
+  const FileBuild build = file_build({3, 2, 2}, {file_material("a", "", {255, 0, 0, 255})},
+                                     [](VoxelPos) { return std::uint16_t{1}; });
+  write_bytes(folder / "land.png", *written(write_height_map, build));
+  ImportRequest request = request_of(folder, "land.png");
+  request.palette = false;
+  request.colours = folder / "colours.png";
+  write_bytes(request.colours, *written(write_colour_map, build));
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  INFO((imported ? out.str() : imported.error()));
+  REQUIRE(imported.has_value());
+  const auto store = open_world(request.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  REQUIRE((*store)->meta().materials.size() == 2);
+  CHECK((*store)->meta().materials[1].name == "colour #ff0000");
+
+  request.kind = ImportKind::minecraft;
+  request.world = folder / "second";
+  const auto refused = import_world(request, out);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().starts_with("--colours: only import file takes it"));
 }
 
 TEST_CASE("an import of a file that cannot be read makes no world", "[import]") {
