@@ -20,8 +20,8 @@ inline constexpr std::size_t kForeignBlockBytesMax = std::size_t{64} << 20;
 
 class BlockMaterials {
  public:
-  /// `keep_all` is that of Format::material_of. If `map` is not null, it must outlive the object, and
-  /// the materials are those that it chooses.
+  /// `keep_all` is that of Format::material_of. If `map` is not null, it must outlive the object,
+  /// and the materials are those that it chooses.
   BlockMaterials(const Format& format, bool keep_all, const MaterialMap* map = nullptr)
       : format_(format), keep_all_(keep_all), map_(map) {}
 
@@ -29,8 +29,9 @@ class BlockMaterials {
   void note(const ForeignPiece& piece);
 
   /// Returns a table of the materials of all noted blocks that are not empty, ascending by name and
-  /// states of the blocks. Id 0 is air. Blocks with materials of one name share the first one that the
-  /// map did not choose, otherwise the first one. Fails with limit_exceeded if the table has no room, or if the blocks exceeded kForeignBlockBytesMax.
+  /// states of the blocks. Id 0 is air. Blocks with materials of one name share the first one that
+  /// the map did not choose, otherwise the first one. Fails with limit_exceeded if the table has no
+  /// room, or if the blocks exceeded kForeignBlockBytesMax.
   Result<MaterialTable> make_table();
   /// Returns the rows of the map that applied. Requires make_table().
   const AppliedRows& applied() const { return applied_; }

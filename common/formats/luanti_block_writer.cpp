@@ -49,7 +49,8 @@ Bytes encode_luanti_block(const RunChunk& voxels, const LuantiNodeOf& node_of) {
   }
   nodes.insert(nodes.end(), kWrittenNodes, kDayLight);        // param1
   nodes.insert(nodes.end(), kWrittenNodes, std::uint8_t{0});  // param2
-  // Version, flags, which sides have complete light (all), the bytes of an id and of the parameters.
+  // Version, flags, which sides have complete light (all), the bytes of an id and of the
+  // parameters.
   Bytes out = {kWrittenVersion, 0, 0xff, 0xff, 2, 2};
   put_stream(out, nodes);
   const Bytes metadata = {0};

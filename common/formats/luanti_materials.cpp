@@ -276,8 +276,8 @@ std::string material_name(std::string_view name) {
   return out;
 }
 
-/// Returns the material of a node that was written by luanti_node_name(). Each of them was a voxel of a
-/// world, so none is left out.
+/// Returns the material of a node that was written by luanti_node_name(). Each of them was a voxel
+/// of a world, so none is left out.
 MaterialInfo written_material(const std::string& name) {
   const MaterialTable& built_in = default_material_table();
   MaterialInfo out;

@@ -111,8 +111,8 @@ struct MtsNode {
   std::uint8_t param2 = 0;
 };
 
-/// Returns a name of a material as the name of a node. Names that a reader of nodes would change, or take
-/// for a written name, are written so that they can be read back.
+/// Returns a name of a material as the name of a node. Names that a reader of nodes would change,
+/// or take for a written name, are written so that they can be read back.
 std::string mts_name(const std::string& name) {
   const bool is_plain =
       std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });

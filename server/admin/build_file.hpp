@@ -30,8 +30,9 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
 
 /// The maximum size of a file that read_any_build_file() reads, and of the build's memory.
 inline constexpr std::size_t kPlacedFileBytesMax = std::size_t{256} << 20;
-/// Reads a file of any format with a build (docs/formats.md). `colours`: the PNG with the colours of a height
-/// map; empty: none. The error is one line that begins with the name of the file. Blocks on the disk.
+/// Reads a file of any format with a build (docs/formats.md). `colours`: the PNG with the colours
+/// of a height map; empty: none. The error is one line that begins with the name of the file.
+/// Blocks on the disk.
 Result<FileBuild, std::string> read_any_build_file(const std::string& file,
                                                    const std::string& colours);
 

@@ -32,7 +32,8 @@ struct PlaceWords {
 /// The materials that one command adds at most. Rows of a world's table are for ever.
 inline constexpr std::size_t kPlacedMaterialsMax = 1024;
 
-/// The command that reads a file and places its build, and the words before the names of further files.
+/// The command that reads a file and places its build, and the words before the names of further
+/// files.
 inline constexpr std::string_view kImportFileWords = "import FILE";
 inline constexpr std::string_view kMapWord = "map", kColoursWord = "colours";
 /// The words of a command that reads a file, besides those that place its build.

@@ -72,8 +72,8 @@ VoxelPos top_of_middle(const FileBuild& build, const VoxelBox& box) {
   return {box.min.x + x, box.max.y, box.min.z + z};
 }
 
-/// Returns the lowest place at or above `at` where a player, who is two voxels high, does not stand in a
-/// voxel of a part.
+/// Returns the lowest place at or above `at` where a player, who is two voxels high, does not stand
+/// in a voxel of a part.
 VoxelPos raised_from(VoxelPos at, const FileBuild& build, const VoxelBox& box) {
   if (!box.contains({at.x, box.min.y, at.z})) return at;
   const auto is_solid = [&](std::int32_t y) {

@@ -18,8 +18,8 @@ namespace runstone {
 struct BuildsSurvey {
   MaterialTable materials;  // id 0 is air; the others ascend by name
   VoxelBox bounds;          // around all parts
-  // The place that the source says, raised until two voxels there are empty. If the source says none, or
-  // one outside the bounds along x and z, the top of the part in the middle.
+  // The place that the source says, raised until two voxels there are empty. If the source says
+  // none, or one outside the bounds along x and z, the top of the part in the middle.
   VoxelPos spawn;
 };
 

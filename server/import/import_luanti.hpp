@@ -1,7 +1,7 @@
-// Import of a Luanti world: its map, in map.sqlite or in a LevelDB as world.mt says, is read block by block
-// and becomes chunks of runs. A sink takes the chunks and decides where they go. There are two
-// passes: the first finds names and places, because materials must be known before the first chunk;
-// the second makes one chunk at a time.
+// Import of a Luanti world: its map, in map.sqlite or in a LevelDB as world.mt says, is read block
+// by block and becomes chunks of runs. A sink takes the chunks and decides where they go. There are
+// two passes: the first finds names and places, because materials must be known before the first
+// chunk; the second makes one chunk at a time.
 //   LuantiImportSink sink{materials, chunk, progress}; const auto report =
 //   import_luanti("worlds/valley", {.edge = 32}, sink);
 // A damaged block is listed and left empty.

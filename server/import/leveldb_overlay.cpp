@@ -278,7 +278,8 @@ Status LeveldbOverlay::GetFileSize(const std::string& file, std::uint64_t* out) 
 
 Status LeveldbOverlay::RenameFile(const std::string& from, const std::string& to) {
   if (written(from) == nullptr) {
-    // The only file of the folder that LevelDB renames is its log for people, which nobody reads here.
+    // The only file of the folder that LevelDB renames is its log for people, which nobody reads
+    // here.
     return FileExists(from) ? RemoveFile(from) : system_failure(from, ENOENT);
   }
   const std::lock_guard lock(mutex_);

@@ -1,11 +1,13 @@
-// LeveldbOverlay: the environment in which a LevelDB opens a folder for reading only. LevelDB itself has no
-// such mode: it makes a new manifest and rewrites its log when it opens. Here files are read from the folder,
-// all that is written stays in memory, and removed files are only hidden. So nothing in the folder changes,
-// and no copy of it is made. Internal to leveldb_folder.cpp.
-//   - While the database opens, it may write: the rows of its log become tables in memory. They are bounded.
-//   - After freeze() each write fails. The database notes the error, never compacts, and goes on reading.
-//   - Files are read with pread() and not mapped: a file that another program cuts short is an error of a
-//     read, not a signal.
+// LeveldbOverlay: the environment in which a LevelDB opens a folder for reading only. LevelDB
+// itself has no such mode: it makes a new manifest and rewrites its log when it opens. Here files
+// are read from the folder, all that is written stays in memory, and removed files are only hidden.
+// So nothing in the folder changes, and no copy of it is made. Internal to luanti_leveldb_map.cpp.
+//   - While the database opens, it may write: the rows of its log become tables in memory, which are
+//     bounded.
+//   - After freeze() each write fails. The database notes the error, never compacts, and goes on
+//     reading.
+//   - Files are read with pread() and not mapped: a file that another program cuts short is an error
+//     of a read, not a signal.
 // Threads: any; LevelDB calls it from its background thread, too.
 #pragma once
 #include <leveldb/env.h>
@@ -27,8 +29,8 @@ class LeveldbOverlay final : public leveldb::EnvWrapper {
   explicit LeveldbOverlay(std::size_t written_max);
   ~LeveldbOverlay() override;
 
-  /// Ends writing. Call it once, after the database was opened, also if opening failed. Work that the
-  /// database wants to do in the background begins only now.
+  /// Ends writing. Call it once, after the database was opened, also if opening failed. Work that
+  /// the database wants to do in the background begins only now.
   void freeze();
   /// Returns true if another process has the folder locked for writing.
   bool is_in_use() const { return is_in_use_; }
@@ -46,8 +48,8 @@ class LeveldbOverlay final : public leveldb::EnvWrapper {
   leveldb::Status RemoveDir(const std::string& folder) override;
   leveldb::Status GetFileSize(const std::string& file, std::uint64_t* out) override;
   leveldb::Status RenameFile(const std::string& from, const std::string& to) override;
-  /// Takes a shared lock on the file of the lock, if there is one. So a Luanti server that runs is noticed,
-  /// and one that starts meanwhile is refused by its own LevelDB.
+  /// Takes a shared lock on the file of the lock, if there is one. So a Luanti server that runs is
+  /// noticed, and one that starts meanwhile is refused by its own LevelDB.
   leveldb::Status LockFile(const std::string& file, leveldb::FileLock** out) override;
   leveldb::Status UnlockFile(leveldb::FileLock* lock) override;
   void Schedule(void (*work)(void*), void* argument) override;

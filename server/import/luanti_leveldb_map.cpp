@@ -12,8 +12,8 @@
 namespace runstone {
 namespace {
 
-/// The rows of the log, which the database keeps in memory, and a new manifest. Luanti's log has at most
-/// 4 MiB before it becomes a table.
+/// The rows of the log, which the database keeps in memory, and a new manifest. Luanti's log has at
+/// most 4 MiB before it becomes a table.
 constexpr std::size_t kLogBytesMax = std::size_t{512} << 20;
 /// The tables that are open at a time.
 constexpr int kOpenFilesMax = 200;

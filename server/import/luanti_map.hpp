@@ -1,7 +1,7 @@
-// LuantiMap: the rows of the map of a Luanti world, for reading only: one for each block of 16^3 nodes. The
-// setting `backend` of the world decides what keeps them:
-//   - sqlite3: map.sqlite, whose one table has two layouts: blocks(pos, data), and blocks(x, y, z, data)
-//     since Luanti 5.12;
+// LuantiMap: the rows of the map of a Luanti world, for reading only: one for each block of 16^3
+// nodes. The setting `backend` of the world decides what keeps them:
+//   - sqlite3: map.sqlite, whose one table has two layouts: blocks(pos, data), and since Luanti 5.12
+//     blocks(x, y, z, data);
 //   - leveldb: the folder map.db, whose keys are the decimal digits of pos.
 // All calls read the same state of the map. Threads: any, one at a time. It blocks on the disk.
 #pragma once
@@ -32,8 +32,8 @@ class LuantiMap {
 
   virtual std::uint64_t row_count() const = 0;
 
-  /// Calls `to_row` for every row, in the order of the keys. Rows of one position come one after another.
-  /// Fails if not all rows could be read.
+  /// Calls `to_row` for every row, in the order of the keys. Rows of one position come one after
+  /// another. Fails if not all rows could be read.
   virtual Result<void, std::string> each_row(
       const std::function<void(const LuantiRow&)>& to_row) = 0;
 
@@ -43,8 +43,8 @@ class LuantiMap {
   virtual std::optional<ByteView> find(ChunkCoord block) = 0;
 };
 
-/// Opens a map. The error is one line of text, and says what to do if the map is in use, is damaged or has a
-/// journal.
+/// Opens a map. The error is one line of text, and says what to do if the map is in use, is damaged
+/// or has a journal.
 Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_map(const LuantiFolder& folder);
 Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_sqlite_map(const std::string& file);
 Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_leveldb_map(const std::string& folder);

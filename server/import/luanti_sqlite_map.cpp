@@ -68,8 +68,8 @@ std::string words_of(const std::string& file, const sql::Error& error) {
          ". If the folder is read-only, copy it and import the copy";
 }
 
-/// One read transaction lasts as long as the object, so all calls read the same state of the map, even
-/// while Luanti writes to it.
+/// One read transaction lasts as long as the object, so all calls read the same state of the map,
+/// even while Luanti writes to it.
 class SqliteMap final : public LuantiMap {
  public:
   SqliteMap(sql::Database database, sql::Statement scan, sql::Statement find, bool has_coordinates,

@@ -23,8 +23,8 @@ struct CommonOptions {
 };
 
 /// Every output parameter is set while the command line is parsed and must live until then. A name
-/// without dashes declares a positional argument, which is required unless it may be missing. An option
-/// given twice takes its last value.
+/// without dashes declares a positional argument, which is required unless it may be missing. An
+/// option given twice takes its last value.
 class SubcommandOptions {
  public:
   enum class Presence { optional, required, may_be_missing };

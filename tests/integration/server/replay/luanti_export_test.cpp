@@ -21,7 +21,8 @@ using namespace runstone::test;
 
 namespace {
 
-/// Makes a world of terrain with edits, some of whose materials have names that Luanti does not allow.
+/// Makes a world of terrain with edits, some of whose materials have names that Luanti does not
+/// allow.
 void make_edited_world(const std::string& folder, std::uint16_t edge) {
   WorldMeta meta = sample_meta();
   meta.chunk_edge = edge;

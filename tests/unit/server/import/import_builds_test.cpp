@@ -37,7 +37,8 @@ ImportRequest request_of(const TempFolder& folder, const std::string& file) {
   return request;
 }
 
-/// Writes a region of one chunk, 16 layers of stone from y = 0 on, and returns the folder of its world.
+/// Writes a region of one chunk, 16 layers of stone from y = 0 on, and returns the folder of its
+/// world.
 std::string make_minecraft_world(const TempFolder& folder) {
   const std::string world = folder / "java";
   std::filesystem::create_directories(world + "/region");

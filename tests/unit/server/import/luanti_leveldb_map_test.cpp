@@ -130,8 +130,8 @@ TEST_CASE("a map in a LevelDB gives the chunks of the same map in SQLite, and st
           "[server][import]") {
   const TempFolder folder;
   const std::string world = folder / "world";
-  // The rows lie in the log alone, in some tables and the log, and in so many tables that LevelDB wants to
-  // compact them when it opens.
+  // The rows lie in the log alone, in some tables and the log, and in so many tables that LevelDB
+  // wants to compact them when it opens.
   const auto [buffer, times] = GENERATE(
       table<std::size_t, int>({{std::size_t{4} << 20, 1}, {kSmallBuffer, 1}, {kSmallBuffer, 30}}));
   CAPTURE(buffer, times);
