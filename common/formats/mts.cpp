@@ -15,6 +15,7 @@
 #include "common/formats/grid_cells.hpp"
 #include "common/formats/grid_pieces.hpp"
 #include "common/formats/inflate_source.hpp"
+#include "common/formats/luanti_names.hpp"
 
 namespace runstone {
 namespace {
@@ -109,10 +110,19 @@ struct MtsNode {
   std::uint8_t param2 = 0;
 };
 
+/// Returns a name of a material as the name of a node. Names that a reader of nodes would change,
+/// or take for a written name, are written so that they can be read back.
+std::string mts_name(const std::string& name) {
+  const bool is_plain =
+      std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+  return is_plain && !material_of_luanti_name(name) && name != "ignore" ? name
+                                                                        : luanti_node_name(name);
+}
+
 MtsNode mts_node(const BuildMaterial& material) {
   if (material.row.visibility == Visibility::empty) return {"air", 0};
   std::string_view states = material.states;
-  MtsNode out{material.row.name, 0};
+  MtsNode out{mts_name(material.row.name), 0};
   // The param2 is the last of the states.
   const std::size_t at = states.rfind(kMtsParam);
   if (at != std::string_view::npos && (at == 0 || states[at - 1] == ',')) {

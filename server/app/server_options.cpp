@@ -61,7 +61,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           ->option_text("luanti|minecraft|file");
   CLI::Option* const source = made->add_option(
       "SOURCE", out.source,
-      "luanti: folder that holds map.sqlite; minecraft: folder of the world, or a region file; "
+      "luanti: folder that holds world.mt and its map; minecraft: folder of the world, or a region file; "
       "file: such as castle.schem");
   kind->needs(source);
   CLI::Option* const luanti = made->add_option_function<std::string>(
@@ -89,6 +89,11 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
+  made->add_option("--colours", out.colours,
+                   "file: PNG with the colours of the columns, if SOURCE is a height map");
+  made->add_option("--map", out.map,
+                   "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
+                   "\"planks\" below [materials]");
   made->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
   made->add_flag("--progress", out.progress,
                  "print progress even if standard error is no terminal");

@@ -8,9 +8,12 @@
 #include "common/core/coords_text.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/file_build.hpp"
+#include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/history/build_at.hpp"
 #include "server/replay/command_world.hpp"
+#include "server/replay/export_luanti.hpp"
+#include "server/replay/luanti_world_writer.hpp"
 #include "server/replay/rlog_file.hpp"
 #include "server/store/store.hpp"
 
@@ -38,6 +41,10 @@ Result<int, std::string> export_log(const ExportOptions& options, std::ostream& 
   return code_of_output(**store);
 }
 
+std::string name_of_build(const ExportOptions& options, const std::string& place) {
+  return options.name.empty() ? build_name_of_file(place) : options.name;
+}
+
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
   if (auto why = ending_refusal(options.file, true); !why.empty()) return failure(std::move(why));
   const auto world = open_for_reading(options.common.world, options.at);
@@ -60,7 +67,7 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
                     });
   }();
   if (!build) return failure(options.common.world + ": " + build.error());
-  build->info.name = options.name.empty() ? build_name_of_file(options.file) : options.name;
+  build->info.name = name_of_build(options, options.file);
   const auto bytes = write_build_to_file(options.file, *build);
   if (!bytes) return failure(bytes.error());
   const BuildSides& sides = build->info.sides;
@@ -81,13 +88,65 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
   return code_of_output(store);
 }
 
+Result<int, std::string> export_luanti_world(const ExportOptions& options, std::ostream& out) {
+  if (!options.box) {
+    return failure(
+        "--luanti: --box is missing: X,Y,Z,X,Y,Z of the part of the world that becomes a Luanti "
+        "world");
+  }
+  if (auto why = luanti_box_refusal(*options.box); !why.empty()) return failure(std::move(why));
+  if (const auto free = NewFolder::check(options.luanti); !free) return failure(free.error());
+  const auto world = open_for_reading(options.common.world, options.at);
+  if (!world) return failure(world.error());
+  Store& store = *world->store;
+  const auto last = store.last_sequence();
+  if (!last) return failure(last.error().message());
+  const Sequence at = std::min(world->end, *last);
+  const auto then = WorldAt::open(store, *world->generator, at);
+  if (!then) return failure(then.error().message());
+  const auto materials = store.materials(at);
+  if (!materials) return failure(materials.error().message());
+  auto writer =
+      LuantiWorldWriter::make(options.luanti, name_of_build(options, options.luanti), out);
+  if (!writer) return failure(writer.error());
+  const auto solid = [&] {
+    ProgressLine line("chunks read", options.common.progress);
+    return export_luanti(*then, store, *materials, *options.box, store.meta().chunk_edge, *writer,
+                         [&](std::uint64_t done, std::uint64_t total) {
+                           line.show(done, total);
+                           return true;
+                         });
+  }();
+  if (!solid) return failure(options.common.world + ": " + solid.error());
+  const std::uint64_t blocks = writer->blocks();
+  if (const auto done = writer->finish(); !done) return failure(done.error());
+  const VoxelBox& box = *options.box;
+  print_world(out, store);
+  row(out, "moment") << "after sequence " << at << '\n';
+  row(out, "box") << box.max.x - box.min.x << " x " << box.max.y - box.min.y << " x "
+                  << box.max.z - box.min.z << " voxels, " << *solid << " of them not empty\n";
+  row(out, "written") << options.luanti << ", " << blocks << " blocks of 16 x 16 x 16\n";
+  const nlohmann::ordered_json json = {
+      {"seq", at},
+      {"sides", {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}},
+      {"solid", *solid},
+      {"lost", store.loss() ? store.loss()->message() : ""},
+      {"blocks", blocks}};
+  const auto written = write_report(options.common.json, json.dump(1));
+  if (!written) return failure(written.error());
+  return code_of_output(store);
+}
+
 }  // namespace
 
 void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
   command_line.common(options.common, "folder of the world; a server may be running it");
   command_line.output_file("FILE", options.file,
                            "the .rlog file to write, or with --box a build such as town.schem; an "
-                           "old one is replaced");
+                           "old one is replaced",
+                           SubcommandOptions::Presence::may_be_missing);
+  command_line.folder("--luanti", options.luanti,
+                      "with --box and without FILE: folder of the Luanti world to make");
   command_line.moment("--at", options.at, "last edit to export");
   command_line.parsed(
       "--box",
@@ -107,6 +166,11 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
     return failure("--name: 1 to " + std::to_string(kBuildNameBytesMax) +
                    " bytes without quotes, backslashes, control characters and outer blanks");
   }
+  if (options.luanti.empty() == options.file.empty()) {
+    return failure(options.file.empty() ? "FILE is missing: the file to write"
+                                        : "FILE and --luanti: give one of them");
+  }
+  if (!options.luanti.empty()) return export_luanti_world(options, out);
   return options.box ? export_box(options, out) : export_log(options, out);
 }
 
