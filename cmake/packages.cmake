@@ -19,6 +19,7 @@ find_package(OpenSSL 3.0 REQUIRED)
 find_package(zstd REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)  # reads height maps
+find_package(leveldb REQUIRED CONFIG)  # reads maps of Luanti
 find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)

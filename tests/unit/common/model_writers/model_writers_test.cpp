@@ -360,10 +360,10 @@ TEST_CASE("a model has as many materials as a build", "[model_writers]") {
 
 TEST_CASE("far voxels of a long build are at their places", "[model_writers]") {
   auto builder = BuildBuilder::of(
-      {grid_cuts(kBuildEdgeMax, 128), grid_cuts(1, 128), grid_cuts(1, 128)});
+      {grid_cuts(kBuildSideMax, 128), grid_cuts(1, 128), grid_cuts(1, 128)});
   REQUIRE(builder.has_value());
   REQUIRE(builder->number_of(7) == 1);
-  const SectionPos last{static_cast<std::uint32_t>(kBuildEdgeMax / 128 - 1), 0, 0};
+  const SectionPos last{static_cast<std::uint32_t>(kBuildSideMax / 128 - 1), 0, 0};
   REQUIRE(builder->put(last, uniform_chunk({128, 1, 1}, 1)).has_value());
   FileBuild build{{}, *builder->finish(), {file_material("stone", "", {1, 2, 3, 255})}};
   build.info.name = "far";
@@ -379,8 +379,8 @@ TEST_CASE("far voxels of a long build are at their places", "[model_writers]") {
         high = std::max(high, place[0]);
       }
     }
-    CHECK(low == kBuildEdgeMax - 128);
-    CHECK(high == kBuildEdgeMax);
+    CHECK(low == kBuildSideMax - 128);
+    CHECK(high == kBuildSideMax);
   }
   const Bytes glb = model_bytes("far.glb", build, {});
   const std::string text(glb.begin(), glb.end());
