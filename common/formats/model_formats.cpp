@@ -1,7 +1,6 @@
 #include "common/formats/model_formats.hpp"
 
-#include <utility>
-
+#include "common/formats/material_match.hpp"
 #include "common/materials/default_look.hpp"
 #include "common/model_writers/model_writers.hpp"
 
@@ -12,9 +11,7 @@ ModelSource model_source(const FileBuild& build) {
   ModelSource source{*build.build, build.info, {}};
   for (const BuildMaterial& material : build.materials) {
     const MaterialRow& row = material.row;
-    std::string name = row.name;
-    if (!material.states.empty()) name += "[" + material.states + "]";
-    source.materials.push_back({std::move(name), row.colour, row.visibility,
+    source.materials.push_back({world_name_of(material), row.colour, row.visibility,
                                 row.look ? *row.look : default_look(row.name, row.body)});
   }
   return source;

@@ -8,7 +8,7 @@
 namespace runstone {
 
 /// Write a build with the default choices of ModelWriting. Fail as the writers of
-/// model_writers.hpp do. A material is called by its name, then its states in brackets. An .obj names no
+/// model_writers.hpp do. The name of a material is world_name_of(). An .obj names no
 /// file of materials.
 Result<void> write_glb(const FileBuild& build, const FormatSink& sink);
 Result<void> write_gltf(const FileBuild& build, const FormatSink& sink);

@@ -41,7 +41,8 @@ struct ModelWriting {
   bool is_quantised = false;
   /// The side of a voxel. Finite and above 0.
   double metres_per_voxel = 1;
-  /// The name of the .mtl file that an .obj names, without folders. Empty: none.
+  /// The name of the .mtl file that an .obj names, without folders. Empty: none. A name of several
+  /// lines is left out.
   std::string material_file;
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -67,9 +68,13 @@ class ObjWriter {
  private:
   void write_head() {
     write_obj_comment(source_, out_);
-    if (!writing_.material_file.empty()) {
+    const std::string& file = writing_.material_file;
+    const bool is_one_line = std::none_of(file.begin(), file.end(), [](char c) {
+      return static_cast<unsigned char>(c) < ' ';
+    });
+    if (!file.empty() && is_one_line) {
       out_.text("mtllib ");
-      out_.text(writing_.material_file);
+      out_.text(file);
       out_.text("\n");
     }
     out_.text("o ");
