@@ -34,8 +34,8 @@ class CornerGrid {
  private:
   static std::size_t index(const Corner& at) {
     return static_cast<std::size_t>(at[0]) +
-           kRegionPoints * (static_cast<std::size_t>(at[1]) +
-                            kRegionPoints * static_cast<std::size_t>(at[2]));
+           kRegionPoints *
+               (static_cast<std::size_t>(at[1]) + kRegionPoints * static_cast<std::size_t>(at[2]));
   }
   std::vector<std::uint64_t> bits_;
 };

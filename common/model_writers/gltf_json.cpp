@@ -39,9 +39,8 @@ class GltfJson {
     out_.text(version());
     out_.text("\"},");
     if (writing_.is_quantised) {
-      out_.text(
-          R"("extensionsUsed":["KHR_mesh_quantization"],)"
-          R"("extensionsRequired":["KHR_mesh_quantization"],)");
+      out_.text(R"("extensionsUsed":["KHR_mesh_quantization"],)"
+                R"("extensionsRequired":["KHR_mesh_quantization"],)");
     }
     out_.text(R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[)");
     write_root();

@@ -29,8 +29,8 @@ class Base64Output {
  private:
   void write_group() {
     constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::uint32_t bits = std::uint32_t{group_[0]} << 16 | std::uint32_t{group_[1]} << 8 |
-                               std::uint32_t{group_[2]};
+    const std::uint32_t bits =
+        std::uint32_t{group_[0]} << 16 | std::uint32_t{group_[1]} << 8 | std::uint32_t{group_[2]};
     char digits[4];
     for (std::size_t i = 0; i < 4; ++i)
       digits[i] = i <= count_ ? kDigits[bits >> (18 - 6 * i) & 63] : '=';

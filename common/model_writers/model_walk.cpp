@@ -29,7 +29,7 @@ ModelWalk::ModelWalk(const ModelSource& source, const ModelWriting& writing)
 
 template <class F>
 bool ModelWalk::for_each_quads(F&& f) {
-  for (RegionPos at; at.z < counts_.z; ++at.z) {
+  for (ModelRegionPos at; at.z < counts_.z; ++at.z) {
     for (at.y = 0; at.y < counts_.y; ++at.y) {
       for (at.x = 0; at.x < counts_.x; ++at.x) {
         const std::vector<Quad>& quads = mesher_.quads_of(at);
@@ -40,7 +40,7 @@ bool ModelWalk::for_each_quads(F&& f) {
   return true;
 }
 
-std::uint64_t ModelWalk::key_of(RegionPos at) const {
+std::uint64_t ModelWalk::key_of(ModelRegionPos at) const {
   return static_cast<std::uint64_t>(at.x) +
          static_cast<std::uint64_t>(counts_.x) *
              (static_cast<std::uint64_t>(at.y) +
@@ -48,7 +48,7 @@ std::uint64_t ModelWalk::key_of(RegionPos at) const {
 }
 
 /// Gives a corner of a quad to the other regions that it touches.
-void ModelWalk::share(RegionPos from, const Corner& at) {
+void ModelWalk::share(ModelRegionPos from, const Corner& at) {
   const auto is_inside = [](int place) { return place % kModelRegionEdge != 0; };
   if (is_inside(at[0]) && is_inside(at[1]) && is_inside(at[2])) return;
   const VoxelPos point = {from.x * kModelRegionEdge + at[0], from.y * kModelRegionEdge + at[1],
@@ -58,7 +58,7 @@ void ModelWalk::share(RegionPos from, const Corner& at) {
   const auto place_in = [](std::int32_t place, std::int32_t region) {
     return static_cast<std::uint8_t>(place - region * kModelRegionEdge);
   };
-  for (RegionPos to{x.first, y.first, z.first}; to.z <= z.last; ++to.z) {
+  for (ModelRegionPos to{x.first, y.first, z.first}; to.z <= z.last; ++to.z) {
     for (to.y = y.first; to.y <= y.last; ++to.y) {
       for (to.x = x.first; to.x <= x.last; ++to.x) {
         if (to == from) continue;
@@ -70,7 +70,7 @@ void ModelWalk::share(RegionPos from, const Corner& at) {
 }
 
 void ModelWalk::collect_shared_corners() {
-  for_each_quads([&](RegionPos at, const std::vector<Quad>& quads) {
+  for_each_quads([&](ModelRegionPos at, const std::vector<Quad>& quads) {
     corners_.clear();
     for (const Quad quad : quads) {
       for (const Corner& corner : quad_corners(quad)) {
@@ -81,7 +81,7 @@ void ModelWalk::collect_shared_corners() {
   });
 }
 
-void ModelWalk::mark_corners(RegionPos at, const std::vector<Quad>& quads) {
+void ModelWalk::mark_corners(ModelRegionPos at, const std::vector<Quad>& quads) {
   corners_.clear();
   for (const Quad quad : quads) {
     for (const Corner& corner : quad_corners(quad)) corners_.add(corner);
@@ -92,10 +92,10 @@ void ModelWalk::mark_corners(RegionPos at, const std::vector<Quad>& quads) {
 }
 
 bool ModelWalk::for_each_region(const RegionSink& sink) {
-  return for_each_quads([&](RegionPos at, const std::vector<Quad>& quads) {
+  return for_each_quads([&](ModelRegionPos at, const std::vector<Quad>& quads) {
     if (closes_t_junctions_) mark_corners(at, quads);
-    return sink(maker_.make(region_box(build_, at).min, quads,
-                            closes_t_junctions_ ? &corners_ : nullptr));
+    return sink(
+        maker_.make(region_box(build_, at).min, quads, closes_t_junctions_ ? &corners_ : nullptr));
   });
 }
 

@@ -35,12 +35,12 @@ class ModelWalk {
   template <class F>
   bool for_each_quads(F&& f);
   void collect_shared_corners();
-  void share(RegionPos from, const Corner& at);
-  void mark_corners(RegionPos at, const std::vector<Quad>& quads);
-  std::uint64_t key_of(RegionPos at) const;
+  void share(ModelRegionPos from, const Corner& at);
+  void mark_corners(ModelRegionPos at, const std::vector<Quad>& quads);
+  std::uint64_t key_of(ModelRegionPos at) const;
 
   const Build& build_;
-  RegionPos counts_;
+  ModelRegionPos counts_;
   bool closes_t_junctions_;
   RegionMesher mesher_;
   RegionModelMaker maker_;

@@ -15,7 +15,7 @@ namespace runstone {
 
 /// A material of a model that is written.
 struct WrittenMaterial {
-  std::string name;                    // UTF-8; several may have one name
+  std::string name;                     // UTF-8; several may have one name
   MaterialColour colour{0, 0, 0, 255};  // sRGB and alpha
   Visibility visibility = Visibility::opaque;
   MaterialLook look;

@@ -69,9 +69,8 @@ class ObjWriter {
   void write_head() {
     write_obj_comment(source_, out_);
     const std::string& file = writing_.material_file;
-    const bool is_one_line = std::none_of(file.begin(), file.end(), [](char c) {
-      return static_cast<unsigned char>(c) < ' ';
-    });
+    const bool is_one_line = std::none_of(
+        file.begin(), file.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
     if (!file.empty() && is_one_line) {
       out_.text("mtllib ");
       out_.text(file);

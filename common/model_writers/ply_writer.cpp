@@ -70,8 +70,9 @@ Result<void> write_ply_model(const ModelSource& source, const ModelWriting& writ
   });
   if (counts.triangles == 0) return fail(ErrorCode::bad_value, "model: build shows no face");
   if (counts.vertices > kPlyCountMax || counts.triangles > kPlyCountMax) {
-    return fail(ErrorCode::limit_exceeded,
-                "model: a .ply has at most 2,147,483,647 vertices and triangles; write a smaller box");
+    return fail(
+        ErrorCode::limit_exceeded,
+        "model: a .ply has at most 2,147,483,647 vertices and triangles; write a smaller box");
   }
   ModelOutput out(sink);
   write_ply_head(source, counts, out);

@@ -41,13 +41,14 @@ VoxelBox layer_beside(VoxelBox box, Direction direction) {
 std::uint64_t plane_of(Quad quad) {
   const QuadFields q = unpack(quad);
   const std::array<std::uint8_t, 3> at = {q.x, q.y, q.z};
-  return std::uint64_t{q.material} << 16 | std::uint64_t{static_cast<std::uint8_t>(q.direction)} << 8 |
+  return std::uint64_t{q.material} << 16 |
+         std::uint64_t{static_cast<std::uint8_t>(q.direction)} << 8 |
          at[static_cast<std::size_t>(axis_of(q.direction))];
 }
 
 }  // namespace
 
-RegionPos region_counts(const Build& build) {
+ModelRegionPos region_counts(const Build& build) {
   const VoxelPos sides = build.sides();
   const auto count = [](std::int32_t side) {
     return (side + kModelRegionEdge - 1) / kModelRegionEdge;
@@ -55,7 +56,7 @@ RegionPos region_counts(const Build& build) {
   return {count(sides.x), count(sides.y), count(sides.z)};
 }
 
-VoxelBox region_box(const Build& build, RegionPos at) {
+VoxelBox region_box(const Build& build, ModelRegionPos at) {
   return intersect(build.box(), box_of(ChunkCoord{at.x, at.y, at.z}, kModelRegionEdge));
 }
 
@@ -66,7 +67,7 @@ bool RegionMesher::is_empty(const RunChunk& cells) const {
   return cells.is_uniform() && visibility_[cells.runs.material(0)] == Visibility::empty;
 }
 
-const std::vector<Quad>& RegionMesher::quads_of(RegionPos at) {
+const std::vector<Quad>& RegionMesher::quads_of(ModelRegionPos at) {
   quads_.clear();
   const VoxelBox box = region_box(build_, at);
   const RunChunk cells = cells_in(build_, box);

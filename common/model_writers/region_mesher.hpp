@@ -18,15 +18,15 @@ namespace runstone {
 inline constexpr std::int32_t kModelRegionEdge = static_cast<std::int32_t>(kSideMax);
 
 /// Place of a region in the grid of regions.
-struct RegionPos {
+struct ModelRegionPos {
   std::int32_t x = 0, y = 0, z = 0;
-  friend bool operator==(const RegionPos&, const RegionPos&) = default;
+  friend bool operator==(const ModelRegionPos&, const ModelRegionPos&) = default;
 };
 
 /// Returns the number of regions along each axis.
-RegionPos region_counts(const Build& build);
+ModelRegionPos region_counts(const Build& build);
 /// Returns the cells of a region.
-VoxelBox region_box(const Build& build, RegionPos at);
+VoxelBox region_box(const Build& build, ModelRegionPos at);
 
 class RegionMesher {
  public:
@@ -37,7 +37,7 @@ class RegionMesher {
   /// cell number of the build. The quads ascend: opaque ones first, then by material, direction and
   /// layer. They are valid until the next call. Cost: that of cells_in() and mesh_rdm(), and
   /// O(quads * log quads).
-  const std::vector<Quad>& quads_of(RegionPos at);
+  const std::vector<Quad>& quads_of(ModelRegionPos at);
 
  private:
   bool is_empty(const RunChunk& cells) const;

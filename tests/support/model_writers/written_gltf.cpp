@@ -39,9 +39,7 @@ double gltf_component(const Bytes& buffer, std::size_t at, int type) {
   throw std::runtime_error("glTF: unknown component type");
 }
 
-std::size_t gltf_component_bytes(int type) {
-  return type <= 5121 ? 1 : type <= 5123 ? 2 : 4;
-}
+std::size_t gltf_component_bytes(int type) { return type <= 5121 ? 1 : type <= 5123 ? 2 : 4; }
 
 class GltfReader {
  public:
@@ -67,8 +65,7 @@ class GltfReader {
     ++visited_;
     const Json& node = json_.at("nodes").at(number.get<std::size_t>());
     if (node.contains("translation")) {
-      for (std::size_t i = 0; i < 3; ++i)
-        at[i] += scale * node["translation"].at(i).get<double>();
+      for (std::size_t i = 0; i < 3; ++i) at[i] += scale * node["translation"].at(i).get<double>();
     }
     if (node.contains("scale")) scale *= node["scale"].at(0).get<double>();
     if (node.contains("mesh")) {
@@ -215,7 +212,8 @@ WrittenModel read_written_glb(const Bytes& file) {
   const std::size_t second = 20 + json_bytes;
   const std::size_t buffer_bytes = gltf_value<std::uint32_t>(file, second);
   gltf_rule(buffer_bytes % 4 == 0, "the buffer is not aligned");
-  gltf_rule(gltf_value<std::uint32_t>(file, second + 4) == 0x004E4942, "the second chunk is no BIN");
+  gltf_rule(gltf_value<std::uint32_t>(file, second + 4) == 0x004E4942,
+            "the second chunk is no BIN");
   gltf_rule(second + 8 + buffer_bytes == file.size(), "bytes follow the buffer");
   const auto begin = file.begin() + static_cast<std::ptrdiff_t>(20);
   const auto end = begin + static_cast<std::ptrdiff_t>(json_bytes);

@@ -132,11 +132,17 @@ WrittenModel read_written_ply(const Bytes& file) {
       properties.push_back(line);
     }
   }
-  const std::vector<std::string> expected = {
-      "property float x",     "property float y",     "property float z",
-      "property float nx",    "property float ny",    "property float nz",
-      "property uchar red",   "property uchar green", "property uchar blue",
-      "property uchar alpha", "property list uchar int vertex_indices"};
+  const std::vector<std::string> expected = {"property float x",
+                                             "property float y",
+                                             "property float z",
+                                             "property float nx",
+                                             "property float ny",
+                                             "property float nz",
+                                             "property uchar red",
+                                             "property uchar green",
+                                             "property uchar blue",
+                                             "property uchar alpha",
+                                             "property list uchar int vertex_indices"};
   model_rule(properties == expected, "ply: properties");
   auto at = static_cast<std::size_t>(text.tellg());
   struct PlyVertex {

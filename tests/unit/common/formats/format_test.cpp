@@ -14,7 +14,8 @@ TEST_CASE("a format is found by the end of a path", "[formats]") {
   CHECK(format_of_file("") == nullptr);
 }
 
-TEST_CASE("every format that is read rejects no bytes and passes the error of a sink on", "[formats]") {
+TEST_CASE("every format that is read rejects no bytes and passes the error of a sink on",
+          "[formats]") {
   int pieces = 0;
   const auto stop = [&](ForeignPiece&&) -> Result<void> {
     ++pieces;

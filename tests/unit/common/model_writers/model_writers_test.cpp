@@ -190,8 +190,7 @@ std::size_t open_edges_by_vertex(const WrittenModel& model) {
 }
 
 const std::vector<BuildMaterial> kModelMaterials = {
-    file_material("air", "", {0, 0, 0, 0}),
-    file_material("stone", "", {120, 121, 122, 255}),
+    file_material("air", "", {0, 0, 0, 0}), file_material("stone", "", {120, 121, 122, 255}),
     file_material("red bricks", "", {200, 10, 3, 255}),
     file_material("water", "", {10, 40, 250, 100}),
     file_material("glass", "half=top", {240, 250, 255, 50})};
@@ -250,12 +249,11 @@ TEST_CASE("a model covers each exposed face once, with all choices", "[model_wri
   for (const VoxelPos& each : sides) {
     const bool is_noise = each.x == 7 || each.x == 129;
     const FileBuild build =
-        is_noise
-            ? file_build(each, kModelMaterials,
-                         [&](VoxelPos at) {
-                           return at == VoxelPos{} ? std::uint16_t{2} : random_number(rng, 5);
-                         })
-            : model_boxes(rng, each, 1, 5);
+        is_noise ? file_build(each, kModelMaterials,
+                              [&](VoxelPos at) {
+                                return at == VoxelPos{} ? std::uint16_t{2} : random_number(rng, 5);
+                              })
+                 : model_boxes(rng, each, 1, 5);
     for (const std::string& ending : kModelEndings) {
       for (const unsigned choice : {0U, 1U, 2U, 3U, 4U, 7U}) {
         CAPTURE(ending, choice, each.x, each.y, each.z);
@@ -299,7 +297,7 @@ TEST_CASE("equal places share a vertex if vertices are welded, and none otherwis
   const FileBuild build = model_boxes(rng, {30, 20, 40}, 1, 5);
   ModelWriting split;
   split.is_welded = false;
-  for (const std::string& ending : {".glb", ".ply"}) {
+  for (const std::string ending : {".glb", ".ply"}) {
     const WrittenModel welded = model_of(ending, build), apart = model_of(ending, build, split);
     CHECK(welded.triangles.size() == apart.triangles.size());
     CHECK(apart.vertex_count == 2 * apart.triangles.size());
@@ -334,9 +332,8 @@ TEST_CASE("names of an .obj are words, and all different", "[model_writers]") {
   const std::vector<BuildMaterial> materials = {
       file_material("a b", "", {1, 0, 0, 255}), file_material("a_b", "", {2, 0, 0, 255}),
       file_material("#a\tb\"\\", "", {3, 0, 0, 255}), file_material("a b_2", "", {4, 0, 0, 255})};
-  const FileBuild build = file_build({4, 1, 1}, materials, [](VoxelPos at) {
-    return static_cast<std::uint16_t>(at.x + 1);
-  });
+  const FileBuild build = file_build(
+      {4, 1, 1}, materials, [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
   for (const std::string& ending : kModelEndings) check_faces(build, model_of(ending, build));
   CHECK(model_of(".glb", build).material_names ==
         std::vector<std::string>{"a b", "a_b", "#a\tb\"\\", "a b_2"});
@@ -359,8 +356,8 @@ TEST_CASE("a model has as many materials as a build", "[model_writers]") {
 }
 
 TEST_CASE("far voxels of a long build are at their places", "[model_writers]") {
-  auto builder = BuildBuilder::of(
-      {grid_cuts(kBuildSideMax, 128), grid_cuts(1, 128), grid_cuts(1, 128)});
+  auto builder =
+      BuildBuilder::of({grid_cuts(kBuildSideMax, 128), grid_cuts(1, 128), grid_cuts(1, 128)});
   REQUIRE(builder.has_value());
   REQUIRE(builder->number_of(7) == 1);
   const SectionPos last{static_cast<std::uint32_t>(kBuildSideMax / 128 - 1), 0, 0};
@@ -389,9 +386,8 @@ TEST_CASE("far voxels of a long build are at their places", "[model_writers]") {
 
 TEST_CASE("a part with more than 65,535 vertices has long indices", "[model_writers]") {
   const FileBuild build =
-      file_build({64, 8, 64}, {file_material("stone", "", {1, 2, 3, 255})}, [](VoxelPos at) {
-        return static_cast<std::uint16_t>((at.x + at.y + at.z) % 2);
-      });
+      file_build({64, 8, 64}, {file_material("stone", "", {1, 2, 3, 255})},
+                 [](VoxelPos at) { return static_cast<std::uint16_t>((at.x + at.y + at.z) % 2); });
   for (const bool is_quantised : {false, true}) {
     ModelWriting writing;
     writing.is_quantised = is_quantised;
