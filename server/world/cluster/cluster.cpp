@@ -18,7 +18,7 @@ Cluster::Cluster(const World& world, const RandomBytes& random)
                 world.chat, followers_, following_) {}
 
 void Cluster::follow() {
-  world_.order.ownership().follow();
+  world_.order.ownership().begin_following();
   following_.begin();
 }
 

@@ -72,15 +72,15 @@ Result<void, std::string> Following::take(const ReadLog& read, const Clocks& now
   }
   if (!has_head) return failure("the log has other edits than this server");
   for (const PlayerRow& row : read.players) world_.order.players().restore(row);
-  world_.order.names().follow_all(read.names);
-  follow(records, now);
+  world_.order.names().restore_all(read.names);
+  apply_ordered(records, now);
   return {};
 }
 
 /// Applies records that another server has ordered, and sends them to the sessions.
-void Following::follow(std::span<const LogPartRecord> records, const Clocks& now) {
+void Following::apply_ordered(std::span<const LogPartRecord> records, const Clocks& now) {
   world_.players.add_waits(records, now);
-  world_.commits.follow(records, now);
+  world_.commits.apply_ordered(records, now);
 }
 
 // Messages of the owner.
@@ -134,8 +134,8 @@ void Following::on_log_part(LogPart part, const Clocks& now) {
   for (const LogPlayer& row : part.players)
     world_.order.players().restore({row.author, row.key, row.name});
   for (const LogName& name : part.names)
-    world_.order.names().follow({{name.folded, name.name, name.key}, name.is_release});
-  follow(part.records, now);
+    world_.order.names().apply({{name.folded, name.name, name.key}, name.is_release});
+  apply_ordered(part.records, now);
   if (!part.records.empty())
     world_.order.authority().log_clock().hear_owner(part.records.back().record.time_us, now);
   not_durable_.push_back({std::move(part), now.steady_us});

@@ -98,7 +98,7 @@ class Following {
   void leave(const std::string& why);
   void leave_slow() { leave(kOwnerReadsTooSlowly); }
   Result<void, std::string> take(const ReadLog& read, const Clocks& now);
-  void follow(std::span<const LogPartRecord> records, const Clocks& now);
+  void apply_ordered(std::span<const LogPartRecord> records, const Clocks& now);
   void go_live(const Clocks& now);
   void read_more();
   void on_follow_answer(const FollowAnswer& answer, const Clocks& now);
