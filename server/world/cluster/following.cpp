@@ -105,7 +105,7 @@ void Following::go_live(const Clocks& now) {
 void Following::read_more() {
   if (std::exchange(is_reading_, true)) return;
   // The last record that is known is read again: its epoch shows whether the log is still the same.
-  world_.environment.read_log(std::max<Sequence>(1, world_.order.head()));
+  world_.environment.read_missed_log(std::max<Sequence>(1, world_.order.head()));
 }
 
 void Following::on_follow_answer(const FollowAnswer& answer, const Clocks& now) {
@@ -246,7 +246,7 @@ void Following::received(Message&& message, const Clocks& now) {
   leave("the owner sent a message that does not belong here");
 }
 
-void Following::log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
+void Following::missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
   is_reading_ = false;
   if (world_.link.stage() != Stage::reading) return;
   if (!read) return leave(read.error());

@@ -77,7 +77,7 @@ class Following {
   void connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void received(Message&& message, const Clocks& now);
   void disconnected();
-  void log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
+  void missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
   /// Pings the owner, and leaves it if it is silent.
   void tick(const Clocks& now);
 
