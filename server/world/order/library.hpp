@@ -51,7 +51,7 @@ class Library {
 
   LibraryLimits limits_;
   std::map<Sequence, LibraryRow> rows_;
-  std::map<AuthorId, LibraryTotal> of_authors_;
+  std::map<AuthorId, LibraryTotal> author_totals_;
   LibraryTotal total_;
   Sequence newest_ = 0;
   std::uint32_t contents_ = 0;
