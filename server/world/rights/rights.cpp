@@ -185,18 +185,4 @@ void Rights::close_refused() {
     sessions_.close(*session, GoodbyeReason::not_admitted, why);
 }
 
-std::size_t Rights::kick(const RestrictionSubject& who, const std::string& reason) {
-  const std::string text = reason.empty() ? "you were kicked" : "you were kicked: " + reason;
-  std::size_t kicked = 0;
-  for (Session* session : sessions_.open()) {
-    const auto* key = std::get_if<PublicKey>(&who);
-    const bool is_meant = key != nullptr ? session->key == *key
-                                         : std::get<AddressRange>(who).contains(session->address);
-    if (!is_meant) continue;
-    sessions_.close(*session, GoodbyeReason::not_admitted, text);
-    ++kicked;
-  }
-  return kicked;
-}
-
 }  // namespace runstone
