@@ -2,8 +2,8 @@
 
 #include <variant>
 
-#include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/rights/restriction_text.hpp"
 #include "protocol/rules/refusal_text.hpp"
 
 namespace runstone {
@@ -16,14 +16,6 @@ RightsDecision granted_by_settings() {
 }
 
 constexpr const char* kMayNotEdit = "you may not edit";
-
-/// Returns text such as "you are banned until 2026-12-01T00:00:00Z: griefing".
-std::string restriction_text(const char* what, const Restrict& restriction) {
-  std::string text = what;
-  if (restriction.until_us != 0) text += " until " + utc_text(restriction.until_us);
-  if (!restriction.reason.empty()) text += ": " + restriction.reason;
-  return text;
-}
 
 /// Returns the player whom a change is about, or null.
 const PublicKey* target_of(const RightsChange& change) {
