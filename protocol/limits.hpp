@@ -32,6 +32,7 @@ inline constexpr std::uint64_t kFeatureResume =
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
 inline constexpr std::uint64_t kFeatureLargeActions = 32768;
+inline constexpr std::uint64_t kFeatureBuilds = 131072;  // BuildsRequest to BuildAnswer
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
@@ -42,7 +43,8 @@ inline constexpr std::uint64_t kFeaturesOfServers =
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
-    kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions;
+    kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
+    kFeatureBuilds;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -158,6 +160,12 @@ inline constexpr std::size_t kRelayBodyBytesMax = kServerEditBytesMax - 64 * 102
 static_assert(kRelaySessionsMax * 4 + 512 <= kServerEditBytesMax - kRelayBodyBytesMax);
 /// Records in one LogPart take so many bytes at most, beyond a single one.
 inline constexpr std::size_t kLogPartBytesMax = 256 * 1024;
+
+// The library of builds.
+inline constexpr std::size_t kListedBuildsMax = 50;             // per message
+inline constexpr std::size_t kBuildPieceBytes = 64 * 1024;      // of a file that a client fetches
+inline constexpr std::size_t kBuildUploadBytesMax = 32 * 1024;  // of a file, per message
+static_assert(kBuildUploadBytesMax + 512 <= kClientEditBytesMax, "an upload fits a message");
 
 // The list of servers.
 inline constexpr std::size_t kServersMax = 64;

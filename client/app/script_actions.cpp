@@ -183,6 +183,20 @@ bool ScriptActions::show_rollback_answer() {
   return play_.panels().rollback().has_succeeded();
 }
 
+std::string ScriptActions::show_library_answer() {
+  const LibraryControl& library = play_.panels().library();
+  std::string failed;
+  for (const std::string& line : library.answer()) {
+    if (library.has_succeeded()) {
+      fmt::print("{}\n", line);
+    } else {
+      failed += (failed.empty() ? "" : "; ") + line;
+    }
+  }
+  std::fflush(stdout);
+  return failed;
+}
+
 bool ScriptActions::screenshot(const std::string& file) {
   if (!play_.pipeline().draws()) return false;
   play_.pipeline().request_screenshot(screenshot_path(file), steady_now_us());

@@ -84,6 +84,12 @@ class ScriptActions final : public ScriptHost {
   void show_map(bool is_shown, bool is_full) override;
   void zoom_map(double pixels) override { hud_.map().set_zoom(pixels); }
   void show_timeline(bool is_shown) override { hud_.show_timeline(is_shown); }
+  void show_library(bool is_shown) override { hud_.show_library(is_shown); }
+  void list_library(const std::string& name) override { play_.panels().library().list(name); }
+  void take_build(Sequence number) override { play_.panels().library().take(number); }
+  void add_build(const std::string& name) override { play_.panels().library().add(name); }
+  bool using_library() const override { return play_.panels().library().is_busy(); }
+  std::string show_library_answer() override;
   bool loading_panels() const override { return play_.panels().is_loading(hud_.shown_panels()); }
   std::string preview_rollback(const std::string& filters) override {
     return play_.panels().rollback().preview(filters);

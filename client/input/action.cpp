@@ -59,6 +59,7 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::preview, "preview", "show or hide what the next click does", building, "P"},
     {Action::stop_building, "stop_building", "stop the fill, paste or move under way", building,
      "backspace"},
+    {Action::library, "library", "show or hide the library of builds", building, "L"},
     {Action::chat, "chat", "write to all players", others, "T enter"},
     {Action::command, "command", "write a command for the server", others, "slash"},
     {Action::map, "map", "show or hide the map from above", others, "M"},

@@ -58,6 +58,7 @@ enum class Action : std::uint8_t {
   symmetry,
   preview,
   stop_building,
+  library,
   chat,
   command,
   map,

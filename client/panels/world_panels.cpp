@@ -16,8 +16,13 @@ constexpr double kRadiansPerTurn = 2 * std::numbers::pi / 65'536;
 
 ShownPanels shown_panels(const PanelWindows& windows) {
   const MapWindow& map = windows.map();
-  return {windows.tools().is_open(),    map.is_open(),  windows.timeline().is_open(),
-          windows.rollback().is_open(), map.centre_x(), map.centre_z()};
+  return {windows.tools().is_open(),
+          map.is_open(),
+          windows.timeline().is_open(),
+          windows.rollback().is_open(),
+          windows.library().is_open(),
+          map.centre_x(),
+          map.centre_z()};
 }
 
 void WorldPanels::set_materials(const MaterialTable& materials) {
@@ -29,6 +34,12 @@ bool WorldPanels::step(const ShownPanels& shown, TimeUs now_us) {
   players_.update(session_.others(), now_us);
   poses_ = players_.at(now_us);
   bool has_changed = rollback_.step();
+  if (shown.library) {
+    library_.list_first();
+  } else {
+    library_.drop_picture();
+  }
+  has_changed = library_.step(now_us) || has_changed;
   if (shown.map && session_.replica().opened()) {
     map_.open(session_.replica());
     has_changed = map_.step(session_.replica(), shown.map_x, shown.map_z) || has_changed;
@@ -43,6 +54,7 @@ bool WorldPanels::step(const ShownPanels& shown, TimeUs now_us) {
 
 bool WorldPanels::is_loading(const ShownPanels& shown) const {
   if (shown.map && (!map_.is_open() || map_.is_drawing())) return true;
+  if (shown.library && library_.is_loading()) return true;
   if (!shown.timeline) return false;
   const LogTimeline& log = session_.timeline();
   const bool is_empty = session_.replica().durable() == 0;
@@ -55,6 +67,7 @@ void WorldPanels::fill(HudState& state, const ShownPanels& shown, const Pose& me
   if (shown.map) fill_map(state.map, me);
   if (shown.timeline) fill_timeline(state.timeline);
   if (shown.rollback) fill_rollback(state.rollback);
+  if (shown.library) library_.fill(state.library);
 }
 
 void WorldPanels::fill_map(MapState& state, const Pose& me) const {

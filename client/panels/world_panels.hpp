@@ -1,12 +1,13 @@
 // WorldPanels: what the client shows of the world and its players besides the chunks: where the
-// others are, the map from above, who edited when, and what a rollback would change. Thread: the
-// main thread.
+// others are, the map from above, who edited when, what a rollback would change, and the library of
+// builds. Thread: the main thread.
 #pragma once
 #include <map>
 #include <span>
 
 #include "client/display/smooth_players.hpp"
 #include "client/map/world_map.hpp"
+#include "client/panels/library_control.hpp"
 #include "client/panels/rollback_control.hpp"
 #include "client/tools/tool_box.hpp"
 #include "client/ui/hud_state.hpp"
@@ -16,16 +17,19 @@ namespace runstone {
 
 /// The windows that are open.
 struct ShownPanels {
-  bool tools = false, map = false, timeline = false, rollback = false;
+  bool tools = false, map = false, timeline = false, rollback = false, library = false;
   double map_x = 0, map_z = 0;  // the middle of the map, voxels
 };
 ShownPanels shown_panels(const PanelWindows& windows);
 
 class WorldPanels {
  public:
-  /// All must outlive the object.
-  WorldPanels(ClientSession& session, const ToolBox& tools)
-      : session_(session), tools_(tools), rollback_(session) {}
+  /// Session and tools must outlive the object. `has_threads`: as in LibraryControl.
+  WorldPanels(ClientSession& session, ToolBox& tools, bool has_threads)
+      : session_(session),
+        tools_(tools),
+        rollback_(session),
+        library_(session, tools, has_threads) {}
 
   void set_materials(const MaterialTable& materials);
   /// Takes what changed in the replica.
@@ -43,6 +47,8 @@ class WorldPanels {
   bool take_moved(TimeUs now_us) { return players_.take_moved(now_us); }
   RollbackControl& rollback() { return rollback_; }
   const RollbackControl& rollback() const { return rollback_; }
+  LibraryControl& library() { return library_; }
+  const LibraryControl& library() const { return library_; }
   /// Returns true while the contents of an open window are missing.
   bool is_loading(const ShownPanels& shown) const;
 
@@ -57,6 +63,7 @@ class WorldPanels {
   std::map<AuthorId, Pose> poses_;
   WorldMap map_;
   RollbackControl rollback_;
+  LibraryControl library_;
   std::uint64_t timeline_serial_ = 0;  // of the timeline that was shown last
 };
 

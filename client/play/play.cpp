@@ -30,7 +30,7 @@ Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLo
       chat_(session),
       view_(session, player_, config.wishes.radii, config.wishes.far_levels),
       limits_(config.wishes, session.replica(), pipeline_, view_),
-      panels_(session, tools),
+      panels_(session, tools, config.workers != 0),
       scene_(session, player_, tool_, view_, panels_, others_),
       server_notices_(session),
       input_us_(config.started_us) {
@@ -48,6 +48,7 @@ void Play::begin_turn(bool is_opened, const ShownPanels& shown, TimeUs now_us) {
   }
   view_.update_completeness(now_us);
   if (panels_.step(shown, now_us)) pipeline_.moved();
+  for (std::string& text : panels_.library().take_notices()) notify(std::move(text));
   limit_memory(now_us);
 }
 
@@ -172,6 +173,7 @@ void Play::carry_out(const UiAction& action, TimeUs now_us) {
     show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
   // If a rollback cannot be ordered, its window says why.
   if (const auto* order = std::get_if<RollbackOrder>(&action)) static_cast<void>(carry_out(*order));
+  if (const auto* order = std::get_if<LibraryOrder>(&action)) panels_.library().carry_out(*order);
   if (const auto* command = std::get_if<ToolCommand>(&action)) {
     if (const auto done = tool_.carry_out(*command, now_us); !done)
       notify(done.error(), NoticeKind::warning);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/core/build_info.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -39,12 +40,36 @@ script::Step rollback_step(ScriptWords& words) {
   return out;
 }
 
+script::Step library_step(ScriptWords& words) {
+  const std::string_view verb = words.word("on, off, list, take or add");
+  if (verb == "on" || verb == "off") return script::ShowLibrary{verb == "on"};
+  if (verb == "take") {
+    return script::TakeBuild{read_number<Sequence>(words, "NUMBER", 1, kSequenceMax)};
+  }
+  if (verb == "add") {
+    script::AddBuild out{std::string(words.rest())};
+    if (out.name.empty()) throw LineError{"expected NAME"};
+    if (out.name.size() > kBuildNameBytesMax) throw LineError{"NAME has at most 64 bytes"};
+    return out;
+  }
+  if (verb != "list")
+    throw LineError{"\"" + std::string(verb) + "\" is none of on, off, list, take, add"};
+  if (!words.more()) return script::ListBuilds{};
+  const std::string_view filter = words.word("name PART");
+  if (filter != "name") throw LineError{"\"" + std::string(filter) + "\" is not \"name\""};
+  script::ListBuilds out{std::string(words.rest())};
+  if (out.name.empty()) throw LineError{"expected PART"};
+  if (out.name.size() > kBuildNameBytesMax) throw LineError{"PART has at most 64 bytes"};
+  return out;
+}
+
 }  // namespace
 
 std::optional<script::Step> panel_step(std::string_view verb, ScriptWords& words) {
   if (verb == "map") return map_step(words);
   if (verb == "timeline") return timeline_step(words);
   if (verb == "rollback") return rollback_step(words);
+  if (verb == "library") return library_step(words);
   return std::nullopt;
 }
 

@@ -1,5 +1,5 @@
-// The commands of a script for the windows about the world: map, timeline and rollback. Internal to
-// the parser.
+// The commands of a script for the windows about the world: map, timeline, rollback and the library of
+// builds. Internal to the parser.
 #pragma once
 #include <optional>
 #include <string_view>

@@ -185,6 +185,22 @@ struct Rollback {
   Kind kind = Kind::preview;
   std::string filters;  // of a preview, as the server reads them
 };
+/// Shows or hides the window of the library of builds.
+struct ShowLibrary {
+  bool is_shown = true;
+};
+/// Lists the builds of the library whose names have a part.
+struct ListBuilds {
+  std::string name;  // empty: all
+};
+/// Puts a build of the library into the clipboard of the tools.
+struct TakeBuild {
+  Sequence number = 0;
+};
+/// Adds the clipboard of the tools to the library.
+struct AddBuild {
+  std::string name;
+};
 /// Chooses a building tool by its name.
 struct ChooseTool {
   std::string name;
@@ -238,12 +254,13 @@ struct FileOfClipboard {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy,
-                          Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End,
-                          Burst, Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type,
-                          Click, ShowInterface, Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback,
-                          ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
-                          SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
+using Step =
+    std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
+                 Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests,
+                 HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click, ShowInterface,
+                 Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback, ShowLibrary, ListBuilds,
+                 TakeBuild, AddBuild, ChooseTool, SetParameter, AimAt, Hold, UseTool, Select,
+                 SelectionEdit, SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
 
 }  // namespace script
 

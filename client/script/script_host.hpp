@@ -137,7 +137,17 @@ class ScriptHost {
   /// Sets the pixels of the map for each voxel.
   virtual void zoom_map(double pixels) = 0;
   virtual void show_timeline(bool is_shown) = 0;
-  /// Returns true until the open map is drawn and the open timeline has its marks.
+  virtual void show_library(bool /*is_shown*/) {}
+  /// List the builds of the library whose names have this part, put one into the clipboard of the
+  /// tools, and add that clipboard as a build. Poll using_library().
+  virtual void list_library(const std::string& /*name*/) {}
+  virtual void take_build(Sequence /*number*/) {}
+  virtual void add_build(const std::string& /*name*/) {}
+  virtual bool using_library() const { return false; }
+  /// Prints the answer. Returns why the last of them failed, or an empty text.
+  virtual std::string show_library_answer() { return "this client uses no library of builds"; }
+  /// Returns true until the open map is drawn, the open timeline has its marks, and the open library
+  /// its list.
   virtual bool loading_panels() const = 0;
   /// Send the commands that preview, apply and undo a rollback, and forget its preview. Return an
   /// empty text, or why the command cannot be sent.

@@ -81,11 +81,18 @@ class ScriptRunner {
   Progress run(const script::Click& c);
   Progress run(const script::ShowInterface& c);
   Progress run(const script::Inspect& c);
-  // Map, timeline and rollback: script_panels.cpp.
+  // Map, timeline, rollback and library: script_panels.cpp.
   Progress run(const script::ShowMap& c);
   Progress run(const script::ZoomMap& c);
   Progress run(const script::ShowTimeline& c);
   Progress run(const script::Rollback& c);
+  Progress run(const script::ShowLibrary& c);
+  Progress run(const script::ListBuilds& c);
+  Progress run(const script::TakeBuild& c);
+  Progress run(const script::AddBuild& c);
+  /// Begins a command of the library, and waits for its end.
+  template <class Begin>
+  Progress use_library(const Begin& begin);
   /// Waits until `is_busy` is false. Ends the script if it takes too long.
   Progress wait_for_panel(bool is_busy, const char* what);
   // The building tools: script_tools.cpp.

@@ -41,6 +41,7 @@ void ClientSession::disconnected() {
   previews_.reset();
   history_.clear();
   timeline_.disconnected();
+  library_.disconnected();
   chat_.disconnected();
   if (is_commanding_) {
     command_lines_ = {"the connection ended before the answer came"};
@@ -60,6 +61,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       lost_.clear();
       chat_.clear();
       timeline_.clear();
+      library_.clear();
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
@@ -115,6 +117,10 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_command_output(std::move(m));
         } else if constexpr (std::is_same_v<T, LogMarks>) {
           if (timeline_.receive(m, arrival.now_us)) ++timeline_serial_;
+        } else if constexpr (std::is_same_v<T, Builds> || std::is_same_v<T, BuildPiece>) {
+          library_.receive(std::move(m), arrival.now_us);
+        } else if constexpr (std::is_same_v<T, BuildAnswer>) {
+          library_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, RestorePreview>) {
           on_restore_preview(std::move(m));
         } else if constexpr (std::is_same_v<T, ChatLines>) {
@@ -324,6 +330,17 @@ void ClientSession::step_timeline(TimeUs now_us) {
   const auto& past = replica_->past();
   if (const auto request = timeline_.next_request(newest, past ? past->seq : newest, now_us))
     connection_.send(*request);
+}
+
+bool ClientSession::has_library() const {
+  return is_open() && (welcome()->features & kFeatureBuilds) != 0;
+}
+
+void ClientSession::step_library(TimeUs now_us) {
+  if (!library_.is_busy()) return;
+  if (!is_open()) return library_.refuse("no world is open");
+  if (!has_library()) return library_.refuse("this server gives clients no library of builds");
+  for (Message& message : library_.step(now_us)) connection_.send(std::move(message));
 }
 
 Result<void> ClientSession::request_history(const HistoryRequest& request) {

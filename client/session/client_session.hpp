@@ -20,6 +20,7 @@
 #include "client/session/chat_inbox.hpp"
 #include "client/session/edit_allowance.hpp"
 #include "client/session/history_requests.hpp"
+#include "client/session/library_exchange.hpp"
 #include "client/session/log_timeline.hpp"
 #include "client/session/lost_edits.hpp"
 #include "client/session/server_connection.hpp"
@@ -138,6 +139,15 @@ class ClientSession {
   /// Returns a number that rises with each change of the timeline.
   std::uint64_t timeline_serial() const { return timeline_serial_; }
 
+  /// Returns true if the server has a library of builds that clients use.
+  bool has_library() const;
+  /// Returns what this client does with the library. step_library() sends its messages.
+  LibraryExchange& library() { return library_; }
+  const LibraryExchange& library() const { return library_; }
+  /// Sends the messages of library(). Without an open world, and with servers that have no library,
+  /// everything that is wanted of it fails. Call it every turn.
+  void step_library(TimeUs now_us);
+
   /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat,
   /// or as chat_text() does. The server answers with the line itself, or with one that says why
   /// not.
@@ -178,6 +188,8 @@ class ClientSession {
   const Servers& servers() const { return connection_.servers(); }
   std::uint64_t servers_number() const { return connection_.servers_number(); }
   AuthorId author() const { return connection_.author(); }
+  /// Returns the name with which this player joins.
+  const std::string& name() const { return connection_.config().name; }
   OperationId operation(ClientSequence seq) const {
     return {author(), connection_.config().instance, seq};
   }
@@ -229,6 +241,7 @@ class ClientSession {
   LogTimeline timeline_;
   std::uint64_t timeline_serial_ = 0;
 
+  LibraryExchange library_;
   ChatInbox chat_;
   SharedPreviews previews_;
 

@@ -1,11 +1,12 @@
-// PanelWindows: the windows of the interface that are used beside playing: tools, timeline, map and
-// rollback. The desktop client and the browser client have them in common. One thread.
+// PanelWindows: the windows of the interface that are used beside playing: tools, timeline, map,
+// rollback and the library of builds. The desktop client and the browser client have them in common. One thread.
 #pragma once
 #include <array>
 #include <vector>
 
 #include "client/input/input_router.hpp"
 #include "client/ui/hud_state.hpp"
+#include "client/ui/library_window.hpp"
 #include "client/ui/map_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "client/ui/timeline_window.hpp"
@@ -35,6 +36,8 @@ class PanelWindows {
   MapWindow& map() { return map_; }
   const MapWindow& map() const { return map_; }
   const RollbackWindow& rollback() const { return rollback_; }
+  LibraryWindow& library() { return library_; }
+  const LibraryWindow& library() const { return library_; }
   const ToolWindow& tools() const { return tools_; }
 
   /// Returns true if a window was opened or closed since the last call, so that ImGui does not know
@@ -48,7 +51,8 @@ class PanelWindows {
   ToolWindow tools_;
   MapWindow map_;
   RollbackWindow rollback_;
-  std::array<bool, 3> open_{};  // which of them were open in the last call of take_changed()
+  LibraryWindow library_;
+  std::array<bool, 4> open_{};  // which of them were open in the last call of take_changed()
 };
 
 }  // namespace runstone

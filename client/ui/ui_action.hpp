@@ -5,6 +5,7 @@
 
 #include "client/render/inspection.hpp"
 #include "client/tools/tool_command.hpp"
+#include "client/ui/library_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
 
@@ -24,12 +25,18 @@ struct ShowMoment {
   bool is_live = false;
 };
 
+/// The clipboard of the tools is read from a file of this computer, or written to it.
+struct ClipboardOfFile {
+  std::string file;  // as typed
+  bool is_saved = false;
+};
+
 /// The user chose what frames show of storage and meshing.
 struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction =
-    std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder, ToolCommand>;
+using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
+                              LibraryOrder, ToolCommand, ClipboardOfFile>;
 
 }  // namespace runstone

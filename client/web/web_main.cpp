@@ -307,8 +307,9 @@ EMSCRIPTEN_KEEPALIVE const char* web_windows() {
     return is_true ? std::string("true") : std::string("false");
   };
   return kept("{\"captured\": " + word(state.is_captured) + ", \"map\": " + word(shown.map) +
-              ", \"rollback\": " + word(shown.rollback) + ", \"tools\": " + word(shown.tools) +
-              ", \"tool\": \"" + std::string(state.tools->tool().name()) + "\", \"tiles\": " +
+              ", \"rollback\": " + word(shown.rollback) + ", \"library\": " + word(shown.library) +
+              ", \"tools\": " + word(shown.tools) + ", \"tool\": \"" +
+              std::string(state.tools->tool().name()) + "\", \"tiles\": " +
               std::to_string(state.map.map == nullptr ? 0 : state.map.map->tiles().size()) +
               ", \"phase\": " + std::to_string(static_cast<int>(state.rollback.phase)) +
               ", \"voxels\": " + std::to_string(state.rollback.voxels) +

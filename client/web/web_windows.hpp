@@ -1,5 +1,5 @@
-// WebWindows: the windows of the desktop client in a browser: tools, map and rollback. They are
-// drawn on the canvas. Their font is a file that the page loads when a window is opened for the
+// WebWindows: the windows of the desktop client in a browser: tools, map, rollback and library. They
+// are drawn on the canvas. Their font is a file that the page loads when a window is opened for the
 // first time; until then, no window is drawn. Thread: the page's only one.
 #pragma once
 #include <array>

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/formats/build_rows.hpp"
+#include "common/formats/grid_cells.hpp"
 #include "common/formats/rsb_block.hpp"
 
 namespace runstone {

@@ -1,7 +1,8 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
 // chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp,
-// material_bodies.cpp, preview_bodies.cpp, server_bodies.cpp and server_list_bodies.cpp.
+// material_bodies.cpp, preview_bodies.cpp, server_bodies.cpp, server_list_bodies.cpp and
+// build_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -109,6 +110,15 @@ struct BodyReader {
 
   // ---- server_list_bodies.cpp
   Result<Message> read(const wire::Servers& t) const;
+
+  // ---- build_bodies.cpp
+  Result<Message> read(const wire::BuildsRequest& t) const;
+  Result<Message> read(const wire::Builds& t) const;
+  Result<Message> read(const wire::BuildPieceRequest& t) const;
+  Result<Message> read(const wire::BuildPiece& t) const;
+  Result<Message> read(const wire::BuildOffer& t) const;
+  Result<Message> read(const wire::BuildUpload& t) const;
+  Result<Message> read(const wire::BuildAnswer& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

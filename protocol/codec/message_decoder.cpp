@@ -22,7 +22,9 @@ using Bodies =
                wire::LogMarksRequest, wire::LogMarks, wire::RestorePreview, wire::PreviewShare,
                wire::PlayerPreview, wire::FollowRequest, wire::FollowAnswer, wire::LogPart,
                wire::RelayOpen, wire::Relay, wire::RelayClose, wire::RelayCharge, wire::Resume,
-               wire::Resumed, wire::Servers>;
+               wire::Resumed, wire::Servers, wire::BuildsRequest, wire::Builds,
+               wire::BuildPieceRequest, wire::BuildPiece, wire::BuildOffer, wire::BuildUpload,
+               wire::BuildAnswer>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

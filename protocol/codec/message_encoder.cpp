@@ -352,6 +352,50 @@ struct BodyBuilder {
     return wire::CreateServers(b, b.CreateVector(servers), m.here);
   }
 
+  Offset<wire::BuildsRequest> operator()(const BuildsRequest& m) {
+    RUNSTONE_ASSERT(m.before != 0 && m.count != 0 && m.count <= kListedBuildsMax);
+    const auto name = optional_text(m.name);
+    const auto author = optional_text(m.author);
+    const auto tag = optional_text(m.tag);
+    return wire::CreateBuildsRequest(b, m.request, name, author, tag, m.before, m.count);
+  }
+  Offset<wire::Builds> operator()(const Builds& m) {
+    RUNSTONE_ASSERT(m.builds.size() <= kListedBuildsMax);
+    std::vector<Offset<wire::ListedBuild>> builds;
+    builds.reserve(m.builds.size());
+    for (const ListedBuild& build : m.builds) {
+      Bytes info;
+      ByteWriter w(info);
+      write_build_info(w, build.info);
+      const auto info_at = bytes_of(b, info);
+      const auto name = optional_text(build.added_by_name);
+      builds.push_back(wire::CreateListedBuild(b, build.number, info_at, build.touched,
+                                               build.file_bytes, build.added_by, name));
+    }
+    const auto builds_at = b.CreateVector(builds);
+    return wire::CreateBuilds(b, m.request, builds_at, m.has_more, m.total, text(m.refusal));
+  }
+  Offset<wire::BuildPieceRequest> operator()(const BuildPieceRequest& m) {
+    RUNSTONE_ASSERT(m.number != 0 && m.offset % kBuildPieceBytes == 0);
+    return wire::CreateBuildPieceRequest(b, m.request, m.number, m.offset);
+  }
+  Offset<wire::BuildPiece> operator()(const BuildPiece& m) {
+    RUNSTONE_ASSERT(m.bytes.size() <= kBuildPieceBytes && m.bytes.empty() != m.refusal.empty());
+    const auto bytes = bytes_of(b, m.bytes);
+    return wire::CreateBuildPiece(b, m.request, bytes, text(m.refusal));
+  }
+  Offset<wire::BuildOffer> operator()(const BuildOffer& m) {
+    return wire::CreateBuildOffer(b, m.request, m.file_bytes);
+  }
+  Offset<wire::BuildUpload> operator()(const BuildUpload& m) {
+    RUNSTONE_ASSERT(!m.bytes.empty() && m.bytes.size() <= kBuildUploadBytesMax);
+    return wire::CreateBuildUpload(b, m.request, m.offset, bytes_of(b, m.bytes));
+  }
+  Offset<wire::BuildAnswer> operator()(const BuildAnswer& m) {
+    RUNSTONE_ASSERT(m.number == 0 || m.refusal.empty());
+    return wire::CreateBuildAnswer(b, m.request, m.received, m.number, text(m.refusal));
+  }
+
   Offset<flatbuffers::Vector<std::uint8_t>> preview_list(const std::vector<EditDescriptor>& edits) {
     const Bytes list = encode_preview(edits);
     RUNSTONE_ASSERT(edits.size() <= kPreviewEditsMax && list.size() <= kPreviewListBytesMax);

@@ -94,6 +94,13 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"Resume", server, kEdits, open, kFeatureResume},
       {"Resumed", client, kEdits, open, kFeatureResume},
       {"Servers", server, kEdits, open, kFeatureServerList},
+      {"BuildsRequest", client, kControl, open, kFeatureBuilds},
+      {"Builds", server, kControl, open, kFeatureBuilds},
+      {"BuildPieceRequest", client, kControl, open, kFeatureBuilds},
+      {"BuildPiece", server, kControl, open, kFeatureBuilds},
+      {"BuildOffer", client, kEdits, open, kFeatureBuilds},
+      {"BuildUpload", client, kEdits, open, kFeatureBuilds},
+      {"BuildAnswer", server, kControl, open, kFeatureBuilds},
   }};
 }();
 

@@ -27,6 +27,7 @@
 #include "common/materials/material_table.hpp"
 #include "common/rights/join_password.hpp"
 #include "common/runs/chunk.hpp"
+#include "protocol/codec/build_messages.hpp"
 #include "protocol/codec/chat_messages.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
@@ -466,7 +467,8 @@ using Message =
                  Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
                  KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
                  RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
-                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers>;
+                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest,
+                 Builds, BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "common/core/utc_text.hpp"
-#include "common/formats/file_build.hpp"
 #include "common/formats/rsb_reader.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
 #include "server/map/build_picture.hpp"
-#include "server/mapping/colour_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -48,6 +46,27 @@ Result<Bytes, std::string> stored_bytes(LibraryReader& reader, const StoredBuild
 
 }  // namespace
 
+Result<AddBuild, std::string> verify_build(ByteView file, std::uint64_t runs_max,
+                                           const std::function<bool()>& should_continue) {
+  auto reader = RsbReader::open(rsb_source(file));
+  if (!reader) return failure(reader.error().message());
+  std::uint64_t runs = 0;
+  while (true) {
+    if (should_continue && !should_continue()) return failure("the server stops");
+    const auto section = reader->next();
+    if (!section) return failure(section.error().message());
+    if (!section->has_value()) break;
+    runs += kRunsOfSection + (*section)->cells.runs.size();
+    if (runs > runs_max) return failure("the build is too finely divided: divide it into several");
+  }
+  AddBuild build;
+  build.info = reader->info();
+  build.touched = reader->touched();
+  build.file_bytes = file.size();
+  build.file_digest = XXH3_64bits(file.data(), file.size());
+  return build;
+}
+
 Result<BuildFile, std::string> read_build_file(const std::string& file, std::uint64_t bytes_max) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
@@ -55,22 +74,13 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
     return failure(file + ": takes " + file_size_text(size) + ", and one of at most " +
                    file_size_text(bytes_max) + " is allowed (build_mib): divide it");
   }
-  const auto read = read_file(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
+  auto read = read_file_bytes(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
   if (!read) return failure(read.error());
   BuildFile out;
-  auto bytes = std::make_shared<Bytes>(read->begin(), read->end());
-  auto reader = RsbReader::open(rsb_source(*bytes));
-  if (!reader) return failure(file + ": " + reader.error().message());
-  while (true) {
-    const auto section = reader->next();
-    if (!section) return failure(file + ": " + section.error().message());
-    if (!section->has_value()) break;
-  }
-  out.build.info = reader->info();
-  out.build.touched = reader->touched();
-  out.build.file_bytes = bytes->size();
-  out.build.file_digest = XXH3_64bits(bytes->data(), bytes->size());
-  out.bytes = std::move(bytes);
+  out.bytes = std::make_shared<const Bytes>(*std::move(read));
+  auto build = verify_build(*out.bytes);
+  if (!build) return failure(file + ": " + build.error());
+  out.build = *std::move(build);
   return out;
 }
 
@@ -82,20 +92,6 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
   if (!read) return failure(read.error().message());
   if (const auto done = out->finish(); !done) return failure(file + ": " + done.error());
   return {};
-}
-
-Result<FileBuild, std::string> read_any_build_file(const std::string& file,
-                                                   const std::string& colours) {
-  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
-  const auto bytes = read_file(file, kPlacedFileBytesMax, FileKinds::regular);
-  if (!bytes) return failure(bytes.error());
-  ForeignReading reading;
-  reading.name = std::filesystem::path(file).stem().string();
-  std::string picture;
-  if (const auto added = add_colour_map(colours, picture, reading); !added)
-    return failure(added.error());
-  return read_file_build(
-      file, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
 }
 
 Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build) {

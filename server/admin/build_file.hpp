@@ -1,5 +1,8 @@
 // The file of the command `builds import`, and the texts about builds of the library.
 #pragma once
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +21,16 @@ struct BuildFile {
   std::shared_ptr<const Bytes> bytes;
 };
 
+/// The cost of a section for verify_build(), in runs.
+inline constexpr std::uint64_t kRunsOfSection = 16;
+/// Verifies all bytes of the file of a build, and returns the change that adds it. Its content number
+/// is not drawn yet. The error is one line. Fails also if the runs of all sections, and kRunsOfSection
+/// more for each section, are more than `runs_max`, because a small file can unpack to any number of
+/// them, and if `should_continue`, which is called for each section, returns false. Cost: O(runs).
+Result<AddBuild, std::string> verify_build(
+    ByteView file, std::uint64_t runs_max = std::numeric_limits<std::uint64_t>::max(),
+    const std::function<bool()>& should_continue = {});
+
 /// Reads the file of a build and verifies all of it. The error is one line that begins with the name
 /// of the file. Fails if the file has more than `bytes_max` bytes, and if it is a pipe or a device,
 /// because reading it may never end. Blocks on the disk.
@@ -27,14 +40,6 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
 /// on the disk.
 Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBuild& build,
                                            const std::string& file);
-
-/// The maximum size of a file that read_any_build_file() reads, and of the build's memory.
-inline constexpr std::size_t kPlacedFileBytesMax = std::size_t{256} << 20;
-/// Reads a file of any format with a build (docs/formats.md). `colours`: the PNG with the colours
-/// of a height map; empty: none. The error is one line that begins with the name of the file.
-/// Blocks on the disk.
-Result<FileBuild, std::string> read_any_build_file(const std::string& file,
-                                                   const std::string& colours);
 
 /// Reads a build of the library. The error is one line. Blocks on the disk.
 Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "common/formats/mapped_build.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
@@ -234,14 +235,16 @@ struct ReadFile {
 };
 
 Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
-  auto build = read_any_build_file(wanted.file, wanted.file_words.colours);
+  ForeignReading reading;
+  reading.colours_file = wanted.file_words.colours;
+  auto build = read_build_of_file(wanted.file, std::move(reading));
   if (!build) return failure(build.error());
   ReadFile out;
   if (const std::string& file = wanted.file_words.map; !file.empty()) {
     const auto map = read_material_map(file);
     if (!map) return failure(map.error());
     AppliedRows applied;
-    auto mapped = mapped_build(*build, *map, applied, kPlacedFileBytesMax);
+    auto mapped = mapped_build(*build, *map, applied, kBuildFileBytesMax);
     if (!mapped) return failure(wanted.file + ": " + mapped.error().what);
     build = std::move(mapped).value();
     out.notice = unused_rows_notice(file, *map, applied);

@@ -3,18 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <ostream>
 #include <string>
+#include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/core/version.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/formats/mapped_build.hpp"
-#include "common/os/output_file.hpp"
-#include "common/os/private_file.hpp"
-#include "server/mapping/colour_map_file.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -30,32 +28,13 @@ struct ConvertOptions {
 };
 
 Result<FileBuild, std::string> read(const ConvertOptions& options) {
-  if (auto why = ending_refusal(options.in, false); !why.empty()) return failure(std::move(why));
-  const auto bytes = read_file(options.in, kFileBytesMax, FileKinds::regular);
-  if (!bytes) return failure(bytes.error());
   ForeignReading reading;
   reading.keep_all = options.keep_all;
   reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
-  reading.name = std::filesystem::path(options.in).stem().string();
-  std::string colours;
-  if (auto added = add_colour_map(options.colours, colours, reading); !added)
-    return failure(added.error());
-  auto build = read_file_build(
-      options.in, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
+  reading.colours_file = options.colours;
+  auto build = read_build_of_file(options.in, std::move(reading), kFileBytesMax);
   if (build && !options.name.empty()) build->info.name = options.name;
   return build;
-}
-
-Result<void, std::string> write(const ConvertOptions& options, const FileBuild& build) {
-  auto to = open_output_file(options.out);
-  if (!to) return failure(to.error());
-  const auto written =
-      write_file_build(options.out, build, [&](ByteView bytes) { return to->write(bytes); });
-  if (!written) {
-    return failure(to->error().empty() ? written.error() : options.out + ": " + to->error());
-  }
-  if (const auto done = to->finish(); !done) return failure(options.out + ": " + done.error());
-  return {};
 }
 
 /// Replaces the materials of a build as the map says, and prints which of its rows applied to none.
@@ -82,7 +61,8 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   if (!build) return failure(build.error());
   if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
   if (!options.out.empty()) {
-    if (const auto written = write(options, *build); !written) return written;
+    const auto written = write_build_to_file(options.out, *build);
+    if (!written) return failure(written.error());
   }
   const BuildSides& sides = build->info.sides;
   out << (options.out.empty() ? options.in : options.out) << ": \"" << build->info.name << "\", "

@@ -1,11 +1,9 @@
 #include <array>
-#include <filesystem>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "common/formats/file_build.hpp"
-#include "common/os/private_file.hpp"
 #include "server/import/import_parts.hpp"
-#include "server/mapping/colour_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -21,17 +19,11 @@ class FileParts final : public ImportParts {
 
   std::size_t count() const override { return 1; }
   Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
-    const auto bytes = read_file(file_, kFileBytesMax, FileKinds::regular);
-    if (!bytes) return failure(bytes.error());
-    const ByteView view(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
     ForeignReading reading;
     reading.keep_all = keep_all_;
     reading.bytes_max = kFileBuildBytesMax;
-    reading.name = std::filesystem::path(file_).stem().string();
-    std::string colours;
-    if (const auto added = add_colour_map(colours_, colours, reading); !added)
-      return failure(added.error());
-    auto build = read_file_build(file_, view, reading);
+    reading.colours_file = colours_;
+    auto build = read_build_of_file(file_, std::move(reading), kFileBytesMax);
     if (!build) return failure(build.error());
     const VoxelPos sides = build->build->sides();
     const std::array<std::pair<std::int64_t, std::int64_t>, 3> axes = {

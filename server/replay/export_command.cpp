@@ -1,16 +1,14 @@
 #include "server/replay/replay_commands.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <string_view>
 
+#include "common/build_files/build_files.hpp"
+#include "common/core/coords_text.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/os/new_folder.hpp"
-#include "common/os/output_file.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/history/build_at.hpp"
 #include "server/replay/command_world.hpp"
@@ -21,25 +19,6 @@
 
 namespace runstone {
 namespace {
-
-/// Returns the box of "X,Y,Z,X,Y,Z", two opposite corners that are both inside, or nullopt.
-std::optional<VoxelBox> parse_box(std::string_view text) {
-  std::array<std::int32_t, 6> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
-    if (error != std::errc()) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    const bool is_last = i + 1 == numbers.size();
-    if (is_last != text.empty() || (!is_last && text.front() != ',')) return std::nullopt;
-    if (!is_last) text.remove_prefix(1);
-  }
-  for (const std::int32_t number : numbers) {
-    if (number < -kWorldLimit || number >= kWorldLimit) return std::nullopt;
-  }
-  const auto low = [&](std::size_t i) { return std::min(numbers[i], numbers[i + 3]); };
-  const auto high = [&](std::size_t i) { return std::max(numbers[i], numbers[i + 3]) + 1; };
-  return VoxelBox{{low(0), low(1), low(2)}, {high(0), high(1), high(2)}};
-}
 
 Result<int, std::string> export_log(const ExportOptions& options, std::ostream& out) {
   const auto store = open_world(options.common.world, StoreAccess::read_only);
@@ -62,24 +41,8 @@ Result<int, std::string> export_log(const ExportOptions& options, std::ostream& 
   return code_of_output(**store);
 }
 
-/// Writes a build to a file, which replaces an old one when it is whole. Returns its bytes.
-Result<std::uint64_t, std::string> write_build_to(const std::string& file, const FileBuild& build) {
-  auto to = open_output_file(file);
-  if (!to) return failure(to.error());
-  std::uint64_t bytes = 0;
-  const auto written = write_file_build(file, build, [&](ByteView part) {
-    bytes += part.size();
-    return to->write(part);
-  });
-  if (!written) return failure(to->error().empty() ? written.error() : file + ": " + to->error());
-  if (const auto done = to->finish(); !done) return failure(file + ": " + done.error());
-  return bytes;
-}
-
 std::string name_of_build(const ExportOptions& options, const std::string& place) {
-  if (!options.name.empty()) return options.name;
-  const std::string stem = std::filesystem::path(place).stem().string();
-  return is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
+  return options.name.empty() ? build_name_of_file(place) : options.name;
 }
 
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
@@ -105,7 +68,7 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
   }();
   if (!build) return failure(options.common.world + ": " + build.error());
   build->info.name = name_of_build(options, options.file);
-  const auto bytes = write_build_to(options.file, *build);
+  const auto bytes = write_build_to_file(options.file, *build);
   if (!bytes) return failure(bytes.error());
   const BuildSides& sides = build->info.sides;
   print_world(out, store);
@@ -188,7 +151,7 @@ void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
   command_line.parsed(
       "--box",
       [&options](const std::string& text) -> std::string {
-        options.box = parse_box(text);
+        options.box = parse_voxel_box(text);
         return options.box ? "" : "X,Y,Z,X,Y,Z: two opposite corners, both inside";
       },
       "X,Y,Z,X,Y,Z: export this box of the world as a build, in the format of the ending");

@@ -5,8 +5,8 @@
 //     edits are masked (restore_paste.hpp): they leave alone every voxel that was changed since,
 //     and are written without that comparison.
 //   - An edit that the author may not make, for example on protected ground, is left out.
-//   - Each step writes a slice of a few chunks, so that other players' edits come in between. A
-//     slice is cut short by the room in the log, and by the budget of the payer if the order names
+//   - Each step writes a slice of some chunks, so that other players' edits come in between. Fills
+//     that continue each other are one edit. A slice is cut short by the room in the log, and by the budget of the payer if the order names
 //     one. The rest goes into later slices.
 // The edits are ordinary ones: ordered, logged and sent. A job that is cancelled, or whose server
 // stops, leaves a world in which some chunks are restored and the others are not. The job itself
@@ -65,9 +65,9 @@ std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& 
                                           const ShouldContinue& should_continue = {});
 
 struct RestoreLimits {
-  std::size_t slice_chunks = 64;       // written per step
+  std::size_t slice_chunks = 1024;     // written per step
   std::size_t slice_work = 64 * 1024;  // edit_work() written per step; a single chunk may have more
-  std::size_t work_chunks = 128;       // in one order to a worker
+  std::size_t work_chunks = 512;       // in one order to a worker
 };
 
 class RestoreJob {

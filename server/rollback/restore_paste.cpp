@@ -43,6 +43,10 @@ class Paster {
     const std::span<const Difference> mine(begin, end);
     const Part tight = bounds(mine, part);
     if (tight.first.f >= tight.last.f) return;
+    if (const auto material = only_material(mine, tight)) {
+      out_.push_back({FillBox{box(tight)}, mask_, *material});
+      return;
+    }
     ClipboardBuilder builder(extent(tight), order_);
     for_each_cell_stretch(mine, tight, [&](std::uint32_t count, std::optional<Material> cell) {
       builder.append(count, cell);
@@ -103,6 +107,21 @@ class Paster {
     cells(width * height * (part.last.s - part.first.s) - at, std::nullopt);
   }
 
+  /// Returns the restored material of every cell of the part, or nullopt if they differ or a cell
+  /// stays.
+  std::optional<Material> only_material(std::span<const Difference> differences,
+                                        const Part& part) const {
+    std::optional<Material> material;
+    bool is_uniform = true;
+    for_each_cell_stretch(differences, part,
+                          [&](std::uint32_t count, std::optional<Material> cell) {
+                            if (count == 0) return;
+                            is_uniform = is_uniform && cell && (!material || *material == *cell);
+                            if (!material) material = cell;
+                          });
+    return is_uniform ? material : std::nullopt;
+  }
+
   static std::array<Part, 2> halves(const Part& part) {
     std::array<Part, 2> both = {part, part};
     const auto split = [&](std::uint32_t OrderedPos::* axis) {
@@ -134,12 +153,17 @@ class Paster {
             static_cast<std::uint8_t>(sides[2])};
   }
 
+  VoxelPos place(const OrderedPos& p) const {
+    const auto at = by_axis(p);
+    return {origin_.x + static_cast<std::int32_t>(at[0]),
+            origin_.y + static_cast<std::int32_t>(at[1]),
+            origin_.z + static_cast<std::int32_t>(at[2])};
+  }
+  VoxelBox box(const Part& part) const { return {place(part.first), place(part.last)}; }
+
   void push(const std::shared_ptr<const Clipboard>& clipboard, const Part& part) {
-    const auto corner = by_axis(part.first);
     Paste paste;
-    paste.at = {origin_.x + static_cast<std::int32_t>(corner[0]),
-                origin_.y + static_cast<std::int32_t>(corner[1]),
-                origin_.z + static_cast<std::int32_t>(corner[2])};
+    paste.at = place(part.first);
     paste.clipboard = clipboard;
     out_.push_back({paste, mask_, kEmpty});
   }

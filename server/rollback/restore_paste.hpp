@@ -1,5 +1,6 @@
 // Restore pastes: edits that write the differences of a chunk. They are pasted clipboards in which
-// all other cells are untouched, so that only the differences are written.
+// all other cells are untouched, so that only the differences are written. A box that gets one
+// material is a fill, which takes fewer bytes.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,7 +13,7 @@ namespace runstone {
 /// Returns pastes that write the restored material of each difference, in the chunk whose first
 /// voxel is `origin`. It is one paste, unless its clipboard would be larger than an edit may be.
 /// Then the chunk is split along its slowest axis, and a single layer along the middle one. `now`
-/// gives extent and axis order. Cost: O(runs of the clipboards), for each level of splits.
+/// gives extent and axis order. Cost: O(runs of the clipboards + lines), for each level of splits.
 std::vector<EditDescriptor> restore_pastes(const RunChunk& now,
                                            std::span<const Difference> differences,
                                            VoxelPos origin);

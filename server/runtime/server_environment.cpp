@@ -3,6 +3,7 @@
 #include "common/core/assert.hpp"
 #include "common/os/thread_cpu_ns.hpp"
 #include "server/history/find_action.hpp"
+#include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "server/runtime/recovery.hpp"
 #include "server/runtime/visit_line.hpp"
@@ -196,6 +197,44 @@ void ServerEnvironment::read_log_marks(SessionId session, const LogMarksRequest&
                                        const WorldReaders::FoundLogMarksResult& found) {
     world_->ground().log_marks_read(session, request, found, read_clocks());
   });
+}
+
+void ServerEnvironment::find_builds(SessionId session, const BuildsRequest& request) {
+  readers_.find_builds(
+      request, [this, session, request = request.request](WorldReaders::FoundBuildsResult found) {
+        world_->build_reads().found(session, request, std::move(found), read_clocks());
+      });
+}
+
+void ServerEnvironment::read_build_piece(SessionId session, const BuildPieceRequest& request) {
+  readers_.read_build_piece(
+      request, [this, session, request = request.request](WorldReaders::BuildPieceResult piece) {
+        world_->build_reads().piece_read(session, request, std::move(piece), read_clocks());
+      });
+}
+
+void ServerEnvironment::verify_build(UploadNumber upload, std::vector<Bytes> parts) {
+  readers_.verify_build(
+      std::move(parts), [this, upload](WorldReaders::VerifiedBuildResult verified) {
+        world_->build_uploads().verified(upload, std::move(verified), read_clocks());
+      });
+}
+
+bool ServerEnvironment::save_build_file(UploadNumber upload, std::uint64_t content,
+                                        std::shared_ptr<const Bytes> file) {
+  if (log_ == nullptr) return false;
+  // The writer thread calls it. The text for the client names no file of this machine.
+  const auto done = [this, upload](const StoreResult<void>& saved) {
+    if (!saved) logger("store").warn("a build was not added: {}", saved.error().message());
+    strand_.post([this, upload, why = saved ? std::string() : saved.error().what] {
+      world_->build_uploads().saved(upload, why, read_clocks());
+    });
+  };
+  return log_->writer().save_build_file(content, std::move(file), done);
+}
+
+void ServerEnvironment::remove_build_file(std::uint64_t content) {
+  if (log_ != nullptr) log_->writer().remove_build_file(content);
 }
 
 void ServerEnvironment::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,

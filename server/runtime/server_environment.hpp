@@ -3,6 +3,7 @@
 // in tasks of the world strand. Threads: the world strand.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,9 +26,11 @@ namespace runstone {
 class ServerEnvironment final : public WorldEnvironment {
  public:
   /// All must outlive the object.
-  ServerEnvironment(ConnectedSessions& sessions, Listener& listener, ChunkSender& sender,
-                    WorldReaders& readers, TileMaking& tiles, OwnerConnection& owner)
-      : sessions_(sessions),
+  ServerEnvironment(WorldStrand& strand, ConnectedSessions& sessions, Listener& listener,
+                    ChunkSender& sender, WorldReaders& readers, TileMaking& tiles,
+                    OwnerConnection& owner)
+      : strand_(strand),
+        sessions_(sessions),
         listener_(listener),
         sender_(sender),
         readers_(readers),
@@ -91,6 +94,12 @@ class ServerEnvironment final : public WorldEnvironment {
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override;
   void read_log_marks(SessionId session, const LogMarksRequest& request) override;
+  void find_builds(SessionId session, const BuildsRequest& request) override;
+  void read_build_piece(SessionId session, const BuildPieceRequest& request) override;
+  void verify_build(UploadNumber upload, std::vector<Bytes> parts) override;
+  bool save_build_file(UploadNumber upload, std::uint64_t content,
+                       std::shared_ptr<const Bytes> file) override;
+  void remove_build_file(std::uint64_t content) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override;
   void command(SessionId session, AuthorId author, const PublicKey& key,
@@ -100,6 +109,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void report(OperatorLogLevel level, const std::string& line) override;
 
  private:
+  WorldStrand& strand_;
   ConnectedSessions& sessions_;
   Listener& listener_;
   ChunkSender& sender_;

@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "protocol/limits.hpp"
+#include "server/admin/build_file.hpp"
 #include "server/history/log_marks.hpp"
 #include "server/runtime/logging.hpp"
 
@@ -18,6 +20,48 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
       end.error().kind != StoreError::Kind::cancelled)
     logger("store").error("{}", end.error().message());
   return failure(end.error().what);
+}
+
+constexpr const char* kNotReadNow = "the library cannot be read now";
+
+// A file of 64 MiB has fewer, unless it was made to keep the reader busy. They take some 5 s of one core.
+constexpr std::uint64_t kUploadedRunsMax = std::uint64_t{1} << 29;
+
+StoreResult<FoundBuilds> read_builds(LibraryReader& reader, const BuildsRequest& request) {
+  LibraryQuery query{request.name, request.author, request.tag, request.before, request.count};
+  ++query.count_max;  // shows whether there are more
+  auto builds = reader.builds(query);
+  if (!builds) return failure(builds.error());
+  FoundBuilds found;
+  found.has_more = builds->size() > request.count;
+  if (found.has_more) builds->resize(request.count);
+  for (StoredBuild& build : *builds) {
+    const AddBuild& added = build.build();
+    found.builds.push_back(
+        {build.number(), added.info, added.touched, added.file_bytes, build.record.op.author, ""});
+  }
+  return found;
+}
+
+/// Returns no bytes if there is no such build.
+StoreResult<Bytes> read_piece(LibraryReader& reader, const BuildPieceRequest& request) {
+  const auto build = reader.build(request.number);
+  if (!build) return failure(build.error());
+  if (!*build || request.offset >= (*build)->build().file_bytes) return Bytes();
+  return reader.read_build_piece(**build, request.offset, kBuildPieceBytes);
+}
+
+/// Joins the parts, and frees each of them.
+Bytes joined(std::vector<Bytes> parts) {
+  std::size_t size = 0;
+  for (const Bytes& part : parts) size += part.size();
+  Bytes out;
+  out.reserve(size);
+  for (Bytes& part : parts) {
+    const Bytes taken = std::exchange(part, {});
+    out.insert(out.end(), taken.begin(), taken.end());
+  }
+  return out;
 }
 
 }  // namespace
@@ -75,6 +119,58 @@ void WorldReaders::read_log_marks(const LogMarksRequest& request,
   });
 }
 
+void WorldReaders::find_builds(const BuildsRequest& request,
+                               std::function<void(FoundBuildsResult)> then) {
+  asio::post(*history_readers_, [this, request, then = std::move(then)] {
+    FoundBuildsResult found = failure(kNotReadNow);
+    const auto read = chunks_.with_reader([&](WorldReader& reader) {
+      auto builds = read_builds(reader, request);
+      if (builds) {
+        found = *std::move(builds);
+      } else {
+        logger("store").error("{}", builds.error().message());
+      }
+    });
+    if (!read) logger("store").error("{}", read.error().message());
+    strand_.post([then, found = std::move(found)]() mutable { then(std::move(found)); });
+  });
+}
+
+void WorldReaders::read_build_piece(const BuildPieceRequest& request,
+                                    std::function<void(BuildPieceResult)> then) {
+  asio::post(*history_readers_, [this, request, then = std::move(then)] {
+    BuildPieceResult piece = failure(kNotReadNow);
+    const auto read = chunks_.with_reader([&](WorldReader& reader) {
+      auto bytes = read_piece(reader, request);
+      if (!bytes) {
+        logger("store").error("{}", bytes.error().message());
+      } else if (bytes->empty()) {
+        piece = failure("the library has no build " + std::to_string(request.number) +
+                        ", or it is not on disk yet");
+      } else {
+        piece = *std::move(bytes);
+      }
+    });
+    if (!read) logger("store").error("{}", read.error().message());
+    strand_.post([then, piece = std::move(piece)]() mutable { then(std::move(piece)); });
+  });
+}
+
+void WorldReaders::verify_build(std::vector<Bytes> parts,
+                                std::function<void(VerifiedBuildResult)> then) {
+  asio::post(*file_readers_, [this, parts = std::move(parts), then = std::move(then)]() mutable {
+    auto file = std::make_shared<const Bytes>(joined(std::move(parts)));
+    VerifiedBuildResult verified = failure("");
+    if (auto build = runstone::verify_build(*file, kUploadedRunsMax,
+                                            [this] { return !is_stopping_.load(); })) {
+      verified = VerifiedBuild{*std::move(build), std::move(file)};
+    } else {
+      verified = failure("the file is no sound .rsb: " + build.error());
+    }
+    strand_.post([then, verified = std::move(verified)]() mutable { then(std::move(verified)); });
+  });
+}
+
 void WorldReaders::read_log(RollbackService::Workers::Work work,
                             std::function<void(std::string)> then) {
   asio::post(*log_readers_, [this, work = std::move(work), then = std::move(then)] {
@@ -85,10 +181,13 @@ void WorldReaders::read_log(RollbackService::Workers::Work work,
 
 void WorldReaders::stop() {
   moments_.cancel();
+  is_stopping_.store(true);
   log_readers_->stop();
   history_readers_->stop();
+  file_readers_->stop();
   log_readers_->join();
   history_readers_->join();
+  file_readers_->join();
 }
 
 }  // namespace runstone

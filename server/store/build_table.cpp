@@ -180,10 +180,11 @@ StoreResult<std::vector<LibraryRow>> BuildTable::rows() {
   }
 }
 
-StoreResult<void> BuildTable::read(const StoredBuild& build, const EachPart& each) {
+StoreResult<void> BuildTable::read_from(const StoredBuild& build, std::uint64_t first,
+                                        const EachPart& each) {
   const AddBuild& add = build.build();
-  std::uint64_t left = add.file_bytes;
-  for (std::int64_t part = 0; left > 0; ++part) {
+  std::uint64_t left = add.file_bytes - std::min(add.file_bytes, first * kBuildPartBytes);
+  for (auto part = static_cast<std::int64_t>(first); left > 0; ++part) {
     const std::string where = "build_part content=" + std::to_string(add.content) +
                               " part=" + std::to_string(part) + " of build " +
                               std::to_string(build.number());
@@ -199,6 +200,21 @@ StoreResult<void> BuildTable::read(const StoredBuild& build, const EachPart& eac
     if (!each(data)) return {};
   }
   return {};
+}
+
+StoreResult<Bytes> BuildTable::piece(const StoredBuild& build, std::uint64_t offset,
+                                     std::size_t bytes_max) {
+  Bytes piece;
+  std::uint64_t skipped = offset % kBuildPartBytes;  // of the first part
+  const auto read = read_from(build, offset / kBuildPartBytes, [&](ByteView part) {
+    part = part.subspan(static_cast<std::size_t>(std::min<std::uint64_t>(skipped, part.size())));
+    skipped = 0;
+    part = part.first(std::min(part.size(), bytes_max - piece.size()));
+    piece.insert(piece.end(), part.begin(), part.end());
+    return piece.size() < bytes_max;
+  });
+  if (!read) return failed(read.error());
+  return piece;
 }
 
 StoreResult<bool> BuildTable::is_used(std::uint64_t content) {

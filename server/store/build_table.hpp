@@ -33,7 +33,10 @@ class BuildTable {
   StoreResult<std::vector<StoredBuild>> find(const LibraryQuery& query);
   StoreResult<std::optional<StoredBuild>> one(Sequence number);
   StoreResult<std::vector<LibraryRow>> rows();
-  StoreResult<void> read(const StoredBuild& build, const EachPart& each);
+  StoreResult<void> read(const StoredBuild& build, const EachPart& each) {
+    return read_from(build, 0, each);
+  }
+  StoreResult<Bytes> piece(const StoredBuild& build, std::uint64_t offset, std::size_t bytes_max);
   /// Returns true if a build has this content number.
   StoreResult<bool> is_used(std::uint64_t content);
   /// Returns how many bytes the parts of a content have.
@@ -45,6 +48,9 @@ class BuildTable {
   /// Removes a build and the parts of its file, in the caller's transaction, and updates the folds.
   /// Does nothing if there is no build of this number.
   StoreResult<void> remove(Sequence number, RowFold& fold, RowFold& part_fold);
+  /// Removes the parts of a content, in the caller's transaction, and updates the fold of
+  /// `build_part`.
+  StoreResult<void> remove_parts(std::uint64_t content, RowFold& part_fold);
   /// Adds a part, or replaces it, in the caller's transaction, and updates the fold of
   /// `build_part`.
   StoreResult<void> put_part(std::uint64_t content, std::uint32_t part, ByteView data,
@@ -68,7 +74,8 @@ class BuildTable {
   BuildTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}
   StoreResult<StoredBuild> build_of(const sql::Statement& row) const;
-  StoreResult<void> remove_parts(std::uint64_t content, RowFold& part_fold);
+  /// Calls `each` for the parts of a file from part `first` on.
+  StoreResult<void> read_from(const StoredBuild& build, std::uint64_t first, const EachPart& each);
   Unexpected<StoreError> corrupt(std::string where, std::string what) const;
 
   std::string file_;

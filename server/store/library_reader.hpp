@@ -53,6 +53,13 @@ class LibraryReader {
   virtual StoreResult<void> read_build(const StoredBuild& /*build*/, const EachPart& /*each*/) {
     return {};
   }
+  /// Returns `bytes_max` bytes of the file of a build from `offset` on, or those up to the end of the
+  /// file. Requires offset < file_bytes. Reads no part before them. Fails (corrupt) if a part of them
+  /// is missing or damaged.
+  virtual StoreResult<Bytes> read_build_piece(const StoredBuild& /*build*/,
+                                              std::uint64_t /*offset*/, std::size_t /*bytes_max*/) {
+    return Bytes();
+  }
   /// Returns all builds, ascending by number. Fails (corrupt) if a row is missing.
   virtual StoreResult<std::vector<LibraryRow>> library_rows() { return std::vector<LibraryRow>(); }
 };

@@ -96,7 +96,16 @@ bool LogWriter::save_build_file(std::uint64_t content, std::shared_ptr<const Byt
   return queue(std::move(job));
 }
 
+void LogWriter::remove_build_file(std::uint64_t content) {
+  Job job;
+  job.done = [](const StoreResult<void>& /*removed*/) {};
+  job.content = content;
+  job.removes_file = true;
+  queue(std::move(job));
+}
+
 std::size_t LogWriter::Job::size() const {
+  if (removes_file) return 1;
   return file ? (file->size() + kBuildPartBytes - 1) / kBuildPartBytes : chunks.size();
 }
 
@@ -111,18 +120,31 @@ void LogWriter::write_part(Job& job) {
   {
     const std::lock_guard guard(mutex_);
     has_file_job_ = false;
+    --file_jobs_;
   }
   job.done(saved);
+}
+
+void LogWriter::remove_file(Job& job) {
+  const auto removed = world_.remove_build_file(job.content);
+  job.written = job.size();
+  {
+    const std::lock_guard guard(mutex_);
+    --file_jobs_;
+  }
+  job.done(removed);
 }
 
 bool LogWriter::queue(Job job) {
   {
     const std::lock_guard guard(mutex_);
     // The file of a build takes no place of the others, because these are not offered again.
-    const std::size_t jobs = jobs_.size() + (job_is_running_ ? 1U : 0U) - (has_file_job_ ? 1U : 0U);
-    const bool is_full = job.file ? has_file_job_ : jobs >= limits_.jobs_max;
+    const std::size_t jobs = jobs_.size() + (job_is_running_ ? 1U : 0U) - file_jobs_;
+    const bool is_full =
+        job.is_of_file() ? job.file != nullptr && has_file_job_ : jobs >= limits_.jobs_max;
     if (failed_ || stopping_ || is_full) return false;
     if (job.file) has_file_job_ = true;
+    if (job.is_of_file()) ++file_jobs_;
     jobs_.push_back(std::move(job));
   }
   work_.notify_one();
@@ -233,8 +255,12 @@ StoreResult<void> LogWriter::write(Batch& group) {
 }
 
 StoreResult<void> LogWriter::write_slice(Job& job) {
-  if (job.file) {
-    write_part(job);
+  if (job.is_of_file()) {
+    if (job.file) {
+      write_part(job);
+    } else {
+      remove_file(job);
+    }
     return {};
   }
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
@@ -320,6 +346,7 @@ void LogWriter::end_optional_jobs(const StoreError& error, std::optional<Job>& j
       job_is_running_ = false;
     }
     has_file_job_ = false;
+    file_jobs_ = 0;
   }
   for (const Job& one : ended) one.done(failure(error));
 }

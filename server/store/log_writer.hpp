@@ -125,6 +125,11 @@ class LogWriter {
   /// is as for save_keyframe(). The file must not change. Returns false also if another file is being
   /// written.
   bool save_build_file(std::uint64_t content, std::shared_ptr<const Bytes> file, JobDone done);
+  /// Queues a job that calls WorldSink::remove_build_file() for a file that was written and whose
+  /// build is not added. Its errors are ignored, because the next start removes the file too. At most
+  /// one such job follows a file, so they are not bounded otherwise. A writer that has failed or
+  /// stopped drops it.
+  void remove_build_file(std::uint64_t content);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is
   /// full, it tries once more and gives up: Counters::queued_records are the records that are lost.
   /// Snapshots without room do not keep it from writing records.
@@ -152,7 +157,9 @@ class LogWriter {
     bool is_of_tiles = false;
     std::shared_ptr<const Bytes> file = nullptr;  // only in a job for the file of a build
     std::uint64_t content = 0;
+    bool removes_file = false;  // only in a job that removes the file of a build
     std::size_t size() const;
+    bool is_of_file() const { return file != nullptr || removes_file; }
     bool is_over() const { return written == size(); }
   };
 
@@ -173,6 +180,7 @@ class LogWriter {
   StoreResult<void> write_slice(Job& job);
   /// Writes the next part of the file of a build, and calls the job's `done` after the last one.
   void write_part(Job& job);
+  void remove_file(Job& job);
   /// Looks at the free space, unless it was done less than space_interval ago.
   void check_space();
   void set_space(DiskSpace space, const std::string& reason);
@@ -198,7 +206,8 @@ class LogWriter {
   std::deque<Job> jobs_;
   std::size_t room_taken_ = 0;   // by batches queued or being written
   bool job_is_running_ = false;  // the writer thread has a job that is not in jobs_
-  bool has_file_job_ = false;    // one for the file of a build is queued or running
+  bool has_file_job_ = false;    // one that writes the file of a build is queued or running
+  std::size_t file_jobs_ = 0;    // that write or remove files, queued or running
   bool stopping_ = false, failed_ = false;
   DiskSpace space_ = DiskSpace::enough;
   Counters counters_;

@@ -52,6 +52,21 @@ StoreResult<void> SqlStore::save_build_part(std::uint64_t content, std::uint32_t
   });
 }
 
+StoreResult<void> SqlStore::remove_build_file(std::uint64_t content) {
+  if (!library_) return {};
+  return write([&]() -> StoreResult<void> {
+    const auto is_used = library_->is_used(content);
+    if (!is_used) return failed(is_used.error());
+    if (*is_used) {
+      return refuse("build_part content=" + std::to_string(content), "belongs to a build");
+    }
+    auto parts = meta_table_.fold(kBuildPartFoldKey);
+    if (!parts) return failed(parts.error());
+    if (auto removed = library_->remove_parts(content, *parts); !removed) return removed;
+    return meta_table_.put_fold(kBuildPartFoldKey, *parts);
+  });
+}
+
 StoreResult<void> SqlStore::apply_library(std::span<const EditRecord> records, bool is_history) {
   std::optional<RowFold> builds, parts;
   for (const EditRecord& record : records) {
@@ -105,6 +120,13 @@ StoreResult<void> SqlStore::read_build(const StoredBuild& build, const EachPart&
   if (auto opened = open_library(); !opened) return opened;
   if (!library_) return refuse("build", "the world has no library");
   return library_->read(build, each);
+}
+
+StoreResult<Bytes> SqlStore::read_build_piece(const StoredBuild& build, std::uint64_t offset,
+                                              std::size_t bytes_max) {
+  if (auto opened = open_library(); !opened) return failed(opened.error());
+  if (!library_) return refuse("build", "the world has no library");
+  return library_->piece(build, offset, bytes_max);
 }
 
 StoreResult<std::vector<LibraryRow>> SqlStore::library_rows() {

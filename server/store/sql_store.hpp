@@ -69,6 +69,8 @@ class SqlStore final : public Store {
   StoreResult<std::vector<StoredBuild>> builds(const LibraryQuery& query) override;
   StoreResult<std::optional<StoredBuild>> build(Sequence number) override;
   StoreResult<void> read_build(const StoredBuild& build, const EachPart& each) override;
+  StoreResult<Bytes> read_build_piece(const StoredBuild& build, std::uint64_t offset,
+                                      std::size_t bytes_max) override;
   StoreResult<std::vector<LibraryRow>> library_rows() override;
 
   // WorldReader
@@ -104,6 +106,7 @@ class SqlStore final : public Store {
                                   const std::optional<Keyframe>& keyframe) override;
   StoreResult<void> save_build_part(std::uint64_t content, std::uint32_t part,
                                     ByteView data) override;
+  StoreResult<void> remove_build_file(std::uint64_t content) override;
   StoreResult<void> save_tiles(ChunkSpan tiles) override;
 
   // ImportSink

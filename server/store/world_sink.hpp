@@ -65,6 +65,9 @@ class WorldSink {
                                             ByteView /*data*/) {
     return failure(StoreError{StoreError::Kind::bad_request, "", "", "has no library of builds"});
   }
+  /// Removes the parts of a file whose build is not added. Fails (bad_request) if a build has this
+  /// content number.
+  virtual StoreResult<void> remove_build_file(std::uint64_t /*content*/) { return {}; }
   /// Inserts or replaces tiles. Requires that each was made of chunks of this world, after it was
   /// opened for writing, and contains all edits below it up to its version. A tile is left out if a
   /// snapshot below it was saved meanwhile that is newer. Fails (bad_request) if a tile is ahead of

@@ -29,7 +29,9 @@ struct WorldServer::Rooms {
                start, random),
         cluster({config, environment, counters, sessions, order, receipts, commits,
                  people.joining(), people.edits(), people.presence(), people.chat()},
-                random) {}
+                random),
+        build_reads(config, environment, sessions, order, rights),
+        build_uploads({environment, sessions, order, rights, changes, cluster}) {}
 
   WorldConfig config;
   WorldEnvironment& environment;
@@ -44,6 +46,8 @@ struct WorldServer::Rooms {
   Changes changes;
   People people;
   Cluster cluster;
+  BuildReads build_reads;
+  BuildUploads build_uploads;
 };
 
 namespace {
@@ -61,6 +65,8 @@ struct OpenMessages {
   Ground& ground;
   People& people;
   Cluster& cluster;
+  BuildReads& build_reads;
+  BuildUploads& build_uploads;
   Session& session;
   const Clocks& now;
   void operator()(const View& view) const { ground.on_view(session, view, now); }
@@ -85,6 +91,16 @@ struct OpenMessages {
   void operator()(const PreviewShare& share) const {
     people.previews().on_share(session, share, now);
   }
+  void operator()(const BuildsRequest& request) const {
+    build_reads.on_request(session, request, now);
+  }
+  void operator()(const BuildPieceRequest& request) const {
+    build_reads.on_piece_request(session, request, now);
+  }
+  void operator()(const BuildOffer& offer) const { build_uploads.on_offer(session, offer, now); }
+  void operator()(const BuildUpload& upload) const {
+    build_uploads.on_upload(session, upload, now);
+  }
   void operator()(const Ping& ping) const {
     sessions.send_or_skip(session, encode_message(Pong{ping.sent_us, now.steady_us}));
   }
@@ -108,6 +124,8 @@ People& WorldServer::people() { return rooms_->people; }
 const People& WorldServer::people() const { return rooms_->people; }
 Cluster& WorldServer::cluster() { return rooms_->cluster; }
 const Cluster& WorldServer::cluster() const { return rooms_->cluster; }
+BuildReads& WorldServer::build_reads() { return rooms_->build_reads; }
+BuildUploads& WorldServer::build_uploads() { return rooms_->build_uploads; }
 const WorldCounters& WorldServer::counters() const { return rooms_->counters; }
 std::size_t WorldServer::session_count() const { return rooms_->sessions.count(); }
 
@@ -144,6 +162,8 @@ void WorldServer::remove_closed() {
     rooms_->ground.forget(session);
     rooms_->people.forget(session);
     rooms_->cluster.forget(session);
+    rooms_->build_reads.forget(session.id);
+    rooms_->build_uploads.forget(session.id);
     rooms_->receipts.forget(session.id);
   }
   rooms_->sessions.remove_closed();
@@ -161,9 +181,9 @@ void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock f
 
 void WorldServer::handle(Session& session, Message&& message, const Clocks& now) {
   if (rooms_->cluster.on_message_for_owner(session, message, now)) return;
-  std::visit(
-      OpenMessages{rooms_->sessions, rooms_->ground, rooms_->people, rooms_->cluster, session, now},
-      message);
+  std::visit(OpenMessages{rooms_->sessions, rooms_->ground, rooms_->people, rooms_->cluster,
+                          rooms_->build_reads, rooms_->build_uploads, session, now},
+             message);
 }
 
 void WorldServer::authenticate(Session& session, const ClientAuth& auth, const Clocks& now) {
@@ -276,6 +296,8 @@ void WorldServer::tick(const Clocks& now) {
     rooms_->receipts.send_pending(*session);
     ground.retry(*session, now);
   }
+  rooms_->build_reads.serve(now);
+  rooms_->build_uploads.tick(now);
   step_checkpointer(now);
   remove_closed();
   ground.start_work(now);
@@ -296,6 +318,7 @@ void WorldServer::durable(Sequence seq, const Clocks& now) {
   if (!rooms_->order.set_durable(seq)) return;
   rooms_->receipts.send_durable_to_authors();
   rooms_->cluster.send_durable_to_followers();
+  rooms_->build_uploads.send_durable();
   step_checkpointer(now);
 }
 
@@ -318,7 +341,10 @@ void WorldServer::set_disk_is_full(bool is_full, const Clocks& now, const char* 
   remove_closed();
 }
 
-void WorldServer::log_failed() { rooms_->order.ownership().lose_log(); }
+void WorldServer::log_failed() {
+  rooms_->order.ownership().lose_log();
+  rooms_->build_uploads.send_durable();
+}
 
 void WorldServer::begin_stop(const Clocks& now) {
   rooms_->commits.commit_all(LargeEdits::all, now);  // the edits that were accepted

@@ -20,6 +20,8 @@
 #include "server/world/cluster/cluster.hpp"
 #include "server/world/commit/changes.hpp"
 #include "server/world/ground/ground.hpp"
+#include "server/world/library/build_reads.hpp"
+#include "server/world/library/build_uploads.hpp"
 #include "server/world/people/people.hpp"
 
 namespace runstone {
@@ -43,6 +45,8 @@ class WorldServer {
   const People& people() const;
   Cluster& cluster();
   const Cluster& cluster() const;
+  BuildReads& build_reads();
+  BuildUploads& build_uploads();
   const WorldCounters& counters() const;
   /// Returns the number of sessions in any stage.
   std::size_t session_count() const;
@@ -79,7 +83,8 @@ class WorldServer {
   /// eviction.
   void tick(const Clocks& now);
 
-  // Answers of WorldEnvironment. The others go to ground() and cluster().
+  // Answers of WorldEnvironment. The others go to ground(), cluster(), build_reads() and
+  // build_uploads().
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);
   /// Quarantines a damaged chunk. Loads one that could not be read again later, a few times.
   /// `what` names file, table and row.

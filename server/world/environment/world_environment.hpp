@@ -5,12 +5,14 @@
 // happens when it is full.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
+#include "common/edits/descriptor/library_change.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/session_encodings.hpp"
@@ -35,6 +37,9 @@ struct PlayerVisit {
   std::size_t players = 0;  // open sessions, this one included if it is open
 };
 
+/// Identifies an upload of a build among all of the server, from 1. Answers of workers carry it.
+enum class UploadNumber : std::uint32_t {};
+
 /// The place in the log where a view of the past ends.
 struct OpenedHistory {
   Sequence seq = 0;   // the last edit that the view contains; 0: none
@@ -45,6 +50,18 @@ struct OpenedHistory {
 struct FoundLogMarks {
   Sequence first = 1;          // of the log; at least 1
   std::vector<LogMark> marks;  // as in LogMarks
+};
+
+/// Builds of the library that a reader has found.
+struct FoundBuilds {
+  std::vector<ListedBuild> builds;  // as in Builds, without the names of those who added them
+  bool has_more = false;            // older builds fit, too
+};
+
+/// The file of a build, which a worker has verified.
+struct VerifiedBuild {
+  AddBuild build;  // its content number is not drawn yet
+  std::shared_ptr<const Bytes> file;
 };
 
 /// An action as the log holds it.
@@ -166,6 +183,24 @@ class WorldEnvironment {
   /// Reads marks of the log, on a reader. Called at most once for a session until it is answered.
   /// Answer: Ground::log_marks_read().
   virtual void read_log_marks(SessionId /*session*/, const LogMarksRequest& /*request*/) {}
+  /// Reads a page of the library of builds, on a reader. Called at most once for a session until it
+  /// is answered. Answer: BuildReads::found().
+  virtual void find_builds(SessionId /*session*/, const BuildsRequest& /*request*/) {}
+  /// Reads a piece of the file of a build, on a reader. Called at most once for a session until it is
+  /// answered. Answer: BuildReads::piece_read().
+  virtual void read_build_piece(SessionId /*session*/, const BuildPieceRequest& /*request*/) {}
+  /// Joins the parts of an uploaded file, at least one, and verifies all of it, on a worker. Answer:
+  /// BuildUploads::verified().
+  virtual void verify_build(UploadNumber /*upload*/, std::vector<Bytes> /*parts*/) {}
+  /// Writes the file of a build, under a content number, behind the records that are queued. Returns
+  /// false if another file is being written, or if the log cannot be written; there is no answer then.
+  /// Answer: BuildUploads::saved().
+  virtual bool save_build_file(UploadNumber /*upload*/, std::uint64_t /*content*/,
+                               std::shared_ptr<const Bytes> /*file*/) {
+    return false;
+  }
+  /// Removes a file that save_build_file() has written and whose build is not added.
+  virtual void remove_build_file(std::uint64_t /*content*/) {}
   /// Writes immutable chunks as snapshots, then moves the checkpoint: every edit up to it is
   /// contained in snapshots. Requires that each chunk's version is durable. Answer:
   /// WorldServer::snapshots_saved().

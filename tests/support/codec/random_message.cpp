@@ -571,6 +571,62 @@ Servers any_servers(SplitMix64& rng) {
   return m;
 }
 
+Bytes any_bytes(SplitMix64& rng, std::uint32_t size_max) {
+  Bytes bytes(1 + rng.below(rng.below(8) == 0 ? size_max : 40));
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(rng.below(256));
+  return bytes;
+}
+
+Builds any_builds(SplitMix64& rng) {
+  Builds m;
+  m.request = 1 + rng.below(1000);
+  m.total = any64(rng);
+  if (rng.below(4) == 0) {
+    m.refusal = any_text(rng, 1, kTextBytesMax);
+    return m;
+  }
+  m.has_more = rng.below(2) == 0;
+  Sequence number = kSequenceMax;
+  for (std::uint32_t left = rng.below(rng.below(8) == 0 ? kListedBuildsMax + 1 : 4); left != 0;
+       --left) {
+    ListedBuild build;
+    build.number = number -= 1 + rng.below(1000);
+    build.info.name = "mill " + std::to_string(rng.below(100));
+    if (rng.below(2) == 0) build.info.author = "ann";
+    if (rng.below(2) == 0) build.info.tags = {"roof", "wood"};
+    build.info.created_us = any_time(rng) < 0 ? 0 : 1'700'000'000'000'000;
+    build.info.sides = {1 + rng.below(1000), 1 + rng.below(1000), 1 + rng.below(1000)};
+    build.info.origin = {rng.between(-999, 999), rng.between(-99, 99), rng.between(-999, 999)};
+    build.touched = 1 + any64(rng) % build.info.sides.volume();
+    build.file_bytes = 1 + rng.below(1 << 20);
+    build.added_by = rng.below(10);
+    if (build.added_by != 0) build.added_by_name = any_text(rng, 1, kPlayerNameBytesMax);
+    m.builds.push_back(std::move(build));
+  }
+  return m;
+}
+
+BuildPiece any_build_piece(SplitMix64& rng) {
+  BuildPiece m;
+  m.request = 1 + rng.below(1000);
+  if (rng.below(4) == 0) {
+    m.refusal = any_text(rng, 1, kTextBytesMax);
+  } else {
+    m.bytes = any_bytes(rng, kBuildPieceBytes);
+  }
+  return m;
+}
+
+BuildAnswer any_build_answer(SplitMix64& rng) {
+  BuildAnswer m{1 + rng.below(1000), rng.below(1 << 30), 0, ""};
+  if (rng.below(3) == 0) {
+    m.number = 1 + (any64(rng) >> 2);
+  } else if (rng.below(2) == 0) {
+    m.refusal = any_text(rng, 1, kTextBytesMax);
+  }
+  return m;
+}
+
 FollowRequest any_follow_request(SplitMix64& rng) {
   FollowRequest m{any_version(rng)};
   if (rng.below(2) == 0) m.player_address = "play.example:4747";
@@ -710,9 +766,30 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return Resume{any64(rng) >> 1};
     case kKindOf<Resumed>:
       return Resumed{};
-    default:
-      RUNSTONE_ASSERT(kind == kKindOf<Servers>);
+    case kKindOf<Servers>:
       return any_servers(rng);
+    case kKindOf<BuildsRequest>:
+      return BuildsRequest{1 + rng.below(1000),
+                           any_text(rng, 0, kBuildNameBytesMax),
+                           any_text(rng, 0, kBuildAuthorBytesMax),
+                           any_text(rng, 0, kBuildTagBytesMax),
+                           1 + (any64(rng) >> 2),
+                           static_cast<std::uint8_t>(1 + rng.below(kListedBuildsMax))};
+    case kKindOf<Builds>:
+      return any_builds(rng);
+    case kKindOf<BuildPieceRequest>:
+      return BuildPieceRequest{1 + rng.below(1000), 1 + (any64(rng) >> 2),
+                               std::uint64_t{rng.below(1 << 14)} * kBuildPieceBytes};
+    case kKindOf<BuildPiece>:
+      return any_build_piece(rng);
+    case kKindOf<BuildOffer>:
+      return BuildOffer{1 + rng.below(1000), 1 + rng.below(1 << 30)};
+    case kKindOf<BuildUpload>:
+      return BuildUpload{1 + rng.below(1000), rng.below(1 << 30),
+                         any_bytes(rng, kBuildUploadBytesMax)};
+    default:
+      RUNSTONE_ASSERT(kind == kKindOf<BuildAnswer>);
+      return any_build_answer(rng);
   }
 }
 

@@ -12,6 +12,17 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureTimeCorrections == 1 << 14);
   CHECK(kFeatureLargeActions == 1 << 15);
   CHECK(kFeatureLibrary == 1 << 16);
+  CHECK(kFeatureBuilds == 1 << 17);
+}
+
+TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
+  CHECK(wire_number(kKindOf<BuildsRequest>) == 52);
+  CHECK(wire_number(kKindOf<Builds>) == 53);
+  CHECK(wire_number(kKindOf<BuildPieceRequest>) == 54);
+  CHECK(wire_number(kKindOf<BuildPiece>) == 55);
+  CHECK(wire_number(kKindOf<BuildOffer>) == 56);
+  CHECK(wire_number(kKindOf<BuildUpload>) == 57);
+  CHECK(wire_number(kKindOf<BuildAnswer>) == 58);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdlib>
+#include <iostream>
 #include <sstream>
 #include <string>
 
@@ -141,6 +142,8 @@ void crash_cycles(const char* how, int cycles) {
   while (tally.cycles < cycles && tally.is_sound()) {
     World world(random.next());
     live_and_die(world, std::min(cycles - tally.cycles, kCyclesPerWorld), true, random, tally);
+    // A long test that somebody ends tells how far it came.
+    if (cycles >= kManyCycles) std::cerr << how << ": " << tally.summary() << '\n';
   }
   const auto seconds =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin);

@@ -9,9 +9,9 @@
 
 #include "server/backup/backup_program.hpp"
 #include "server/store/world_folder.hpp"
+#include "tests/integration/server/app/large_build.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
 #include "tests/integration/server/app/server_process.hpp"
-#include "tests/support/formats/rsb_bytes.hpp"
 #include "tests/support/replay/run_replay.hpp"
 
 namespace runstone::test {
@@ -19,21 +19,7 @@ namespace {
 
 /// Writes an .rsb of more than one part of the store.
 void write_large_build(const std::string& file, const std::string& name) {
-  SampleBuild build;
-  build.info = sample_build_info({128, 64, 64});
-  build.info.name = name;
-  build.materials = sample_build_materials(200);
-  SplitMix64 rng(7);
-  for (std::uint32_t x = 0; x < 2; ++x) {
-    RunChunk cells{Extent::cube(64), AxisOrder::xyz, RunList(kBuildSectionVolumeMax)};
-    for (std::uint32_t end = 1, before = 0; end <= kBuildSectionVolumeMax; ++end) {
-      const std::uint32_t number = (before + 1 + rng.below(200)) % 201;
-      cells.runs.push_back({end, static_cast<Material>(number)});
-      before = number;
-    }
-    build.sections.push_back({{x, 0, 0}, std::move(cells)});
-  }
-  const Bytes bytes = rsb_of(build, 0);
+  const Bytes bytes = large_build(name);
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));

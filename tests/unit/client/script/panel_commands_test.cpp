@@ -1,4 +1,4 @@
-// The commands of a script for map, timeline and rollback.
+// The commands of a script for map, timeline, rollback and the library of builds.
 #include <catch2/catch.hpp>
 
 #include "tests/unit/client/script/script_bench.hpp"
@@ -62,11 +62,75 @@ TEST_CASE_METHOD(ScriptBench, "a refused rollback is a failure, and one that can
   CHECK(runner->failures()[0] == "s.txt:1: the server refused the rollback");
 }
 
-TEST_CASE("wrong commands of map, timeline and rollback are found before the script runs",
+TEST_CASE_METHOD(ScriptBench, "a script lists, takes and adds builds, and waits for each",
+                 "[client_script]") {
+  load("library list\nlibrary list name old mill\nlibrary take 120\nlibrary add new mill # 2\n");
+  host.is_using_library = true;
+  runner->step(0);
+  runner->step(1);
+  CHECK(host.input == Input{"list "});
+  host.is_using_library = false;
+  for (TimeUs now = 2; now < 10; ++now) runner->step(now);
+  CHECK(host.input == Input{"list ", "list old mill", "take 120", "add new mill # 2"});
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+}
+
+TEST_CASE_METHOD(ScriptBench, "a build that cannot be taken ends the script with the reason",
+                 "[client_script]") {
+  load("library take 120\nlibrary add mill\n");
+  host.library_refusal = "there is no build 120";
+  runner->step(0);
+  CHECK(runner->finished());
+  CHECK(host.input == Input{"take 120"});
+  CHECK(runner->failures() == Input{"s.txt:1: there is no build 120"});
+}
+
+TEST_CASE_METHOD(ScriptBench, "a library that does not answer ends the script", "[client_script]") {
+  load("library add mill\n");
+  host.is_using_library = true;
+  runner->step(0);
+  runner->step(599'000'000);
+  CHECK_FALSE(runner->finished());
+  runner->step(600'000'000);
+  CHECK(runner->failures() == Input{"s.txt:1: the library of builds did not answer in time"});
+}
+
+TEST_CASE_METHOD(ScriptBench, "a script shows the window of the library with its list",
+                 "[client_script]") {
+  load("library on\nlibrary off\n");
+  host.is_loading_panels = true;
+  runner->step(0);
+  runner->step(1);
+  CHECK(host.input == Input{"library on"});
+  host.is_loading_panels = false;
+  for (TimeUs now = 2; now < 6; ++now) runner->step(now);
+  CHECK(host.input == Input{"library on", "library off"});
+}
+
+TEST_CASE("wrong commands of map, timeline, rollback and library are found before the script runs",
           "[client_script]") {
-  for (const char* line :
-       {"map", "map open", "map zoom", "map zoom 0", "map on 3", "timeline", "timeline full",
-        "rollback", "rollback preview", "rollback redo", "rollback apply p1"}) {
+  for (const char* line : {"map",
+                           "map open",
+                           "map zoom",
+                           "map zoom 0",
+                           "map on 3",
+                           "timeline",
+                           "timeline full",
+                           "rollback",
+                           "rollback preview",
+                           "rollback redo",
+                           "rollback apply p1",
+                           "library",
+                           "library show",
+                           "library take",
+                           "library take 0",
+                           "library take mill",
+                           "library take 1 2",
+                           "library add",
+                           "library list mill",
+                           "library list name",
+                           "library on 1"}) {
     CAPTURE(line);
     CHECK_FALSE(parse_script(line, "s.txt").has_value());
   }

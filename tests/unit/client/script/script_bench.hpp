@@ -176,6 +176,16 @@ struct FakeScriptHost final : ScriptHost {
     input.push_back(is_shown ? "timeline on" : "timeline off");
   }
   bool loading_panels() const override { return is_loading_panels; }
+  bool is_using_library = false;
+  std::string library_refusal;
+  void show_library(bool is_shown) override {
+    input.push_back(is_shown ? "library on" : "library off");
+  }
+  void list_library(const std::string& name) override { input.push_back("list " + name); }
+  void take_build(Sequence number) override { input.push_back("take " + std::to_string(number)); }
+  void add_build(const std::string& name) override { input.push_back("add " + name); }
+  bool using_library() const override { return is_using_library; }
+  std::string show_library_answer() override { return library_refusal; }
   std::string preview_rollback(const std::string& filters) override {
     input.push_back("preview " + filters);
     return rollback_refusal;

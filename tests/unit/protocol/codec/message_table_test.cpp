@@ -39,6 +39,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureServers) return "servers";
   if (feature == kFeatureResume) return "resume";
   if (feature == kFeatureServerList) return "server list";
+  if (feature == kFeatureBuilds) return "builds";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -94,7 +95,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<Servers> == kMessageKindCount - 1);
+  CHECK(kKindOf<BuildAnswer> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

@@ -182,6 +182,28 @@ TEST_CASE("players list builds, and remove only their own ones", "[admin][librar
         "builds remove: somebody else has added it, and you may not administer");
 }
 
+TEST_CASE("a file is verified up to a number of runs, and as long as it is wanted",
+          "[admin][library]") {
+  SampleBuild build;
+  build.info = sample_build_info({128, 64, 64});
+  build.materials = sample_build_materials();
+  for (std::uint32_t x = 0; x < 2; ++x)
+    build.sections.push_back({{x, 0, 0}, uniform_chunk(Extent::cube(64), 2)});
+  const Bytes file = rsb_of(build, 0);
+  const auto verified = verify_build(file, 2 * (kRunsOfSection + 1));
+  REQUIRE(verified.has_value());
+  CHECK(verified->info == build.info);
+  CHECK(verified->touched == 128 * 64 * 64);
+  CHECK(verified->file_bytes == file.size());
+  const auto too_many = verify_build(file, 2 * (kRunsOfSection + 1) - 1);
+  REQUIRE_FALSE(too_many.has_value());
+  CHECK(too_many.error().find("too finely divided") != std::string::npos);
+  int sections = 0;
+  const auto stopped = verify_build(file, 1'000, [&] { return ++sections < 2; });
+  CHECK_FALSE(stopped.has_value());
+  CHECK(sections == 2);
+}
+
 TEST_CASE("the log names what happened to the library", "[admin][library]") {
   AddBuild build;
   build.info.name = "Mill";

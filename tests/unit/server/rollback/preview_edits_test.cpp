@@ -49,8 +49,8 @@ TEST_CASE("a preview has the edits of the chunks in view, near ones first", "[ro
   const RestorePreview shown = taken(edits);
   REQUIRE(shown.edits.size() == 2);
   CHECK_FALSE(shown.is_cut);
-  CHECK(std::get<Paste>(shown.edits[0].shape).at.y / kEdge == 1);
-  CHECK(std::get<Paste>(shown.edits[1].shape).at.x / kEdge == 2);
+  CHECK(std::get<FillBox>(shown.edits[0].shape).box.min.y / kEdge == 1);
+  CHECK(std::get<FillBox>(shown.edits[1].shape).box.min.x / kEdge == 2);
 }
 
 TEST_CASE("a preview without room keeps the nearest changes and says so", "[rollback]") {

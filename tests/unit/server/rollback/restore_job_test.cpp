@@ -101,6 +101,38 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   }
 }
 
+TEST_CASE("fills of a job that continue each other are one edit", "[rollback]") {
+  JobBench bench;
+  const auto filled = [&](const ChunkKey& key, Material material) {
+    RestoredChunk chunk;
+    chunk.key = key;
+    chunk.version = bench.bench.server.order().chunks().version(key);
+    const VoxelBox box = box_of(key.at, kEdge);
+    chunk.voxels = volume_of(box);
+    chunk.edits = {{FillBox{box}, {}, material}};
+    return chunk;
+  };
+  REQUIRE(bench.job.next_work(bench.bench.server).has_value());
+  SECTION("with one material") {
+    bench.job.computed({filled(kHere, 1), filled(kThere, 1)});
+    bench.step();
+    const auto& records = bench.bench.environment.records;
+    REQUIRE(records.size() == 1);
+    CHECK(std::get<FillBox>(records[0].edit.shape).box ==
+          VoxelBox{{0, 0, 0}, {2 * kEdge, kEdge, kEdge}});
+    CHECK(bench.job.progress().edits == 1);
+  }
+  SECTION("not with two") {
+    bench.job.computed({filled(kHere, 1), filled(kThere, 2)});
+    bench.step();
+    CHECK(bench.bench.environment.records.size() == 2);
+    CHECK(bench.job.progress().edits == 2);
+  }
+  CHECK(bench.job.state() == RestoreJob::State::done);
+  CHECK(bench.job.progress().chunks_done == 2);
+  CHECK(bench.job.progress().voxels == 2ULL * kEdge * kEdge * kEdge);
+}
+
 TEST_CASE("the rest of a chunk is planned again if another player edits it between two parts",
           "[rollback]") {
   JobBench b;

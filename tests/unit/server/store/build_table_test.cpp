@@ -139,6 +139,41 @@ TEST_CASE("a build comes back with its record and its file, also after a restart
   CHECK((*rows)[1] == LibraryRow{2, 1, kFileBytes});
 }
 
+TEST_CASE("a piece of a file is read without the parts before it", "[store]") {
+  TempPlace place;
+  const auto store = world_with_builds(place.path());
+  const auto build = store->build(2);
+  REQUIRE((build.has_value() && build->has_value()));
+  const Bytes file = file_of_build(12);
+  struct Piece {
+    std::size_t offset, bytes_max;
+  };
+  for (const Piece& wanted : {Piece{0, 65'536}, Piece{196'608, 65'536}, Piece{kBuildPartBytes, 1},
+                              Piece{kBuildPartBytes - 10, kBuildPartBytes + 20},
+                              Piece{kBuildPartBytes * 2, 65'536}, Piece{kFileBytes - 1, 65'536}}) {
+    CAPTURE(wanted.offset, wanted.bytes_max);
+    const std::size_t count = std::min(wanted.bytes_max, kFileBytes - wanted.offset);
+    const auto begin = file.begin() + static_cast<std::ptrdiff_t>(wanted.offset);
+    const auto piece = store->read_build_piece(**build, wanted.offset, wanted.bytes_max);
+    if (!piece) FAIL(piece.error().message());
+    CHECK(*piece == Bytes(begin, begin + static_cast<std::ptrdiff_t>(count)));
+  }
+}
+
+TEST_CASE("a file whose build is not added is removed, and that of a build is not", "[store]") {
+  TempPlace place;
+  const auto store = world_with_builds(place.path());
+  save_file(*store, 15, file_of_build(15));
+  REQUIRE(store->remove_build_file(15).has_value());
+  REQUIRE(store->remove_build_file(15).has_value());  // is gone
+  CHECK_FALSE(store->append({}, std::vector{library_record(*store, 5, build_named("Late", 15))})
+                  .has_value());
+  const auto refused = store->remove_build_file(12);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().kind == StoreError::Kind::bad_request);
+  check_sound(*store);
+}
+
 TEST_CASE("builds are found by name, author and tag, newest first, in pages", "[store]") {
   TempPlace place;
   const auto store = world_with_builds(place.path());
@@ -300,6 +335,26 @@ TEST_CASE("damage to the rows of a library is named", "[store][sqlite]") {
     CHECK(sound.error().kind == StoreError::Kind::corrupt);
     CHECK(sound.error().where == damage.where);
   }
+}
+
+TEST_CASE("damage to one part of a file keeps only that part from being read", "[store][sqlite]") {
+  TempFolder folder;
+  const std::string place = folder / "world";
+  {
+    const auto store = world_with_builds(place);
+  }
+  REQUIRE(raw_sql(place + "/world.sqlite",
+                  "UPDATE build_part SET data = zeroblob(100) WHERE content = 13 AND part = 1")
+              .empty());
+  const auto store = open_world(place, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  const auto build = (*store)->build(3);
+  REQUIRE((build.has_value() && build->has_value()));
+  CHECK((*store)->read_build_piece(**build, 0, 65'536).has_value());
+  CHECK((*store)->read_build_piece(**build, kBuildPartBytes * 2, 65'536).has_value());
+  const auto damaged = (*store)->read_build_piece(**build, kBuildPartBytes, 65'536);
+  REQUIRE_FALSE(damaged.has_value());
+  CHECK(damaged.error().where == "build_part content=13 part=1 of build 3");
 }
 
 }  // namespace runstone::test

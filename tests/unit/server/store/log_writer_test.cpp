@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <semaphore>
 
+#include "server/store/build_table.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
 
@@ -15,6 +16,13 @@ namespace {
 /// A sink that records its calls. A test can hold it in the middle of a write.
 class FakeSink final : public WorldSink {
  public:
+  /// A part of the file of a build that was written; without bytes: the file was removed.
+  struct FilePart {
+    std::uint64_t content = 0;
+    std::uint32_t part = 0;
+    std::size_t bytes = 0;
+    friend bool operator==(const FilePart&, const FilePart&) = default;
+  };
   struct Commit {
     std::vector<PlayerRow> players;
     std::vector<EditRecord> records;
@@ -22,6 +30,7 @@ class FakeSink final : public WorldSink {
     std::optional<Sequence> checkpoint;
     std::optional<Keyframe> keyframe = {};
     std::vector<NameChange> names = {};
+    FilePart file = {};
   };
 
   bool is_owned() const override { return owned.load(); }
@@ -61,6 +70,17 @@ class FakeSink final : public WorldSink {
   StoreResult<void> save_tiles(ChunkSpan tiles) override {
     return commit({{}, {}, tiles.size(), {}});
   }
+  StoreResult<void> save_build_part(std::uint64_t content, std::uint32_t part,
+                                    ByteView data) override {
+    Commit written;
+    written.file = {content, part, data.size()};
+    return commit(std::move(written));
+  }
+  StoreResult<void> remove_build_file(std::uint64_t content) override {
+    Commit written;
+    written.file = {content, 0, 0};
+    return commit(std::move(written));
+  }
 
   std::counting_semaphore<> entered{0}, gate{0};
   std::size_t fail_at = ~std::size_t{0};
@@ -94,6 +114,35 @@ TEST_CASE("queued records count with the memory that they take, until they are d
   sink.open_gate();
   writer.stop();
   CHECK(writer.queued_bytes() == 0);
+}
+
+TEST_CASE("one file of a build is written at a time, in parts, and may be removed again",
+          "[store][log-writer]") {
+  FakeSink sink;
+  SplitMix64 rng(1);
+  std::atomic<int> done{0};
+  const auto saved = [&](const StoreResult<void>& result) { done += result.has_value() ? 1 : 100; };
+  const auto file = std::make_shared<const Bytes>(kBuildPartBytes + 5, std::uint8_t{1});
+  LogWriter::Limits limits;
+  limits.jobs_max = 1;
+  LogWriter writer(sink, {}, limits);
+  REQUIRE(writer.save_build_file(7, file, saved));
+  sink.entered.acquire();  // the first part is being written
+  CHECK_FALSE(writer.save_build_file(8, file, saved));
+  writer.append({}, sample_records(rng, 1, 1, 1));
+  writer.remove_build_file(7);
+  // Jobs for files take no room from others.
+  CHECK(writer.save_snapshots(chunks(1), std::nullopt));
+  CHECK_FALSE(writer.save_snapshots(chunks(1), std::nullopt));
+  sink.open_gate();
+  writer.stop();
+  CHECK(done == 1);
+  REQUIRE(sink.commits.size() == 5);
+  CHECK(sink.commits[0].file == FakeSink::FilePart{7, 0, kBuildPartBytes});
+  CHECK(sink.commits[1].records.size() == 1);  // before the next part
+  CHECK(sink.commits[2].file == FakeSink::FilePart{7, 1, 5});
+  CHECK(sink.commits[3].file == FakeSink::FilePart{7, 0, 0});
+  CHECK(sink.commits[4].chunks == 1);
 }
 
 TEST_CASE("everything that queued during one commit goes into the next", "[store][log-writer]") {

@@ -66,6 +66,21 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
   std::deque<std::pair<SessionId, LogMarksRequest>> mark_requests;
+  std::deque<std::pair<SessionId, BuildsRequest>> list_requests;
+  std::deque<std::pair<SessionId, BuildPieceRequest>> piece_requests;
+  struct BuildToVerify {
+    UploadNumber upload{};
+    std::vector<Bytes> parts;
+  };
+  struct BuildToSave {
+    UploadNumber upload{};
+    std::uint64_t content = 0;
+    std::shared_ptr<const Bytes> file;
+  };
+  std::deque<BuildToVerify> builds_to_verify;
+  std::deque<BuildToSave> builds_to_save;
+  std::vector<std::uint64_t> removed_files;  // of builds, their content numbers
+  bool is_file_writer_busy = false;          // another file of a build is being written
   std::vector<std::string> lines;
   std::vector<PlayerVisit> came, left;
   std::vector<std::string> commands;
@@ -180,6 +195,22 @@ class FakeEnvironment : public WorldEnvironment {
   void read_log_marks(SessionId session, const LogMarksRequest& request) override {
     mark_requests.emplace_back(session, request);
   }
+  void find_builds(SessionId session, const BuildsRequest& request) override {
+    list_requests.emplace_back(session, request);
+  }
+  void read_build_piece(SessionId session, const BuildPieceRequest& request) override {
+    piece_requests.emplace_back(session, request);
+  }
+  void verify_build(UploadNumber upload, std::vector<Bytes> parts) override {
+    builds_to_verify.push_back({upload, std::move(parts)});
+  }
+  bool save_build_file(UploadNumber upload, std::uint64_t content,
+                       std::shared_ptr<const Bytes> file) override {
+    if (is_file_writer_busy) return false;
+    builds_to_save.push_back({upload, content, std::move(file)});
+    return true;
+  }
+  void remove_build_file(std::uint64_t content) override { removed_files.push_back(content); }
   void load_history_chunk(SessionId session, HistoryNumber history, Sequence at,
                           const ChunkKey& key) override {
     history_loads.push_back({session, history, at, key});
