@@ -60,6 +60,7 @@ Result<void, std::string> ClipboardFile::load(ToolBox& tools) {
   for (BuildMaterial& material : read->materials) rows.push_back(std::move(material.row));
   static_cast<void>(
       tools.set_clipboard(std::move(read->build), EmptyCells::pasted, std::move(rows)));
+  taken_ = tools.clipboard_changes();
   return {};
 }
 

@@ -305,6 +305,7 @@ std::string ToolBox::set_clipboard(BuildPtr build, EmptyCells empty,
   RUNSTONE_ASSERT(build && rows.size() == build->palette().size());
   clipboard_rows_ = std::move(rows);
   hold_clipboard(std::move(build), empty);
+  ++clipboard_changes_;
   // Before a world is open there is only air. The names wait for its table.
   return materials_.size() > 1 ? fit_clipboard() : std::string();
 }
