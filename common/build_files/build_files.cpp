@@ -21,6 +21,14 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file, Forei
   const auto bytes = read_file_bytes(file, file_bytes_max, FileKinds::regular);
   if (!bytes) return failure(bytes.error());
   if (reading.name.empty()) reading.name = stem_of(file);
+  Bytes colours;
+  if (!reading.colours_file.empty()) {
+    auto picture = read_file_bytes(reading.colours_file, file_bytes_max, FileKinds::regular);
+    if (!picture) return failure(picture.error());
+    if (picture->empty()) return failure(reading.colours_file + ": has no bytes");
+    colours = *std::move(picture);
+    reading.colours = colours;
+  }
   return read_file_build(file, *bytes, reading);
 }
 

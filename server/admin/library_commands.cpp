@@ -11,7 +11,6 @@
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/place_words.hpp"
-#include "server/mapping/colour_map_file.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -237,9 +236,7 @@ struct ReadFile {
 
 Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
   ForeignReading reading;
-  std::string colours;
-  if (const auto added = add_colour_map(wanted.file_words.colours, colours, reading); !added)
-    return failure(added.error());
+  reading.colours_file = wanted.file_words.colours;
   auto build = read_build_of_file(wanted.file, std::move(reading));
   if (!build) return failure(build.error());
   ReadFile out;

@@ -13,7 +13,6 @@
 #include "common/core/version.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/formats/mapped_build.hpp"
-#include "server/mapping/colour_map_file.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -32,9 +31,7 @@ Result<FileBuild, std::string> read(const ConvertOptions& options) {
   ForeignReading reading;
   reading.keep_all = options.keep_all;
   reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
-  std::string colours;
-  if (const auto added = add_colour_map(options.colours, colours, reading); !added)
-    return failure(added.error());
+  reading.colours_file = options.colours;
   auto build = read_build_of_file(options.in, std::move(reading), kFileBytesMax);
   if (build && !options.name.empty()) build->info.name = options.name;
   return build;

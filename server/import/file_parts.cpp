@@ -4,7 +4,6 @@
 #include "common/build_files/build_files.hpp"
 #include "common/formats/file_build.hpp"
 #include "server/import/import_parts.hpp"
-#include "server/mapping/colour_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -23,9 +22,7 @@ class FileParts final : public ImportParts {
     ForeignReading reading;
     reading.keep_all = keep_all_;
     reading.bytes_max = kFileBuildBytesMax;
-    std::string colours;
-    if (const auto added = add_colour_map(colours_, colours, reading); !added)
-      return failure(added.error());
+    reading.colours_file = colours_;
     auto build = read_build_of_file(file_, std::move(reading), kFileBytesMax);
     if (!build) return failure(build.error());
     const VoxelPos sides = build->build->sides();
