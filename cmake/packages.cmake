@@ -30,6 +30,14 @@ pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 pkg_check_modules(ICU REQUIRED IMPORTED_TARGET icu-i18n)
 
+# Reads maps of Luanti. Its CMake file also asks for the files to build with Snappy, which the shared library
+# links itself and Debian's package does not depend on.
+find_library(LEVELDB_LIBRARY leveldb REQUIRED)
+find_path(LEVELDB_INCLUDE_DIR leveldb/db.h REQUIRED)
+add_library(runstone_leveldb UNKNOWN IMPORTED)
+set_target_properties(runstone_leveldb PROPERTIES IMPORTED_LOCATION ${LEVELDB_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${LEVELDB_INCLUDE_DIR})
+
 # Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)
 add_library(runstone_asio STATIC cmake/asio.cpp)

@@ -5,7 +5,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
       ca-certificates cmake ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
       flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libpq-dev libzstd-dev libxxhash-dev libhwy-dev libsodium-dev libssl-dev libutf8proc-dev libicu-dev \
       libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libboost-dev prometheus-cpp-dev libegl-dev libgl-dev libosmesa6-dev libglfw3-dev libglm-dev \
-      libimgui-dev libdeflate-dev liblz4-dev libpng-dev zlib1g-dev python3-glad libstb-dev && rm -rf /var/lib/apt/lists/*
+      libimgui-dev libdeflate-dev liblz4-dev libleveldb-dev libpng-dev zlib1g-dev python3-glad libstb-dev && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./
 COPY cmake cmake

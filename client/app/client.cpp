@@ -123,6 +123,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
       hud_.notify("no picture: " + failed);
     }
     log_.log_players(session_.others(), now_us);
+    step_files(now_us);
     show_news();
     if (runner_) runner_->step(now_us);
     if (benchmark_ && session_.is_open()) benchmark_->step(play_.player(), pipeline_, play_.view());
@@ -178,6 +179,7 @@ void Client::poll_window() {
   if (!window_) return;
   const WindowEvents polled = window_->poll();
   if (polled.close) end_requested_ = true;
+  for (const std::string& file : polled.dropped) dropped_.push_back({file, false});
   if (feed_menu(polled)) return;
   if (!runner_) return play_.input().push(polled.events);
   // A script plays. Of the keyboard only escape counts.
@@ -185,6 +187,19 @@ void Client::poll_window() {
     const auto* const key = std::get_if<KeyEvent>(&event);
     if (key != nullptr && key->is_pressed && key->key == Key::escape) end_requested_ = true;
   }
+}
+
+void Client::step_files(TimeUs now_us) {
+  ToolBox& tools = play_.tool().box();
+  std::vector<ClipboardOfFile> wanted = hud_.take_files();
+  for (ClipboardOfFile& file : std::exchange(dropped_, {})) wanted.push_back(std::move(file));
+  for (const ClipboardOfFile& file : wanted) {
+    if (auto notice = files_.begin(file, tools)) hud_.notify(std::move(notice->text), notice->kind);
+  }
+  if (auto notice = files_.step(tools)) hud_.notify(std::move(notice->text), notice->kind);
+  if (!wanted.empty() || !files_.state().empty()) pipeline_.moved();
+  // The player sees the ghost of the build, and clicks where it is to stand.
+  if (files_.take_loaded()) static_cast<void>(play_.tool().carry_out(ToolChoice{"paste"}, now_us));
 }
 
 void Client::handle_input(TimeUs now_us) {
@@ -274,6 +289,7 @@ HudScene Client::hud_scene() const {
   if (play_.was_opened()) scene.state = lost_text(network_, steady_now_us());
   if (scene.state.empty()) scene.state = play_.state_text();
   if (hud_.shows_statistics()) scene.net = network_.net_counts();
+  scene.file_state = files_.state();
   scene.camera = play_.scene().camera(field_of_view());
   scene.size = frame_size();
   return scene;

@@ -8,12 +8,14 @@
 #include <csignal>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "client/app/benchmark.hpp"
 #include "client/app/client_display.hpp"
 #include "client/app/client_end.hpp"
 #include "client/app/client_hud.hpp"
 #include "client/app/client_log.hpp"
+#include "client/app/clipboard_transfer.hpp"
 #include "client/app/game_menu.hpp"
 #include "client/app/options.hpp"
 #include "client/app/script_actions.hpp"
@@ -44,6 +46,8 @@ class Client {
   void check_view() const;
   /// Takes the events of the window.
   void poll_window();
+  /// Begins to read or write the files that the user wants, and takes what has become of them.
+  void step_files(TimeUs now_us);
   /// Gives the events of the window, or of the script, to the player and to the interface.
   void handle_input(TimeUs now_us);
   /// Carries out an action of a key.
@@ -96,6 +100,8 @@ class Client {
   TimeUs horizon_due_us_ = 0;  // when it looks again
   TerminalChat chat_;
   ClientHud hud_;
+  ClipboardTransfer files_;
+  std::vector<ClipboardOfFile> dropped_;  // on the window, and not begun yet
   ScriptActions actions_;
   std::optional<ScriptRunner> runner_;
   std::optional<Benchmark> benchmark_;

@@ -66,7 +66,10 @@ std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene,
   HudState shown = state(scene);
   if (hud_.shows_statistics()) shown.statistics = statistics(scene, now_us);
   auto frame = hud_.make_frame(shown, scene.size, seconds);
-  for (const UiAction& action : hud_.take_actions()) play_.carry_out(action, now_us);
+  for (const UiAction& action : hud_.take_actions()) {
+    play_.carry_out(action, now_us);
+    if (const auto* file = std::get_if<ClipboardOfFile>(&action)) files_.push_back(*file);
+  }
   if (!is_shown_) return nullptr;
   return frame;
 }
@@ -80,6 +83,8 @@ HudState ClientHud::state(const HudScene& scene) const {
   out.place = fmt::format("{:.0f} {:.0f} {:.0f}  {}", std::floor(eye.x), std::floor(eye.y),
                           std::floor(eye.z), play_.player().is_walking() ? "walking" : "flying");
   out.state = scene.state;
+  out.has_files = true;
+  out.file_state = scene.file_state;
   out.tool = play_.tool().text();
   out.shows_players = scene.shows_players;
   if (out.shows_players) add_players(out);

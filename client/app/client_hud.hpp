@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/play/play.hpp"
 #include "client/report/report.hpp"
@@ -15,8 +17,9 @@ namespace runstone {
 /// The client's own state, as the display shows it.
 struct HudScene {
   bool has_window = false, is_connected = false, shows_players = false;
-  std::string state;  // as HudState::state
-  NetCounts net;      // filled only while ClientHud::shows_statistics()
+  std::string state;       // as HudState::state
+  std::string file_state;  // as HudState::file_state
+  NetCounts net;           // filled only while ClientHud::shows_statistics()
   Camera camera;
   std::array<int, 2> size{};  // of the frame, in pixels
 };
@@ -39,6 +42,8 @@ class ClientHud {
   /// Makes the overlay of a frame, and carries out what the user did in it. Returns null while the
   /// display is hidden.
   std::shared_ptr<const OverlayFrame> make_frame(const HudScene& scene, TimeUs now_us);
+  /// Returns the files that the user wants to read or to write, since the last call.
+  std::vector<ClipboardOfFile> take_files() { return std::exchange(files_, {}); }
   bool is_moving() const { return is_shown_ && hud_.is_moving(); }
   void set_shown(bool is_shown) { is_shown_ = is_shown; }
   bool is_shown() const { return is_shown_; }
@@ -63,6 +68,7 @@ class ClientHud {
   Play& play_;
   const std::string name_;
   Hud hud_;
+  std::vector<ClipboardOfFile> files_;
   bool is_shown_ = true;
   NetCounts net_before_;           // at net_us_
   std::array<double, 4> rates_{};  // bytes a second by class, in the interval before net_us_

@@ -3,19 +3,15 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "common/core/text.hpp"
-#include "common/formats/file_build.hpp"
+#include "common/build_files/build_files.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/formats/rsb_build.hpp"
 #include "common/os/file_writer.hpp"
-#include "common/os/private_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
@@ -23,22 +19,6 @@ namespace {
 
 /// The clipboard is written often and read once: fast rather than small.
 constexpr int kClipboardLevel = 3;
-constexpr std::size_t kClipboardFileBytesMax = std::size_t{256} << 20;
-
-/// Returns a source over an open file, which must outlive it.
-RsbSource source_of_file(std::ifstream& in) {
-  return [&in](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
-    in.clear();
-    in.seekg(static_cast<std::streamoff>(position));
-    if (!in) return std::nullopt;
-    std::vector<char> bytes(out.size());
-    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (in.bad()) return std::nullopt;
-    const auto count = static_cast<std::size_t>(in.gcount());
-    std::memcpy(out.data(), bytes.data(), count);
-    return count;
-  };
-}
 
 }  // namespace
 
@@ -71,18 +51,16 @@ ClipboardFile::~ClipboardFile() {
 
 Result<void, std::string> ClipboardFile::load(ToolBox& tools) {
   if (file_.empty()) return {};
-  std::ifstream in(file_, std::ios::binary);
-  if (!in) {
-    std::error_code error;
-    if (!std::filesystem::exists(file_, error)) return {};
-    return failure(file_ + ": it cannot be opened");
-  }
-  auto read = read_build(source_of_file(in));
-  if (!read) return failure(file_ + ": " + read.error().message());
+  std::error_code unknown;
+  if (std::filesystem::status(file_, unknown).type() == std::filesystem::file_type::not_found)
+    return {};
+  auto read = read_build_of_file(file_);
+  if (!read) return failure(read.error());
   std::vector<MaterialRow> rows;
   for (BuildMaterial& material : read->materials) rows.push_back(std::move(material.row));
   static_cast<void>(
       tools.set_clipboard(std::move(read->build), EmptyCells::pasted, std::move(rows)));
+  taken_ = tools.clipboard_changes();
   return {};
 }
 
@@ -107,22 +85,13 @@ std::string ClipboardFile::step(const ToolBox& tools) {
   return failed;
 }
 
-Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
-  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
-  const auto bytes = read_file(file, kClipboardFileBytesMax, FileKinds::regular);
-  if (!bytes) return failure(bytes.error());
-  ForeignReading reading;
-  reading.name = std::filesystem::path(file).stem().string();
-  auto read = read_file_build(
-      file, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
-  if (!read) return failure(read.error());
+std::string set_clipboard(FileBuild read, ToolBox& tools) {
   std::vector<MaterialRow> rows;
-  for (const BuildMaterial& material : read->materials) rows.push_back(world_row_of(material));
-  return tools.set_clipboard(std::move(read->build), EmptyCells::pasted, std::move(rows));
+  for (const BuildMaterial& material : read.materials) rows.push_back(world_row_of(material));
+  return tools.set_clipboard(std::move(read.build), EmptyCells::pasted, std::move(rows));
 }
 
-Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
-  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+Result<FileBuild, std::string> build_of_clipboard(const std::string& file, const ToolBox& tools) {
   const ToolClipboard& clipboard = tools.clipboard();
   if (!clipboard.build)
     return failure(std::string("the clipboard is empty: copy a selection first"));
@@ -132,14 +101,22 @@ Result<void, std::string> write_clipboard(const std::string& file, const ToolBox
   const VoxelPos sides = build.build->sides();
   build.info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
                       static_cast<std::uint32_t>(sides.z)};
-  const std::string stem = std::filesystem::path(file).stem().string();
-  build.info.name = is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
-  auto out = FileWriter::replace(file, 0644);
-  if (!out) return failure(file + ": " + out.error());
-  const auto written =
-      write_file_build(file, build, [&](ByteView bytes) { return out->write(bytes); });
-  if (!written) return failure(out->error().empty() ? written.error() : file + ": " + out->error());
-  if (auto done = out->finish(); !done) return failure(file + ": " + done.error());
+  build.info.name = build_name_of_file(file);
+  return build;
+}
+
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
+  auto read = read_build_of_file(file);
+  if (!read) return failure(read.error());
+  return set_clipboard(*std::move(read), tools);
+}
+
+Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
+  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  const auto build = build_of_clipboard(file, tools);
+  if (!build) return failure(build.error());
+  if (const auto written = write_build_to_file(file, *build); !written)
+    return failure(written.error());
   return {};
 }
 

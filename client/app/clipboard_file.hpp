@@ -11,6 +11,7 @@
 
 #include "client/tools/tool_box.hpp"
 #include "common/core/result.hpp"
+#include "common/formats/file_build.hpp"
 
 namespace runstone {
 
@@ -44,6 +45,12 @@ class ClipboardFile {
   std::optional<Kept> waits_;  // for the end of `writing_`
   std::future<Result<void, std::string>> writing_;
 };
+
+/// Sets the clipboard to a build of a file. Returns text about materials that the world lacks, which may
+/// be empty.
+std::string set_clipboard(FileBuild read, ToolBox& tools);
+/// Returns the clipboard as a build for a file. Fails with one line if nothing was copied.
+Result<FileBuild, std::string> build_of_clipboard(const std::string& file, const ToolBox& tools);
 
 /// Sets the clipboard to the build of a file, whose ending names the format (docs/formats.md). Returns
 /// text about materials that the world lacks, which may be empty. The error is one line. Blocks on the

@@ -7,10 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/apply/edit_stack.hpp"
-#include "common/edits/clipboard/clipboard_builder.hpp"
+#include "client/build/drawn_edits.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "common/runs/cut.hpp"
 
 namespace runstone {
 namespace {
@@ -133,30 +131,15 @@ class OnePiece final : public EditSource {
   bool is_done_ = false;
 };
 
-/// Returns a material that the edit does not write. It marks the voxels that the edit does not touch.
-Material unused_material(const EditDescriptor& edit) {
-  const auto* paste = std::get_if<Paste>(&edit.shape);
-  for (Material material = 0;; ++material) {
-    const bool is_used = paste == nullptr
-                             ? material == edit.material
-                             : std::binary_search(paste->clipboard->palette().begin(),
-                                                  paste->clipboard->palette().end(), material);
-    if (!is_used) return material;
-  }
-}
-
 /// The parts of any shape, drawn one by one into a clipboard each. A part whose clipboard would be too
 /// long is halved.
 class ShapePieces final : public EditSource {
  public:
   ShapePieces(const EditDescriptor& edit, const EditLimits& limits)
       : edit_(edit),
-        plain_(edit),
-        untouched_(unused_material(edit)),
+        untouched_(*unused_material({&edit, 1})),  // one edit does not write all materials
         parts_(within_heights(bounding_box(edit), limits.heights),
-               piece_sides(limits, std::int32_t{kSideMax})) {
-    plain_.mask = {};
-  }
+               piece_sides(limits, std::int32_t{kSideMax})) {}
   SourceStep next() override {
     for (;;) {
       if (waiting_.empty()) {
@@ -167,38 +150,20 @@ class ShapePieces final : public EditSource {
       const VoxelBox box = waiting_.back();
       waiting_.pop_back();
       if (!touches(edit_, box)) continue;
-      if (auto piece = drawn(box)) return SourceStep::of(*std::move(piece));
+      if (auto piece = piece_of(box)) return SourceStep::of(*std::move(piece));
     }
   }
   std::uint64_t voxels() const override { return counted_voxels(edit_); }
 
  private:
   /// Returns the part of the edit in the box, or nullopt after it has halved the box.
-  std::optional<EditDescriptor> drawn(const VoxelBox& box) {
-    const auto length = [](std::int32_t low, std::int32_t high) {
-      return static_cast<std::uint8_t>(high - low);
-    };
-    const Extent extent{length(box.min.x, box.max.x), length(box.min.y, box.max.y),
-                        length(box.min.z, box.max.z)};
-    const auto at_least = [](std::uint8_t s) {
-      return std::max(s, static_cast<std::uint8_t>(kSideMin));
-    };
-    RunChunk chunk =
-        uniform_chunk({at_least(extent.x), at_least(extent.y), at_least(extent.z)}, untouched_);
-    Digest digest = digest_of(chunk);
-    const std::vector<EditDescriptor> edits = {plain_};
-    apply_stack(chunk, digest, box.min, edits, scratch_);
-    const RunChunk cells = runstone::cut(chunk, {0, 0, 0}, extent);
-    if (cells.runs.size() == 1 && !std::holds_alternative<Paste>(edit_.shape))
+  std::optional<EditDescriptor> piece_of(const VoxelBox& box) {
+    const DrawnEdits drawn = draw_edits({&edit_, 1}, box, untouched_, scratch_);
+    if (drawn.is_uniform() && !std::holds_alternative<Paste>(edit_.shape))
       return EditDescriptor{FillBox{box}, edit_.mask, edit_.material};
-    ClipboardBuilder out(extent, cells.order);
-    for (std::size_t i = 0; i < cells.runs.size(); ++i) {
-      const Run run = cells.runs[i];
-      out.append(run.end - out.filled(),
-                 run.material == untouched_ ? std::nullopt : std::optional<Material>(run.material));
-    }
-    if (auto clipboard = out.finish())
+    if (auto clipboard = drawn.clipboard())
       return EditDescriptor{Paste{box.min, *std::move(clipboard), {}}, edit_.mask, kEmpty};
+    const Extent& extent = drawn.cells.extent;
     VoxelBox low = box, high = box;
     if (extent.x >= extent.y && extent.x >= extent.z) {
       low.max.x = high.min.x = box.min.x + extent.x / 2;
@@ -213,7 +178,6 @@ class ShapePieces final : public EditSource {
   }
 
   const EditDescriptor edit_;
-  EditDescriptor plain_;  // without its mask
   const Material untouched_;
   GridParts parts_;
   std::vector<VoxelBox> waiting_;  // the next one is last

@@ -15,7 +15,8 @@ namespace runstone {
 
 struct Window::State {
   GLFWwindow* window = nullptr;
-  std::vector<InputEvent> events;  // since the last poll
+  std::vector<InputEvent> events;    // since the last poll
+  std::vector<std::string> dropped;  // likewise: paths of files
   bool captured = false;
   bool have_cursor = false;  // false until the first position after a capture, which is no movement
   double cursor_x = 0, cursor_y = 0;
@@ -209,6 +210,10 @@ Window::Window(int width, int height, const std::string& title)
     static_cast<State*>(glfwGetWindowUserPointer(w))
         ->events.emplace_back(CharacterEvent{static_cast<char32_t>(character)});
   });
+  glfwSetDropCallback(state_->window, [](GLFWwindow* w, int count, const char** paths) {
+    auto& dropped = static_cast<State*>(glfwGetWindowUserPointer(w))->dropped;
+    for (int i = 0; i < count; ++i) dropped.emplace_back(paths[i]);
+  });
   glfwSetWindowFocusCallback(state_->window, [](GLFWwindow* w, int has_focus) {
     static_cast<State*>(glfwGetWindowUserPointer(w))
         ->events.emplace_back(FocusEvent{has_focus == GLFW_TRUE});
@@ -225,6 +230,7 @@ WindowEvents Window::poll() {
   WindowEvents out;
   state_->read_gamepad();
   out.events = std::exchange(state_->events, {});
+  out.dropped = std::exchange(state_->dropped, {});
   out.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
   return out;
 }

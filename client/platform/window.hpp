@@ -14,7 +14,8 @@ namespace runstone {
 /// The events since the last poll.
 struct WindowEvents {
   std::vector<InputEvent> events;
-  bool close = false;  // the window's close button was pressed
+  std::vector<std::string> dropped;  // paths of files that were dropped on the window
+  bool close = false;                // the window's close button was pressed
 };
 
 class Window {

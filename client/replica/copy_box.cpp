@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/builds/build_builder.hpp"
+#include "common/core/build_info.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/run_builder.hpp"
 
@@ -61,7 +62,7 @@ Result<BuildPtr> copy_box(const Replica& replica, const VoxelBox& box, std::size
   if (!inside_world(box))
     return fail(ErrorCode::bad_value, "box to copy reaches outside the world");
   if (std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) >
-      kBuildEdgeMax)
+      kBuildSideMax)
     return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   const std::int32_t edge = replica.chunk_edge();
   const ChunkCoord first = chunk_of(box.min, edge);

@@ -13,6 +13,7 @@
 #include "common/builds/build_builder.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
+#include "common/core/build_info.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
 
@@ -93,7 +94,7 @@ std::uint64_t chunks_of(const VoxelBox& box, std::int32_t edge) {
 /// Returns a build of one material with the sides of a box, or null if there is no such build.
 BuildPtr block_of(const VoxelBox& box, Material material) {
   const VoxelPos sides = sides_of(box);
-  if (std::max({sides.x, sides.y, sides.z}) > kBuildEdgeMax) return nullptr;
+  if (std::max({sides.x, sides.y, sides.z}) > kBuildSideMax) return nullptr;
   constexpr auto kEdge = static_cast<std::int32_t>(kSideMax);
   auto out = BuildBuilder::of(
       {grid_cuts(sides.x, kEdge), grid_cuts(sides.y, kEdge), grid_cuts(sides.z, kEdge)});
@@ -304,6 +305,7 @@ std::string ToolBox::set_clipboard(BuildPtr build, EmptyCells empty,
   RUNSTONE_ASSERT(build && rows.size() == build->palette().size());
   clipboard_rows_ = std::move(rows);
   hold_clipboard(std::move(build), empty);
+  ++clipboard_changes_;
   // Before a world is open there is only air. The names wait for its table.
   return materials_.size() > 1 ? fit_clipboard() : std::string();
 }

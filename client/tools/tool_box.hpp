@@ -87,7 +87,8 @@ class ToolBox {
   /// Returns the rows of the materials of the clipboard, by palette entry, as the world from which they
   /// were copied has them.
   std::span<const MaterialRow> clipboard_rows() const { return clipboard_rows_; }
-  /// Returns a number that rises when the player copies something or turns the clipboard.
+  /// Returns a number that rises when the player copies something, turns the clipboard or takes another
+  /// one from a file or a library.
   std::uint64_t clipboard_changes() const { return clipboard_changes_; }
   /// Sets the clipboard to a build of another world or of a file: `rows` are the materials of its
   /// palette. Its materials are found by their names; returns what set_materials() returns. Before

@@ -69,6 +69,8 @@ struct HudState {
   std::string tool;                  // the chosen tool and its numbers; empty: the plain voxel tool
   const ToolBox* tools = nullptr;    // not null while the tool window is open
   bool has_preview = false;          // `tools` has the preview of the next click
+  bool has_files = false;            // the clipboard can be read from files, and written to them
+  std::string file_state;            // such as "reading castle.schem"; empty: no file is under way
   bool shows_players = false;
   std::vector<ListedPlayer> players;
   std::vector<std::string> names;  // of the other players, for completion

@@ -55,6 +55,7 @@ void PanelWindows::build(const HudState& state, UiContext& context, std::vector<
   std::vector<ToolCommand> commands;
   tools_.build(state, scale, commands);
   for (ToolCommand& command : commands) out.emplace_back(std::move(command));
+  if (auto file = tools_.take_file()) out.emplace_back(*std::move(file));
 }
 
 }  // namespace runstone

@@ -309,6 +309,7 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   build_steps(out);
   ImGui::EndDisabled();
   build_clipboard(box, out);
+  if (state.has_files) build_file(state, out);
 }
 
 void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
@@ -329,6 +330,32 @@ void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
     command.count = count_;
     out.emplace_back(command);
   }
+}
+
+void ToolWindow::build_file(const HudState& state, std::vector<ToolCommand>& out) {
+  ImGui::Separator();
+  if (!state.file_state.empty()) return ImGui::TextUnformatted(state.file_state.c_str());
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##file", "path, such as ~/castle.schem", &file_);
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip(
+        "The ending names the format: .schem, .litematic, .vox, .mts, .rsb and others.\n"
+        "A file that is dropped on the window is loaded, too.");
+  }
+  const ToolBox& box = *state.tools;
+  ImGui::BeginDisabled(file_.empty());
+  if (button_beside("Load into the clipboard", true)) wanted_ = ClipboardOfFile{file_, false};
+  ImGui::BeginDisabled(!box.clipboard().build);
+  if (button_beside("Save the clipboard")) wanted_ = ClipboardOfFile{file_, true};
+  ImGui::EndDisabled();
+  ImGui::BeginDisabled(!box.selection());
+  if (button_beside("Save the selection")) {
+    out.emplace_back(
+        SelectionCommand{SelectionCommand::Kind::copy, !keeps_air_, kEmpty, kEmpty, {}, 1});
+    wanted_ = ClipboardOfFile{file_, true};
+  }
+  ImGui::EndDisabled();
+  ImGui::EndDisabled();
 }
 
 void ToolWindow::build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out) {

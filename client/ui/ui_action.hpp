@@ -25,12 +25,18 @@ struct ShowMoment {
   bool is_live = false;
 };
 
+/// The clipboard of the tools is read from a file of this computer, or written to it.
+struct ClipboardOfFile {
+  std::string file;  // as typed
+  bool is_saved = false;
+};
+
 /// The user chose what frames show of storage and meshing.
 struct SetInspection {
   InspectionModes modes;
 };
 
 using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
-                              LibraryOrder, ToolCommand>;
+                              LibraryOrder, ToolCommand, ClipboardOfFile>;
 
 }  // namespace runstone

@@ -2,7 +2,7 @@
 // untouched, which keeps the present voxel where the build is pasted. The box is cut into sections by
 // planes across each axis. A section is a cuboid of runs, as the cells of a Clipboard: a cell number
 // is 0 (untouched) or palette index + 1. Invariants (BuildBuilder checks them):
-//   - along each axis the cuts ascend from 0 to the side, which is at most kBuildEdgeMax, and
+//   - along each axis the cuts ascend from 0 to the side, which is at most kBuildSideMax, and
 //     neighbours are 1 .. kSideMax apart;
 //   - the runs of each section are canonical, and its sides are the distances of the cuts;
 //   - the materials of the palette differ, and each is the material of at least one cell;
@@ -28,8 +28,6 @@ namespace runstone {
 
 /// The memory that a build takes at most.
 inline constexpr std::size_t kBuildBytesMax = std::size_t{256} * 1024 * 1024;
-/// The longest side of a build, in cells. An .rsb has no longer one either.
-inline constexpr std::int32_t kBuildEdgeMax = 1 << 20;
 /// The materials of a build. Cell numbers have 16 bits, and 0 is untouched.
 inline constexpr std::size_t kBuildPaletteMax = 65'535;
 

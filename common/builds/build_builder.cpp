@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/core/build_info.hpp"
 #include "common/runs/run_builder.hpp"
 
 namespace runstone {
@@ -42,7 +43,7 @@ Result<BuildBuilder> BuildBuilder::of(BuildCuts cuts, std::size_t bytes_max) {
   std::size_t bytes = sizeof(Build);
   std::size_t places = 1;
   for (const auto& along : cuts) {
-    if (along.back() > kBuildEdgeMax)
+    if (along.back() > kBuildSideMax)
       return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
     bytes += along.size() * sizeof(std::int32_t);
     const std::size_t count = along.size() - 1;

@@ -15,7 +15,7 @@ namespace runstone {
 class BuildBuilder {
  public:
   /// Requires cuts as Build has them. Fails with limit_exceeded if a side is longer than
-  /// kBuildEdgeMax, or if the grid alone takes more than `bytes_max`. Cost: O(sections).
+  /// kBuildSideMax, or if the grid alone takes more than `bytes_max`. Cost: O(sections).
   static Result<BuildBuilder> of(BuildCuts cuts, std::size_t bytes_max = kBuildBytesMax);
 
   const BuildCuts& cuts() const { return made_.cuts_; }

@@ -9,6 +9,7 @@
 #include "common/builds/build_builder.hpp"
 #include "common/builds/widened.hpp"
 #include "common/core/assert.hpp"
+#include "common/core/build_info.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
@@ -85,7 +86,7 @@ Result<void> check_length(VoxelPos offset, std::int32_t times, VoxelPos sides) {
   const auto o = by_axis(offset), s = by_axis(sides);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t way = std::abs(std::int64_t{o[i]}) * times;
-    if (way + s[i] > kBuildEdgeMax)
+    if (way + s[i] > kBuildSideMax)
       return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   }
   return {};

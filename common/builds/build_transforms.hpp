@@ -23,7 +23,7 @@ Result<BuildPtr> turned(const Build& build, const Orientation& orientation,
 /// the result is that of the first or of the last copy, whichever is smaller along each axis
 /// (stack_corner()). If the copies lie beside each other along one axis, they share their sections,
 /// and the result takes little more memory than the build. Fails with limit_exceeded if the result
-/// takes more than `bytes_max` or is longer than kBuildEdgeMax, and with bad_value if the offset is 0.
+/// takes more than `bytes_max` or is longer than kBuildSideMax, and with bad_value if the offset is 0.
 /// Requires 1 <= times. Cost: O(sections of the result) if the copies share their sections, otherwise
 /// that of cells_in() for each copy and section of 64 cells.
 Result<BuildPtr> stacked(const Build& build, VoxelPos offset, std::int32_t times,

@@ -14,8 +14,8 @@
 
 namespace runstone {
 
-/// The maximum side of a build, in voxels. A volume then has at most 60 bits.
-inline constexpr std::uint32_t kBuildSideMax = std::uint32_t{1} << 20;
+/// The maximum side of a build, in voxels, in memory and in files. A volume then has at most 60 bits.
+inline constexpr std::int32_t kBuildSideMax = 1 << 20;
 
 inline constexpr std::size_t kBuildNameBytesMax = 64;
 inline constexpr std::size_t kBuildAuthorBytesMax = 32;

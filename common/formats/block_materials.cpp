@@ -1,5 +1,7 @@
 #include "common/formats/block_materials.hpp"
 
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,15 +25,32 @@ Result<MaterialTable> BlockMaterials::make_table() {
     return fail(ErrorCode::limit_exceeded,
                 "the names and states of the blocks take more than 64 MiB");
   }
-  MaterialTable table;
-  for (auto& [block, id] : ids_) {
+  std::vector<MaterialInfo> infos;           // of ids_, in its order
+  std::map<std::string, MaterialInfo> kept;  // by name; not chosen by the map
+  for (const auto& [block, id] : ids_) {
     MaterialInfo info = format_.material_of(block, keep_all_);
+    const auto mapped =
+        map_ != nullptr ? map_->apply({row_of(info), block.states}, applied_) : std::nullopt;
+    if (mapped) {
+      info = {mapped->name, mapped->colour, mapped->visibility,
+              std::nullopt, mapped->body,   mapped->look};
+    } else if (map_ != nullptr) {
+      kept.try_emplace(info.name, info);
+    }
+    infos.push_back(std::move(info));
+  }
+  MaterialTable table;
+  std::size_t next = 0;
+  for (auto& [block, id] : ids_) {
+    MaterialInfo& info = infos[next++];
     if (info.visibility == Visibility::empty) continue;
     if (const auto known = table.find(info.name)) {
       id = *known;
       continue;
     }
-    const auto added = table.add(std::move(info));
+    const auto same = kept.find(info.name);
+    const bool is_kept = same != kept.end() && same->second.visibility != Visibility::empty;
+    const auto added = table.add(is_kept ? same->second : std::move(info));
     if (!added) return failure(added.error());
     id = *added;
   }

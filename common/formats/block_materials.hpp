@@ -9,6 +9,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
 #include "common/formats/format.hpp"
+#include "common/formats/material_map.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -19,16 +20,21 @@ inline constexpr std::size_t kForeignBlockBytesMax = std::size_t{64} << 20;
 
 class BlockMaterials {
  public:
-  /// `keep_all` is that of Format::material_of.
-  BlockMaterials(const Format& format, bool keep_all) : format_(format), keep_all_(keep_all) {}
+  /// `keep_all` is that of Format::material_of. If `map` is not null, it must outlive the object,
+  /// and the materials are those that it chooses.
+  BlockMaterials(const Format& format, bool keep_all, const MaterialMap* map = nullptr)
+      : format_(format), keep_all_(keep_all), map_(map) {}
 
   /// Notes the blocks that occur in a piece. Cost: O(runs + blocks log noted blocks).
   void note(const ForeignPiece& piece);
 
   /// Returns a table of the materials of all noted blocks that are not empty, ascending by name and
-  /// states. Id 0 is air. Blocks with materials of one name share the first one. Fails with
-  /// limit_exceeded if the table has no room, or if the blocks exceeded kForeignBlockBytesMax.
+  /// states of the blocks. Id 0 is air. Blocks with materials of one name share the first one that
+  /// the map did not choose, otherwise the first one. Fails with limit_exceeded if the table has no
+  /// room, or if the blocks exceeded kForeignBlockBytesMax.
   Result<MaterialTable> make_table();
+  /// Returns the rows of the map that applied. Requires make_table().
+  const AppliedRows& applied() const { return applied_; }
 
   /// Returns the voxels of a piece with the ids of the table. Blocks that are not noted are empty.
   RunChunk resolve(const ForeignPiece& piece) const;
@@ -36,6 +42,8 @@ class BlockMaterials {
  private:
   const Format& format_;
   bool keep_all_;
+  const MaterialMap* map_;
+  AppliedRows applied_;
   std::map<ForeignBlock, Material> ids_;
   std::size_t bytes_ = 0;  // of the keys of ids_
 };

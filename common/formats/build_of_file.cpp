@@ -6,6 +6,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
+#include "common/formats/height_map.hpp"
 #include "common/formats/piece_joiner.hpp"
 
 namespace runstone {
@@ -50,8 +51,9 @@ Result<FileBuild> read_foreign_build(const Format& format, ByteView file,
                                      const ForeignReading& reading) {
   RUNSTONE_ASSERT(format.read != nullptr && format.material_of != nullptr);
   PieceJoiner joiner(format, reading.keep_all, reading.bytes_max);
-  const auto info =
-      format.read(file, [&](ForeignPiece&& piece) { return joiner.add(std::move(piece)); });
+  const PieceSink sink = [&](ForeignPiece&& piece) { return joiner.add(std::move(piece)); };
+  const auto info = reading.colours.empty() ? format.read(file, sink)
+                                            : read_height_map(file, reading.colours, {}, sink);
   if (!info) return failure(info.error());
   if (!joiner.has_pieces()) return fail(ErrorCode::bad_value, "file has no voxels");
   const VoxelBox box = joiner.box();

@@ -16,6 +16,11 @@ struct ForeignReading {
   bool keep_all = true;                    // as that of Format::material_of
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces
   std::string name;                        // of the build, if the file has none; see BuildInfo
+  // Of a height map: a PNG with the colours of its columns (height_map.hpp), which must outlive the
+  // call. Empty: there is none. `colours_file` is the file that has it, for messages; programs name
+  // it, and read_build_of_file() (common/build_files) reads it.
+  ByteView colours = {};
+  std::string colours_file = {};
 };
 
 /// Reads a whole file as a build. The build is the smallest box around the pieces. Voxels of which the
@@ -23,7 +28,8 @@ struct ForeignReading {
 /// a material of the build; a name becomes one that validate_material() accepts, and states that are
 /// too long are cut. Where pieces overlap, the later one counts. Fails as Format::read does, with
 /// limit_exceeded if the build has more materials or sides than a build may have or takes more memory
-/// than allowed, and with bad_value if no cell is touched. Requires a format that reads files. Cost:
+/// than allowed, and with bad_value if no cell is touched. Requires a format that reads files, and
+/// that of height maps if there are colours. Cost:
 /// O(runs + lines of the pieces).
 Result<FileBuild> read_foreign_build(const Format& format, ByteView file,
                                      const ForeignReading& reading);

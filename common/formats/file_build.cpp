@@ -3,13 +3,14 @@
 #include <utility>
 #include <vector>
 
-#include "common/formats/build_rows.hpp"
+#include "common/formats/grid_cells.hpp"
 #include "common/formats/rsb_block.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::string_view kRsbEnding = ".rsb";
+constexpr std::string_view kHeightMapEnding = ".png";
 
 bool is_rsb(std::string_view file) { return has_ending(file, kRsbEnding); }
 
@@ -30,12 +31,19 @@ std::string error_text(const std::string& file, const Error& error) {
 Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
                                                const ForeignReading& reading) {
   if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  if (!reading.colours.empty() && !has_ending(file, kHeightMapEnding)) {
+    return failure(file + ": is no height map (" + std::string(kHeightMapEnding) +
+                   "), and only these take colours from another file");
+  }
   if (is_rsb(file)) {
     auto build = read_build(rsb_source(bytes), reading.bytes_max);
     if (!build) return failure(file + ": " + build.error().message());
     return *std::move(build);
   }
   auto build = read_foreign_build(*file_format(file), bytes, reading);
+  if (!build && !reading.colours.empty())
+    return failure(
+        error_text(file + " with the colours of " + reading.colours_file, build.error()));
   if (!build) return failure(error_text(file, build.error()));
   return *std::move(build);
 }

@@ -13,7 +13,8 @@
 
 namespace runstone {
 
-/// Reads the bytes of a file as a build. The error is one line with the file, the place and the reason.
+/// Reads the bytes of a file as a build. The error is one line with the file, the place and the
+/// reason. Fails if `reading` has colours and the file is no height map.
 Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
                                                const ForeignReading& reading);
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "common/builds/build.hpp"
 #include "common/core/result.hpp"
@@ -9,10 +10,16 @@
 
 namespace runstone {
 
-/// Calls f(count, cell number) for stretches of equal cells, in the order of the axes; neighbouring
-/// stretches may be equal, and none is longer than 128 cells. Stops at the first failure of f, and
-/// returns it. Cost: O(lines of 128 cells + runs). Memory: the runs of 64 layers.
-Result<void> walk_cells(const Build& build, AxisOrder order,
-                        const std::function<Result<void>(std::uint32_t, std::uint16_t)>& f);
+/// Takes the next `count` cells, which all have one cell number. A failure ends the walk.
+using CellSink = std::function<Result<void>(std::uint32_t count, std::uint16_t number)>;
+
+/// Gives all cells of a build to the sink, in the order of the axes. A stretch has less than 65,664
+/// cells, so the sink may expand it; neighbouring ones differ if the first has less than 65,536. Fails
+/// with the error of the sink. Memory: the runs of 16 layers across the slowest axis. Cost: O(lines of
+/// 128 cells + runs of a section * its layers / 16).
+Result<void> walk_cells(const Build& build, AxisOrder order, const CellSink& sink);
+
+/// Returns how many cells have each cell number, from 0 (untouched) on. Cost: O(sections + runs).
+std::vector<std::uint64_t> count_cells(const Build& build);
 
 }  // namespace runstone

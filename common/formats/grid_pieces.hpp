@@ -1,12 +1,11 @@
-// GridPieces: makes pieces of a box whose cells come one after the other, as arrays of other formats
-// have them. It appends to the runs of the pieces of one slab, so neither the box nor a piece is
-// expanded.
+// GridPieces: cuts the cells of a box, which come one after the other as arrays of other formats have
+// them, into pieces of at most 64 voxels a side (128 along the two faster axes if a layer is very
+// large), at the planes of the grid with that edge, as builds have them. It holds the runs of the pieces
+// of one slab of layers, so neither the box nor a piece is expanded. Internal to readers.
 #pragma once
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include "common/core/coords.hpp"
@@ -18,43 +17,71 @@
 
 namespace runstone {
 
-/// The cells of a slab of one voxel across the slowest axis, at most, so that the pieces of a slab take
-/// at most some 10 MiB without their runs.
+/// The cells of a layer across the slowest axis, at most, that are cut into small pieces. The pieces of
+/// a slab take at most some 10 MiB without their runs.
 inline constexpr std::uint64_t kGridLayerMax = std::uint64_t{1} << 28;
+/// The cells of a box in a schematic.
+inline constexpr std::uint64_t kGridVolumeMax = (std::uint64_t{1} << 31) - 1;
 
 class GridPieces {
  public:
-  /// Fails with limit_exceeded if a side is outside 1 .. kBuildSideMax, or a layer has more than
-  /// kGridLayerMax cells. `origin` is the lowest voxel of the box, and `order` that in which the cells
-  /// come. `blocks` and `sink` must outlive the object; blocks may be added while cells are appended, up
-  /// to kMaterialCountMax - 1. Pieces have sides of 64.
-  static Result<GridPieces> of(VoxelPos sides, VoxelPos origin, AxisOrder order,
-                               const std::vector<ForeignBlock>& blocks, const PieceSink& sink);
+  /// `order` is that in which the cells come. Material i + 1 of the cells is blocks[i], and 0 is a cell
+  /// of which the file says nothing. `blocks` and `sink` must outlive the object; blocks may be added
+  /// while cells are appended. Requires a box that is not empty, and whose layers have at most
+  /// kGridVolumeMax cells.
+  GridPieces(const VoxelBox& box, AxisOrder order, const std::vector<ForeignBlock>& blocks,
+             const PieceSink& sink);
+  GridPieces(const GridPieces&) = delete;
+  GridPieces& operator=(const GridPieces&) = delete;
 
-  /// Appends equal cells: the index of a block + 1, or 0. Gives the pieces of a slab to the sink when
-  /// the slab is full. Fails if the sink does. Requires as many cells as are missing, at least. Cost:
-  /// O(lines of pieces).
-  Result<void> append(std::uint64_t count, Material cell);
-  /// Returns the number of cells that are missing.
+  /// Returns true if each side is 1 .. kBuildSideMax, and a layer has at most kGridLayerMax cells.
+  static bool are_sides(VoxelPos sides, AxisOrder order);
+
+  /// Returns the number of cells that are not appended yet.
   std::uint64_t left() const { return left_; }
-  /// Returns the cells to the end of the line of the next piece, 1 .. 64; 0 at the end.
-  std::uint32_t line_left() const;
+  /// Appends equal cells, and gives the pieces of a slab to the sink when it is full, also those of
+  /// which the file says nothing. Fails as the sink does. Requires count <= left(), and a material of at
+  /// most blocks.size(). Cost: O(lines of pieces); O(1) in a piece as wide as the box.
+  Result<void> append(std::uint64_t count, Material material);
 
  private:
-  GridPieces(const std::vector<ForeignBlock>& blocks, const PieceSink& sink)
-      : blocks_(&blocks), sink_(&sink) {}
-  void begin_slab();
-  Result<void> finish_slab();
+  /// Cells of a side from `begin` to `end`.
+  struct Span {
+    std::uint32_t begin, end;
+    std::uint32_t size() const { return end - begin; }
+  };
+  /// A side of the box.
+  struct Side {
+    std::size_t axis = 0;      // 0: x, 1: y, 2: z
+    std::int32_t low = 0;      // of the box, in the world
+    std::uint32_t cells = 0;   // at least 1
+    std::uint32_t edge = 0;    // of the grid
+    std::uint32_t offset = 0;  // how far the plane of the grid lies below `low`, less than an edge
 
-  const std::vector<ForeignBlock>* blocks_;
-  const PieceSink* sink_;
-  AxisOrder order_ = AxisOrder::xyz;
-  std::array<std::uint32_t, 3> sides_{};  // fastest, middle, slowest
-  std::array<std::int32_t, 3> origin_{};  // x, y, z
-  std::array<std::uint32_t, 3> at_{};     // fastest, middle, slowest
+    std::uint32_t pieces() const { return (offset + cells + edge - 1) / edge; }
+    std::uint32_t piece_at(std::uint32_t cell) const { return (offset + cell) / edge; }
+    Span span(std::uint32_t piece) const;
+  };
+
+  void begin_slab();
+  void advance();
+  Result<void> give_slab();
+  ForeignPiece piece_of(RunChunk cells, VoxelPos origin);
+
+  AxisOrder order_;
+  Side fast_, middle_, slow_;
+  const std::vector<ForeignBlock>& blocks_;
+  const PieceSink& sink_;
+  std::uint32_t wide_ = 1;  // pieces along the fastest axis
   std::uint64_t left_ = 0;
-  std::uint32_t pieces_along_ = 1;  // the fastest axis
-  std::vector<RunBuilder> runs_;    // of the slab
+  std::vector<RunBuilder> pieces_;  // of the slab, the fastest axis first
+  Span slab_{0, 0};                 // layers
+  // The place of the next cell: a layer of the slab, a row, a piece along the fastest axis. Rows and
+  // layers that are contiguous in a piece are one span.
+  std::uint32_t layer_ = 0, row_ = 0, piece_ = 0;
+  std::uint32_t span_left_ = 0, span_rows_ = 0, span_layers_ = 0;
+  std::size_t open_ = 0;           // index of the piece of the span
+  std::vector<Material> numbers_;  // in a piece, by material; 0: not there yet
 };
 
 }  // namespace runstone

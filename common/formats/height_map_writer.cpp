@@ -1,12 +1,13 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <memory>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/formats/deflate.hpp"
 #include "common/formats/height_map.hpp"
 #include "common/runs/column_tops.hpp"
 
@@ -14,17 +15,13 @@ namespace runstone {
 namespace {
 
 constexpr std::int32_t kMapWriteTile = 128;
+constexpr int kPngLevel = 6;
+constexpr std::size_t kPngPartBytes = std::size_t{1} << 16;
 
 /// Writes a PNG row by row, without filters.
 class PngWriter {
  public:
-  explicit PngWriter(const FormatSink& sink) : sink_(sink), packed_(std::size_t{1} << 16) {
-    const int begun = deflateInit(&stream_, Z_DEFAULT_COMPRESSION);
-    RUNSTONE_ASSERT(begun == Z_OK);
-  }
-  ~PngWriter() { deflateEnd(&stream_); }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
+  explicit PngWriter(const FormatSink& sink) : sink_(sink) {}
 
   /// `kind`: 0 is grey, and 2 is red, green and blue.
   Result<void> begin(VoxelPos sides, std::uint8_t bits, std::uint8_t kind, std::string_view text) {
@@ -39,22 +36,14 @@ class PngWriter {
     return chunk("tEXt", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
   /// Requires the byte of the filter, 0, before the pixels.
-  Result<void> row(ByteView bytes, int flush = Z_NO_FLUSH) {
-    stream_.next_in = const_cast<Bytef*>(bytes.data());
-    stream_.avail_in = static_cast<uInt>(bytes.size());
-    while (true) {
-      stream_.next_out = packed_.data() + filled_;
-      stream_.avail_out = static_cast<uInt>(packed_.size() - filled_);
-      deflate(&stream_, flush);
-      filled_ = packed_.size() - stream_.avail_out;
-      if (stream_.avail_out != 0) return {};
-      filled_ = 0;
-      if (auto done = chunk("IDAT", packed_); !done) return done;
-    }
+  Result<void> row(ByteView bytes) {
+    deflater_.write(bytes);
+    return give_packed();
   }
   Result<void> end() {
-    if (auto done = row({}, Z_FINISH); !done) return done;
-    if (auto done = chunk("IDAT", ByteView(packed_).first(filled_)); !done) return done;
+    deflater_.finish();
+    if (auto done = give_packed(); !done) return done;
+    if (auto done = chunk("IDAT", packed_); !done) return done;
     return chunk("IEND", {});
   }
 
@@ -65,6 +54,16 @@ class PngWriter {
   }
   static Unexpected<Error> broken() {
     return fail(ErrorCode::io_failed, "height map: cannot be written");
+  }
+  /// Gives the packed bytes as chunks of one size, and keeps the rest.
+  Result<void> give_packed() {
+    std::size_t at = 0;
+    for (; packed_.size() - at >= kPngPartBytes; at += kPngPartBytes) {
+      if (auto done = chunk("IDAT", ByteView(packed_).subspan(at, kPngPartBytes)); !done)
+        return done;
+    }
+    packed_.erase(packed_.begin(), packed_.begin() + static_cast<std::ptrdiff_t>(at));
+    return {};
   }
   Result<void> chunk(std::string_view id, ByteView content) {
     Bytes out;
@@ -77,9 +76,8 @@ class PngWriter {
   }
 
   const FormatSink& sink_;
-  z_stream stream_{};
   Bytes packed_;
-  std::size_t filled_ = 0;
+  Deflater deflater_{DeflateForm::zlib, kPngLevel, packed_};
 };
 
 /// Finds the highest cells of the columns with z from `first` on, up to 128 rows. A material is a cell

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/core/build_info.hpp"
+#include "common/formats/grid_pieces.hpp"
 #include "common/formats/nbt_file.hpp"
-#include "common/formats/piece_rows.hpp"
 #include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_palette.hpp"
 
@@ -194,7 +194,7 @@ Result<VoxelBox> box_of_region(const LitematicRegion& region, std::uint64_t volu
   const auto set = [&](std::int32_t VoxelPos::* axis) {
     const std::int64_t size = region.size.*axis, side = size < 0 ? -size : size;
     const std::int64_t low = std::int64_t{region.position.*axis} + (size < 0 ? size + 1 : 0);
-    if (side < 1 || side > std::int64_t{kBuildSideMax}) return false;
+    if (side < 1 || side > kBuildSideMax) return false;
     if (low < -kWorldLimit || low + side > kWorldLimit) return false;
     box.min.*axis = static_cast<std::int32_t>(low);
     box.max.*axis = static_cast<std::int32_t>(low + side);
@@ -257,7 +257,7 @@ class PackedNumbers {
 Result<void> read_region_cells(NbtArrayCursor& in, const LitematicRegion& region,
                                const VoxelBox& box, const PieceSink& sink) {
   in.go_to(region.cells);
-  PieceRows rows(box, region.palette.blocks(), sink);
+  GridPieces rows(box, AxisOrder::xzy, region.palette.blocks(), sink);
   PackedNumbers numbers(in, number_bits(region));
   std::uint64_t left = rows.left();
   std::uint32_t number = numbers.next();
@@ -293,7 +293,7 @@ Result<ForeignInfo> read_litematic(ByteView file, const PieceSink& sink) {
   if (head.regions.empty()) return fail(ErrorCode::bad_value, "litematic: there are no Regions");
   // Every region is checked before the first piece is given.
   std::vector<VoxelBox> boxes;
-  std::uint64_t volume_left = kPieceRowsVolumeMax;
+  std::uint64_t volume_left = kGridVolumeMax;
   for (const LitematicRegion& region : head.regions) {
     const auto box = box_of_region(region, volume_left);
     if (!box) return failure(box.error());

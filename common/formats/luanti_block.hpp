@@ -36,7 +36,9 @@ Result<ForeignInfo> read_luanti_block(ByteView data, const PieceSink& sink);
 
 /// Returns a material for a node: colour and visibility by name and kind, whatever its state. Water
 /// and glass are transparent. Plants, torches and the like are empty unless keep_all. "air" and
-/// "ignore" are empty. The result is deterministic, and MaterialTable::add() accepts it for every
+/// "ignore" are empty. A node that luanti_node_name() has named, and any other without the name of
+/// a mod, is a cube with the name of its material.
+/// The result is deterministic, and MaterialTable::add() accepts it for every
 /// name. Only "air" and "ignore" share a row: that of air.
 MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all);
 

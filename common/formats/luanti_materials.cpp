@@ -8,6 +8,8 @@
 
 #include "common/core/hash.hpp"
 #include "common/formats/luanti_block.hpp"
+#include "common/formats/luanti_names.hpp"
+#include "common/formats/minecraft_blocks.hpp"
 #include "common/materials/default_look.hpp"
 
 namespace runstone {
@@ -274,12 +276,43 @@ std::string material_name(std::string_view name) {
   return out;
 }
 
+/// Returns the material of a node that was written by luanti_node_name(). Each of them was a voxel
+/// of a world, so none is left out.
+MaterialInfo written_material(const std::string& name) {
+  const MaterialTable& built_in = default_material_table();
+  MaterialInfo out;
+  if (const auto known = built_in.find(name)) {
+    out = built_in[*known];
+    out.generation.reset();
+    return out;
+  }
+  const auto block = block_of_minecraft_material(name);
+  if (block && block->name.starts_with("minecraft:"))
+    out = material_of_minecraft_block(*block, true);
+  if (out.name.empty() || out.visibility == Visibility::empty) {
+    const Look look = look_of(name);
+    const bool is_clear = look.kind == Kind::clear;
+    out = {};
+    out.colour = {static_cast<std::uint8_t>(look.rgb >> 16),
+                  static_cast<std::uint8_t>(look.rgb >> 8), static_cast<std::uint8_t>(look.rgb),
+                  is_clear ? look.alpha : std::uint8_t{255}};
+    out.visibility = is_clear ? Visibility::transparent : Visibility::opaque;
+    out.look = default_look(name, out.body);
+  }
+  out.name = name;
+  return out;
+}
+
 }  // namespace
 
 MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
   const std::string& name = node.name;
   if (name == "air" || name == "ignore")
     return {"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt};
+  if (const auto own = material_of_luanti_name(name)) return written_material(*own);
+  // No game of Luanti has nodes without the name of a mod.
+  if (name.find(':') == std::string::npos && material_name(name) == name)
+    return written_material(name);
   const Look look = look_of(name);
   MaterialInfo out;
   out.name = material_name(name);

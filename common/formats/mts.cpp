@@ -1,12 +1,9 @@
 #include "common/formats/mts.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,14 +11,17 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/formats/deflate.hpp"
 #include "common/formats/grid_cells.hpp"
 #include "common/formats/grid_pieces.hpp"
 #include "common/formats/inflate_source.hpp"
+#include "common/formats/luanti_names.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::size_t kMtsPart = 8192;  // nodes
+constexpr int kMtsLevel = 6;
 constexpr std::string_view kMtsParam = "param2=";
 
 std::uint16_t mts_u16(ByteReader& in) {
@@ -110,10 +110,19 @@ struct MtsNode {
   std::uint8_t param2 = 0;
 };
 
+/// Returns a name of a material as the name of a node. Names that a reader of nodes would change,
+/// or take for a written name, are written so that they can be read back.
+std::string mts_name(const std::string& name) {
+  const bool is_plain =
+      std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+  return is_plain && !material_of_luanti_name(name) && name != "ignore" ? name
+                                                                        : luanti_node_name(name);
+}
+
 MtsNode mts_node(const BuildMaterial& material) {
   if (material.row.visibility == Visibility::empty) return {"air", 0};
   std::string_view states = material.states;
-  MtsNode out{material.row.name, 0};
+  MtsNode out{mts_name(material.row.name), 0};
   // The param2 is the last of the states.
   const std::size_t at = states.rfind(kMtsParam);
   if (at != std::string_view::npos && (at == 0 || states[at - 1] == ',')) {
@@ -134,26 +143,17 @@ MtsNode mts_node(const BuildMaterial& material) {
 
 class MtsWriter {
  public:
-  explicit MtsWriter(const FormatSink& sink) : sink_(sink), packed_(kMtsPart) {
-    const int begun = deflateInit(&stream_, Z_DEFAULT_COMPRESSION);
-    RUNSTONE_ASSERT(begun == Z_OK);
-  }
-  ~MtsWriter() { deflateEnd(&stream_); }
-  MtsWriter(const MtsWriter&) = delete;
-  MtsWriter& operator=(const MtsWriter&) = delete;
+  explicit MtsWriter(const FormatSink& sink) : sink_(sink) {}
 
-  /// Packs bytes.
-  Result<void> give(ByteView bytes, int flush = Z_NO_FLUSH) {
-    stream_.next_in = const_cast<Bytef*>(bytes.data());
-    stream_.avail_in = static_cast<uInt>(bytes.size());
-    do {
-      stream_.next_out = packed_.data();
-      stream_.avail_out = static_cast<uInt>(packed_.size());
-      deflate(&stream_, flush);
-      if (!sink_(ByteView(packed_).first(packed_.size() - stream_.avail_out)))
-        return fail(ErrorCode::io_failed, "mts: cannot be written");
-    } while (stream_.avail_out == 0);
-    return {};
+  /// Packs bytes, and gives what is packed to the sink.
+  Result<void> give(ByteView bytes) {
+    deflater_.write(bytes);
+    return flush();
+  }
+  /// Ends the stream.
+  Result<void> finish() {
+    deflater_.finish();
+    return flush();
   }
 
   /// Packs what `bytes_of` gives for each cell: `width` bytes a cell, the upper one first.
@@ -177,9 +177,16 @@ class MtsWriter {
   }
 
  private:
+  Result<void> flush() {
+    const bool is_taken = packed_.empty() || sink_(packed_);
+    packed_.clear();
+    if (!is_taken) return fail(ErrorCode::io_failed, "mts: cannot be written");
+    return {};
+  }
+
   const FormatSink& sink_;
-  z_stream stream_{};
   Bytes packed_;
+  Deflater deflater_{DeflateForm::zlib, kMtsLevel, packed_};
 };
 
 }  // namespace
@@ -193,8 +200,8 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
                               static_cast<std::uint64_t>(sides.y) *
                               static_cast<std::uint64_t>(sides.z);
   // The stream has all ids, then all chances, and then every param2, so it is read in three places.
-  const auto kind = InflateSource::Kind::zlib;
-  InflateSource ids(packed, kind), chances(packed, kind), params(packed, kind);
+  const auto form = DeflateForm::zlib;
+  InflateSource ids(packed, form), chances(packed, form), params(packed, form);
   const auto cut = [&](const InflateSource& source) {
     return fail(source.is_damaged() ? ErrorCode::bad_value : ErrorCode::truncated,
                 source.is_damaged() ? "mts: nodes are no zlib stream, or a damaged one"
@@ -206,9 +213,9 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
   if (!params.skip(3 * count)) return cut(params);
   if (!chances.skip(2 * count)) return cut(chances);
   MtsBlocks blocks(*head);
-  auto pieces = GridPieces::of(sides, {}, AxisOrder::xyz, blocks.blocks(), sink);
-  if (!pieces)
+  if (!GridPieces::are_sides(sides, AxisOrder::xyz))
     return fail(ErrorCode::limit_exceeded, "mts: a layer has more than 268435456 nodes", 6);
+  GridPieces pieces({{0, 0, 0}, sides}, AxisOrder::xyz, blocks.blocks(), sink);
   std::array<std::uint8_t, 2 * kMtsPart> id_bytes;
   std::array<std::uint8_t, kMtsPart> chance_bytes, param_bytes;
   std::uint64_t place = 0;
@@ -234,7 +241,7 @@ Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink) {
                       head->nodes_at + ids.offset());
         material = *found;
       }
-      if (auto done = pieces->append(1, material); !done) return failure(done.error());
+      if (auto done = pieces.append(1, material); !done) return failure(done.error());
     }
   }
   if (!params.finish()) {
@@ -292,7 +299,7 @@ Result<void> write_mts(const FileBuild& build, const FormatSink& sink) {
   if (auto done = out.give_plane(voxels, 1, [&](std::uint16_t cell) { return cells[cell].param2; });
       !done)
     return done;
-  return out.give({}, Z_FINISH);
+  return out.finish();
 }
 
 }  // namespace runstone

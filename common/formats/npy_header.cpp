@@ -136,7 +136,7 @@ std::uint64_t NpyHeader::items() const {
   return out;
 }
 
-Result<NpyHeader> read_npy_header(InflateSource& source) {
+Result<NpyHeader> read_npy_header(InflateSource& source, std::uint64_t bytes_max) {
   const auto cut = [&] {
     return source.is_damaged()
                ? fail(ErrorCode::bad_value, "npy: a deflate stream is damaged", source.offset())
@@ -153,6 +153,7 @@ Result<NpyHeader> read_npy_header(InflateSource& source) {
   const std::uint32_t bytes = ByteReader(length).u32();
   if (bytes > kNpyHeaderBytesMax)
     return fail(ErrorCode::limit_exceeded, "npy: head has more than 65536 bytes", source.offset());
+  if (bytes > bytes_max) return cut();
   std::string text(bytes, '\0');
   if (!source.read({reinterpret_cast<std::uint8_t*>(text.data()), text.size()})) return cut();
   auto header = NpyDictionary(text).read();

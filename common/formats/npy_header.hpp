@@ -26,9 +26,10 @@ struct NpyHeader {
   bool is_integer() const { return kind == 'u' || kind == 'i' || kind == 'b'; }
 };
 
-/// Reads the head, and leaves the source at the first item. Fails if it is none, or has a type that
-/// NpyHeader does not know. The offset of an error is a byte of the packed source.
-Result<NpyHeader> read_npy_header(InflateSource& source);
+/// Reads the head, and leaves the source at the first item. `bytes_max` is what the source holds at
+/// most. Fails if it is none, or has a type that NpyHeader does not know. The offset of an error is a
+/// byte of the packed source.
+Result<NpyHeader> read_npy_header(InflateSource& source, std::uint64_t bytes_max);
 
 /// Returns the head of an array in C order, version 1. `type` is such as "|u1". Requires few sides.
 Bytes npy_header(const std::string& type, std::span<const std::uint64_t> shape);

@@ -46,11 +46,19 @@ struct NpyBlocks {
   }
 };
 
-/// Reads the items of an array.
+/// Reads the items of an array. `bytes_max` is what the source holds at most, so that no memory is
+/// taken for items that it cannot have.
 class NpyItems {
  public:
-  NpyItems(InflateSource& source, const NpyHeader& header, std::size_t offset)
-      : source_(source), header_(header), offset_(offset) {}
+  NpyItems(InflateSource& source, const NpyHeader& header, std::uint64_t bytes_max,
+           std::size_t offset)
+      : source_(source), header_(header), bytes_max_(bytes_max), offset_(offset) {}
+
+  /// Fails if the source cannot hold so many items.
+  Result<void> check(std::uint64_t count) const {
+    if (header_.item_bytes > 0 && count > bytes_max_ / header_.item_bytes) return cut();
+    return {};
+  }
 
   Unexpected<Error> cut() const {
     if (source_.is_damaged()) return at(ErrorCode::bad_value, "npy: a deflate stream is damaged");
@@ -69,6 +77,7 @@ class NpyItems {
   /// Calls f with spans of numbers. A number that is negative is kNpyBadNumber.
   template <class F>
   Result<void> numbers(std::uint64_t count, F&& f) {
+    if (auto checked = check(count); !checked) return checked;
     switch (header_.item_bytes) {
       case 1:
         return numbers_of<std::uint8_t>(count, f);
@@ -85,8 +94,10 @@ class NpyItems {
  private:
   template <class T, class F>
   Result<void> numbers_of(std::uint64_t count, F& f) {
-    std::vector<std::uint8_t> bytes(kNpyBufferBytes);
-    std::vector<std::uint64_t> out(kNpyBufferBytes / sizeof(T));
+    const auto room =
+        static_cast<std::size_t>(std::min<std::uint64_t>(count, kNpyBufferBytes / sizeof(T)));
+    std::vector<std::uint8_t> bytes(room * sizeof(T));
+    std::vector<std::uint64_t> out(room);
     const bool is_signed = header_.kind == 'i';
     while (count > 0) {
       const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(count, out.size()));
@@ -112,6 +123,7 @@ class NpyItems {
 
   InflateSource& source_;
   const NpyHeader& header_;
+  std::uint64_t bytes_max_;
   std::size_t offset_;  // of the packed source in the file
 };
 
@@ -135,6 +147,7 @@ void append_utf8(std::string& out, std::uint32_t c) {
 }
 
 Result<std::vector<std::string>> NpyItems::texts(std::uint64_t count) {
+  if (auto checked = check(count); !checked) return failure(checked.error());
   std::vector<std::string> out;
   std::vector<std::uint8_t> item(header_.item_bytes);
   std::size_t bytes = 0;
@@ -164,8 +177,7 @@ Result<std::vector<std::string>> NpyItems::texts(std::uint64_t count) {
   return out;
 }
 
-Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyItems& items,
-                            std::uint64_t packed_items_max, const NpyBlocks& known,
+Result<void> read_npy_cells(const NpyHeader& header, NpyItems& items, const NpyBlocks& known,
                             const PieceSink& sink) {
   if (header.shape.size() != 3)
     return items.at(ErrorCode::bad_value, "npy: array of voxels has not three axes");
@@ -176,15 +188,17 @@ Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyI
                       "npy: a side of the array is outside 1 .. 1048576");
   }
   const std::uint64_t count = header.items();
-  if (count > packed_items_max) return items.cut();
+  if (auto checked = items.check(count); !checked) return checked;
   std::vector<ForeignBlock> blocks;
   // By number: the index of its block + 1, and 0 for untouched cells.
   std::vector<Material> materials(static_cast<std::size_t>(known.numbers), 0);
   std::vector<bool> is_known(materials.size(), false);
   const auto side = [&](std::size_t axis) { return static_cast<std::int32_t>(header.shape[axis]); };
-  auto pieces = GridPieces::of({side(0), side(1), side(2)}, {},
-                               header.is_fortran ? AxisOrder::xyz : AxisOrder::zyx, blocks, sink);
-  if (!pieces) return items.at(pieces.error().code, "npy: a layer has more than 268435456 cells");
+  const VoxelPos sides{side(0), side(1), side(2)};
+  const AxisOrder order = header.is_fortran ? AxisOrder::xyz : AxisOrder::zyx;
+  if (!GridPieces::are_sides(sides, order))
+    return items.at(ErrorCode::limit_exceeded, "npy: a layer has more than 268435456 cells");
+  GridPieces pieces({{0, 0, 0}, sides}, order, blocks, sink);
   std::uint64_t open_number = 0;  // of the cells that are not appended yet
   std::uint64_t open_count = 0;
   const auto flush = [&]() -> Result<void> {
@@ -203,7 +217,7 @@ Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyI
       }
     }
     const std::uint64_t cells = std::exchange(open_count, 0);
-    return pieces->append(cells, materials[number]);
+    return pieces.append(cells, materials[number]);
   };
   auto read = items.numbers(count, [&](std::span<const std::uint64_t> numbers) -> Result<void> {
     for (const std::uint64_t number : numbers) {
@@ -217,7 +231,6 @@ Result<void> read_npy_cells(InflateSource& source, const NpyHeader& header, NpyI
   });
   if (!read) return read;
   if (auto finished = items.finish(); !finished) return finished;
-  static_cast<void>(source);
   return flush();
 }
 
@@ -226,6 +239,8 @@ struct NpzArray {
   const ZipMember* member;
   InflateSource source;
   NpyHeader header;
+
+  NpyItems items() { return {source, header, member->bytes, member->offset}; }
 };
 
 class NpzReader {
@@ -245,10 +260,8 @@ class NpzReader {
     if (!array) return failure(array.error());
     if (!*array) return fail(ErrorCode::bad_value, "npz: array `voxels` is missing", 0);
     NpzArray& voxels = **array;
-    NpyItems items(voxels.source, voxels.header, voxels.member->offset);
-    auto done =
-        read_npy_cells(voxels.source, voxels.header, items,
-                       voxels.member->bytes / std::max(voxels.header.item_bytes, 1U), blocks, sink);
+    NpyItems items = voxels.items();
+    auto done = read_npy_cells(voxels.header, items, blocks, sink);
     if (done) done = check(voxels);
     if (!done) return failure(done.error());
     return info;
@@ -261,7 +274,7 @@ class NpzReader {
                                     [&](const ZipMember& member) { return member.name == name; });
     if (found == members_.end()) return std::optional<NpzArray>{};
     InflateSource source = found->open();
-    auto header = read_npy_header(source);
+    auto header = read_npy_header(source, found->bytes);
     if (!header)
       return fail(header.error().code, header.error().what, header.error().offset + found->offset);
     return std::optional<NpzArray>(NpzArray{&*found, std::move(source), *std::move(header)});
@@ -290,7 +303,7 @@ class NpzReader {
     auto array = open(name);
     if (!array) return failure(array.error());
     if (!*array) return {};
-    NpyItems items((*array)->source, (*array)->header, (*array)->member->offset);
+    NpyItems items = (*array)->items();
     const NpyHeader& header = (*array)->header;
     if (header.kind != 'S' && header.kind != 'U')
       return items.at(ErrorCode::bad_value, "npz: names and states must be strings");
@@ -308,7 +321,7 @@ class NpzReader {
     if (array && !*array) array = open("colors.npy");
     if (!array) return failure(array.error());
     if (!*array) return {};
-    NpyItems items((*array)->source, (*array)->header, (*array)->member->offset);
+    NpyItems items = (*array)->items();
     const NpyHeader& header = (*array)->header;
     if (header.kind != 'u' || header.item_bytes != 1)
       return items.at(ErrorCode::bad_value, "npz: colours must be of u8");
@@ -336,7 +349,7 @@ class NpzReader {
     if (!array) return failure(array.error());
     if (!*array) return {};
     const NpyHeader& header = (*array)->header;
-    NpyItems items((*array)->source, header, (*array)->member->offset);
+    NpyItems items = (*array)->items();
     if (!header.is_integer() || header.items() != 3)
       return items.at(ErrorCode::bad_value, "npz: origin is not of three integers");
     std::array<std::uint8_t, 24> bytes{};
@@ -366,15 +379,11 @@ class NpzReader {
 }  // namespace
 
 Result<ForeignInfo> read_npy(ByteView file, const PieceSink& sink) {
-  InflateSource source(file, InflateSource::Kind::stored);
-  const auto header = read_npy_header(source);
+  InflateSource source(file, std::nullopt);
+  const auto header = read_npy_header(source, file.size());
   if (!header) return failure(header.error());
-  NpyItems items(source, *header, 0);
-  const std::uint64_t left = file.size() - source.offset();
-  if (auto done =
-          read_npy_cells(source, *header, items, left / std::max(header->item_bytes, 1U), {}, sink);
-      !done)
-    return failure(done.error());
+  NpyItems items(source, *header, file.size() - source.offset(), 0);
+  if (auto done = read_npy_cells(*header, items, {}, sink); !done) return failure(done.error());
   return ForeignInfo{};
 }
 

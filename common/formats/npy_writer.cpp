@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/formats/deflate.hpp"
 #include "common/formats/grid_cells.hpp"
 #include "common/formats/npy.hpp"
 #include "common/formats/npy_header.hpp"
@@ -20,6 +20,7 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kNpyWriteBytes = std::size_t{1} << 16;
+constexpr int kNpzLevel = 6;
 
 /// The numbers of the cells in an array.
 struct NpyNumbers {
@@ -207,36 +208,26 @@ Result<void> ZipWriter::add(const std::string& name,
   w.bytes({reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
   if (!give(head)) return broken();
 
-  z_stream stream{};
-  const int begun =
-      deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
-  RUNSTONE_ASSERT(begun == Z_OK);
-  const auto end_stream = [](z_stream* s) { deflateEnd(s); };
-  const std::unique_ptr<z_stream, decltype(end_stream)> end(&stream, end_stream);
-  Bytes packed(kNpyWriteBytes);
+  Bytes packed;
+  Deflater deflater(DeflateForm::raw, kNpzLevel, packed);
   std::uint64_t bytes = 0, packed_bytes = 0;
   uLong checksum = 0;
-  const auto deflate_all = [&](ByteView part, int flush) {
-    stream.next_in = const_cast<Bytef*>(part.data());
-    stream.avail_in = static_cast<uInt>(part.size());
-    do {
-      stream.next_out = packed.data();
-      stream.avail_out = static_cast<uInt>(packed.size());
-      deflate(&stream, flush);
-      const std::size_t made = packed.size() - stream.avail_out;
-      packed_bytes += made;
-      if (!give(ByteView(packed).first(made))) return false;
-    } while (stream.avail_out == 0);
-    return true;
+  const auto give_packed = [&] {
+    packed_bytes += packed.size();
+    const bool is_taken = packed.empty() || give(packed);
+    packed.clear();
+    return is_taken;
   };
   const auto filled = fill([&](ByteView part) {
     // A part has a buffer of voxels or a whole other array, far below 4 GiB.
     bytes += part.size();
     checksum = crc32_z(checksum, part.data(), part.size());
-    return part.empty() || deflate_all(part, Z_NO_FLUSH);
+    deflater.write(part);
+    return give_packed();
   });
   if (!filled) return filled;
-  if (!deflate_all({}, Z_FINISH)) return broken();
+  deflater.finish();
+  if (!give_packed()) return broken();
   entry.checksum = static_cast<std::uint32_t>(checksum);
   entry.bytes = static_cast<std::uint32_t>(bytes);
   entry.packed_bytes = static_cast<std::uint32_t>(packed_bytes);

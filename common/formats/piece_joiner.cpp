@@ -8,6 +8,7 @@
 
 #include "common/builds/build_builder.hpp"
 #include "common/core/assert.hpp"
+#include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/block_assembler.hpp"
 #include "common/runs/cut.hpp"
@@ -235,7 +236,7 @@ Result<FileBuild> PieceJoiner::join() {
   BuildCuts cuts;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int32_t side = max[axis] - min[axis];
-    if (side > kBuildEdgeMax)
+    if (side > kBuildSideMax)
       return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
     const std::int32_t offset = min[axis] - floor_div(min[axis], kJoinEdge) * kJoinEdge;
     cuts[axis] = grid_cuts(side, kJoinEdge, offset);

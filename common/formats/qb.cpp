@@ -93,23 +93,24 @@ Result<void> QbReader::read_matrix() {
     }
     return sink_(std::move(piece));
   };
-  auto pieces = GridPieces::of(sides, place, AxisOrder::xyz, blocks_, turned);
-  if (!pieces)
+  if (!GridPieces::are_sides(sides, AxisOrder::xyz))
     return at(ErrorCode::limit_exceeded, "qb: a side of a matrix is outside 1 .. 1048576");
-  cells_ += pieces->left();
+  const VoxelBox box{place, {place.x + sides.x, place.y + sides.y, place.z + sides.z}};
+  GridPieces pieces(box, AxisOrder::xyz, blocks_, turned);
+  cells_ += pieces.left();
   if (cells_ > kQbCellsMax)
     return at(ErrorCode::limit_exceeded, "qb: matrices have more than 2^32 cells");
   if (is_compressed_) {
     for (std::int32_t z = 0; z < sides.z; ++z) {
       const std::uint64_t cells =
           static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.y);
-      if (auto done = read_slice(*pieces, cells); !done) return done;
+      if (auto done = read_slice(pieces, cells); !done) return done;
     }
     return {};
   }
-  if (pieces->left() > in_.left() / 4) return ends();
-  while (pieces->left() > 0) {
-    if (auto done = append(*pieces, 1, in_.u32()); !done) return done;
+  if (pieces.left() > in_.left() / 4) return ends();
+  while (pieces.left() > 0) {
+    if (auto done = append(pieces, 1, in_.u32()); !done) return done;
   }
   return {};
 }

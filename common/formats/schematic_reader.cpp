@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "common/core/build_info.hpp"
+#include "common/formats/grid_pieces.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/nbt_file.hpp"
-#include "common/formats/piece_rows.hpp"
 #include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_palette.hpp"
 
@@ -197,7 +197,7 @@ Unexpected<Error> cells_end_early(const NbtArrayCursor& in) {
               in.offset());
 }
 
-Result<void> read_sponge_cells(ByteView file, const SchematicHead& head, PieceRows& out) {
+Result<void> read_sponge_cells(ByteView file, const SchematicHead& head, GridPieces& out) {
   NbtArrayCursor in(file, head.cells);
   while (out.left() > 0) {
     if (!in.has_more()) return cells_end_early(in);
@@ -278,7 +278,7 @@ class NumberedBlocks {
 };
 
 Result<void> read_mcedit_cells(ByteView file, const SchematicHead& head, NumberedBlocks& blocks,
-                               PieceRows& out) {
+                               GridPieces& out) {
   NbtArrayCursor ids(file, head.blocks), data(file, head.data), add(file, head.add);
   // Schematica has the upper half of a byte first, WorldEdit the lower one.
   const unsigned first_shift = head.has_mapping ? 4 : 0;
@@ -320,7 +320,7 @@ Result<VoxelBox> box_of_head(const SchematicHead& head) {
     }
     volume *= static_cast<std::uint64_t>(side);
   }
-  if (volume > kPieceRowsVolumeMax)
+  if (volume > kGridVolumeMax)
     return fail(ErrorCode::limit_exceeded, "schematic: more than 2147483647 cells");
   const auto side = [&](std::size_t axis) { return static_cast<std::int32_t>(head.sides[axis]); };
   return VoxelBox{{0, 0, 0}, {side(0), side(1), side(2)}};
@@ -378,7 +378,8 @@ Result<ForeignInfo> read_schematic(ByteView file, const PieceSink& sink) {
   if (!box) return failure(box.error());
   if (const auto checked = check_head(head); !checked) return failure(checked.error());
   NumberedBlocks numbered(head);
-  PieceRows rows(*box, head.has_palette ? head.palette.blocks() : numbered.blocks(), sink);
+  GridPieces rows(*box, AxisOrder::xzy,
+                  head.has_palette ? head.palette.blocks() : numbered.blocks(), sink);
   const auto read = head.has_palette ? read_sponge_cells(file, head, rows)
                                      : read_mcedit_cells(file, head, numbered, rows);
   if (!read) return failure(read.error());

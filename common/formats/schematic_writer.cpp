@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/formats/build_rows.hpp"
+#include "common/formats/grid_cells.hpp"
+#include "common/formats/grid_pieces.hpp"
 #include "common/formats/nbt_file.hpp"
-#include "common/formats/piece_rows.hpp"
 #include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_palette.hpp"
 
@@ -59,7 +59,7 @@ FileBlocks blocks_of(const FileBuild& file, bool has_air_first) {
 
 Result<void> check_size(const FileBuild& file, const FileBlocks& blocks) {
   RUNSTONE_ASSERT(file.materials.size() == file.build->palette().size());
-  if (file.build->volume() > kPieceRowsVolumeMax) {
+  if (file.build->volume() > kGridVolumeMax) {
     return fail(ErrorCode::limit_exceeded,
                 "the build has more than 2147483647 cells, and a schematic holds no more");
   }
@@ -222,13 +222,14 @@ Result<void> write_schem(const FileBuild& file, const FormatSink& sink) {
   nbt.end();
   nbt.array("Data", NbtType::byte_array, static_cast<std::int32_t>(data_bytes));
   Bytes cell;
-  const bool is_taken =
-      walk_build_rows(*file.build, [&](std::uint64_t count, std::uint16_t number) {
-        cell.clear();
-        ByteWriter(cell).varint(blocks.of_number[number]);
-        return fill_cells(out, count, cell);
-      });
-  if (!is_taken) return cannot_write();
+  const auto walked = walk_cells(*file.build, AxisOrder::xzy,
+                                 [&](std::uint32_t count, std::uint16_t number) -> Result<void> {
+                                   cell.clear();
+                                   ByteWriter(cell).varint(blocks.of_number[number]);
+                                   if (!fill_cells(out, count, cell)) return cannot_write();
+                                   return {};
+                                 });
+  if (!walked) return walked;
   nbt.list("BlockEntities", NbtType::compound, 0);
   for (int open = 0; open < 3; ++open) nbt.end();
   if (!out.finish()) return cannot_write();
@@ -252,11 +253,13 @@ Result<void> write_litematic(const FileBuild& file, const FormatSink& sink) {
   write_litematic_palette(nbt, blocks);
   nbt.array("BlockStates", NbtType::long_array, static_cast<std::int32_t>(longs));
   NumberPacker packer(out, bits);
-  const bool is_taken =
-      walk_build_rows(*file.build, [&](std::uint64_t count, std::uint16_t number) {
-        return packer.add(count, blocks.of_number[number]);
-      });
-  if (!is_taken) return cannot_write();
+  const auto walked = walk_cells(*file.build, AxisOrder::xzy,
+                                 [&](std::uint32_t count, std::uint16_t number) -> Result<void> {
+                                   if (!packer.add(count, blocks.of_number[number]))
+                                     return cannot_write();
+                                   return {};
+                                 });
+  if (!walked) return walked;
   packer.finish();
   for (const std::string_view list :
        {"TileEntities", "Entities", "PendingBlockTicks", "PendingFluidTicks"})

@@ -10,7 +10,7 @@ namespace runstone {
 
 /// Writes a build as a .schem. Fails as Format::write does: sides are at most 65,535, and the cells at
 /// most 2^31 - 1 and at most as many bytes (two each, if there are more than 128 blocks; three each from
-/// 16,384 on). The result is deterministic with one version of zlib. Cost: that of walk_build_rows(),
+/// 16,384 on). The result is deterministic with one version of zlib. Cost: that of walk_cells(),
 /// and O(cells). Memory: the runs of 16 layers.
 Result<void> write_schem(const FileBuild& file, const FormatSink& sink);
 

@@ -18,7 +18,7 @@ namespace runstone {
 inline constexpr std::int32_t kVoxModelSideMax = 256;
 inline constexpr std::size_t kVoxColours = 256;  // colour 0 is no voxel
 /// The nodes and models of a file, and the models that its scene places.
-inline constexpr std::size_t kVoxNodesMax = std::size_t{1} << 17;
+inline constexpr std::size_t kVoxNodesMax = std::size_t{1} << 16;
 /// The voxels of all placed models, each placing counted.
 inline constexpr std::uint64_t kVoxPlacedMax = std::uint64_t{1} << 31;
 /// The voxels that a file holds here, so that its sizes fit 31 bits.

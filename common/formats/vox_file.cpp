@@ -105,7 +105,7 @@ void VoxChunks::take_size(ByteReader& in) {
   if (!out_.models.empty() && !out_.models.back().has_voxels)
     in.reject(ErrorCode::bad_value, "vox: a model has a size and no voxels");
   if (out_.models.size() == kVoxNodesMax)
-    in.reject(ErrorCode::limit_exceeded, "vox: more than 131072 models");
+    in.reject(ErrorCode::limit_exceeded, "vox: more than 65536 models");
   VoxModel model;
   for (std::int32_t* side : {&model.x, &model.y, &model.z}) {
     *side = number(in);
@@ -188,7 +188,7 @@ void VoxChunks::take_layer(ByteReader& in) {
   const VoxDictionary entries = dictionary(in);
   if (in.ok() && entry_of(entries, "_hidden") == "1") {
     if (out_.hidden_layers.size() == kVoxNodesMax)
-      in.reject(ErrorCode::limit_exceeded, "vox: more than 131072 layers");
+      in.reject(ErrorCode::limit_exceeded, "vox: more than 65536 layers");
     out_.hidden_layers[id] = true;
   }
 }
@@ -197,7 +197,7 @@ void VoxChunks::add_node(ByteReader& in, std::int32_t id, VoxNode node) {
   if (!in.ok()) return;
   node.offset = at_;
   if (out_.nodes.size() == kVoxNodesMax) {
-    in.reject(ErrorCode::limit_exceeded, "vox: the scene has more than 131072 nodes");
+    in.reject(ErrorCode::limit_exceeded, "vox: the scene has more than 65536 nodes");
   } else if (!out_.nodes.try_emplace(id, std::move(node)).second) {
     in.reject(ErrorCode::bad_value, "vox: two nodes have one number");
   }

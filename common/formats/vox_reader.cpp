@@ -1,8 +1,5 @@
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +7,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
+#include "common/formats/inflate_source.hpp"
 #include "common/formats/vox.hpp"
 #include "common/formats/vox_file.hpp"
 #include "common/formats/vox_look.hpp"
@@ -130,24 +128,15 @@ Result<std::vector<VoxPart>> VoxModels::unpack(const VoxModel& model) {
     out.push_back({low, {extent, AxisOrder::xyz, RunList()}});
     runs.emplace_back(extent, AxisOrder::xyz);
   });
-  z_stream stream{};
-  const int begun = inflateInit(&stream);
-  RUNSTONE_ASSERT(begun == Z_OK);
-  const auto end_stream = [](z_stream* s) { inflateEnd(s); };
-  const std::unique_ptr<z_stream, decltype(end_stream)> end(&stream, end_stream);
-  stream.next_in = const_cast<Bytef*>(model.voxels.data());
-  stream.avail_in = static_cast<uInt>(model.voxels.size());
+  InflateSource source(model.voxels, DeflateForm::zlib);
   const std::int32_t wide = (model.x + kVoxPieceEdge - 1) / kVoxPieceEdge;
   const std::int32_t deep = (model.y + kVoxPieceEdge - 1) / kVoxPieceEdge;
   std::array<std::uint8_t, kVoxModelSideMax> row{};
   for (std::int32_t z = 0; z < model.z; ++z) {
     for (std::int32_t y = 0; y < model.y; ++y) {
-      stream.next_out = row.data();
-      stream.avail_out = static_cast<uInt>(model.x);
-      const int status = inflate(&stream, Z_SYNC_FLUSH);
-      if (stream.avail_out != 0) {
-        const std::size_t at = model.offset + model.voxels.size() - stream.avail_in;
-        if (status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END)
+      if (!source.read(std::span(row).first(static_cast<std::size_t>(model.x)))) {
+        const std::size_t at = model.offset + source.offset();
+        if (!source.is_damaged())
           return fail(ErrorCode::truncated, "vox: packed voxels end early", at);
         return fail(ErrorCode::bad_value, "vox: packed voxels are no zlib stream, or a damaged one",
                     at);

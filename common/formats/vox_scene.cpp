@@ -72,7 +72,7 @@ Result<std::vector<PlacedVoxModel>> placed_models(const VoxFile& file) {
     if (on_path.contains(id))
       return fail(ErrorCode::bad_value, "vox: nodes of the scene form a cycle", node.offset);
     if (++visited > kVoxNodesMax)
-      return fail(ErrorCode::limit_exceeded, "vox: the scene visits more than 131072 nodes",
+      return fail(ErrorCode::limit_exceeded, "vox: the scene visits more than 65536 nodes",
                   node.offset);
     if (node.is_hidden || file.hidden_layers.contains(node.layer)) return {};
     if (node.kind == VoxNode::Kind::shape) {

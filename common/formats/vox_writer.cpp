@@ -161,10 +161,11 @@ Result<void> VoxWriter::find_models() {
         voxels += model.voxels;
         if (voxels > kVoxWrittenMax)
           return fail(ErrorCode::limit_exceeded, "vox: build has more than 500,000,000 voxels");
-        // Our own reader takes no more, and other programs take less.
-        if (models_.size() == kVoxNodesMax / 4)
+        // A scene has two nodes, and two for each model. Our own reader takes no more, and other
+        // programs take less.
+        if (models_.size() == (kVoxNodesMax - 2) / 2)
           return fail(ErrorCode::limit_exceeded,
-                      "vox: build has voxels in more than 32,768 boxes of 256 a side");
+                      "vox: build has voxels in more than 32,767 boxes of 256 a side");
         models_.push_back(model);
       }
     }

@@ -20,7 +20,7 @@ struct ZipMember {
   std::uint32_t checksum = 0;
 
   InflateSource open() const {
-    return {packed, is_deflated ? InflateSource::Kind::deflate : InflateSource::Kind::stored};
+    return {packed, is_deflated ? std::optional(DeflateForm::raw) : std::nullopt};
   }
 };
 

@@ -36,6 +36,41 @@ class OpenFile {
   int descriptor_;
 };
 
+/// A `Container` of bytes: std::string or Bytes.
+template <class Container>
+Result<Container, std::string> read_whole(const std::string& file, std::size_t bytes_max,
+                                          FileKinds kinds) {
+  const auto fail = [&file](const std::string& why) { return failure(file + ": " + why); };
+  const auto cannot = [&fail](int error) {
+    return fail(std::string("cannot be read: ") + std::strerror(error));
+  };
+  // Without O_NONBLOCK the call would wait for the other end of a FIFO.
+  const int waits = kinds == FileKinds::regular_or_pipe ? 0 : O_NONBLOCK;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | waits | O_NOCTTY | O_CLOEXEC);
+  if (descriptor < 0) return cannot(errno);
+  const OpenFile closes(descriptor);
+  struct stat about{};
+  if (::fstat(descriptor, &about) != 0) return cannot(errno);
+  if (const std::string words = words_of_mode(about.st_mode, kinds); !words.empty())
+    return fail(words);
+  const std::string too_large = "is larger than " + std::to_string(bytes_max) + " bytes";
+  if (static_cast<std::uint64_t>(about.st_size) > bytes_max) return fail(too_large);
+  // The file may grow while it is read, and files of /proc have no size.
+  Container bytes;
+  bytes.reserve(static_cast<std::size_t>(about.st_size));
+  std::array<char, 64 * 1024> part{};
+  for (;;) {
+    const ssize_t count = ::read(descriptor, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return cannot(errno);
+    if (count == 0) return bytes;
+    const std::size_t filled = bytes.size();
+    bytes.resize(filled + static_cast<std::size_t>(count));
+    std::memcpy(bytes.data() + filled, part.data(), static_cast<std::size_t>(count));
+    if (bytes.size() > bytes_max) return fail(too_large);
+  }
+}
+
 }  // namespace
 
 bool make_private_folder(const std::string& folder) {
@@ -59,32 +94,12 @@ Written write_private_file(const std::string& file, std::string_view bytes) {
 
 Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max,
                                            FileKinds kinds) {
-  const auto fail = [&file](const std::string& why) { return failure(file + ": " + why); };
-  const auto cannot = [&fail](int error) {
-    return fail(std::string("cannot be read: ") + std::strerror(error));
-  };
-  // Without O_NONBLOCK the call would wait for the other end of a FIFO.
-  const int waits = kinds == FileKinds::regular_or_pipe ? 0 : O_NONBLOCK;
-  const int descriptor = ::open(file.c_str(), O_RDONLY | waits | O_NOCTTY | O_CLOEXEC);
-  if (descriptor < 0) return cannot(errno);
-  const OpenFile closes(descriptor);
-  struct stat about{};
-  if (::fstat(descriptor, &about) != 0) return cannot(errno);
-  if (const std::string words = words_of_mode(about.st_mode, kinds); !words.empty())
-    return fail(words);
-  const std::string too_large = "is larger than " + std::to_string(bytes_max) + " bytes";
-  if (static_cast<std::uint64_t>(about.st_size) > bytes_max) return fail(too_large);
-  // The file may grow while it is read, and files of /proc have no size.
-  std::string bytes;
-  std::array<char, 64 * 1024> part{};
-  for (;;) {
-    const ssize_t count = ::read(descriptor, part.data(), part.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return cannot(errno);
-    if (count == 0) return bytes;
-    bytes.append(part.data(), static_cast<std::size_t>(count));
-    if (bytes.size() > bytes_max) return fail(too_large);
-  }
+  return read_whole<std::string>(file, bytes_max, kinds);
+}
+
+Result<Bytes, std::string> read_file_bytes(const std::string& file, std::size_t bytes_max,
+                                           FileKinds kinds) {
+  return read_whole<Bytes>(file, bytes_max, kinds);
 }
 
 Written check_file_kind(const std::string& file, FileKinds kinds) {

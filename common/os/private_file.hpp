@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 
 namespace runstone {
@@ -33,6 +34,9 @@ enum class FileKinds : std::uint8_t {
 /// that begins with the name of the file if it cannot be read, is of another kind, or has more than
 /// `bytes_max` bytes. Waits for the other end of a pipe.
 Result<std::string, std::string> read_file(const std::string& file, std::size_t bytes_max,
+                                           FileKinds kinds = FileKinds::regular);
+/// Returns the bytes of a file of any size, as read_file() does. Memory: the file, once.
+Result<Bytes, std::string> read_file_bytes(const std::string& file, std::size_t bytes_max,
                                            FileKinds kinds = FileKinds::regular);
 
 /// Fails with a line that begins with the name of the file if there is none, or one of another kind.

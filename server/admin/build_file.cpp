@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/core/utc_text.hpp"
-#include "common/formats/file_build.hpp"
 #include "common/formats/rsb_reader.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
@@ -75,10 +74,10 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
     return failure(file + ": takes " + file_size_text(size) + ", and one of at most " +
                    file_size_text(bytes_max) + " is allowed (build_mib): divide it");
   }
-  const auto read = read_file(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
+  auto read = read_file_bytes(file, static_cast<std::size_t>(bytes_max), FileKinds::regular);
   if (!read) return failure(read.error());
   BuildFile out;
-  out.bytes = std::make_shared<const Bytes>(read->begin(), read->end());
+  out.bytes = std::make_shared<const Bytes>(*std::move(read));
   auto build = verify_build(*out.bytes);
   if (!build) return failure(file + ": " + build.error());
   out.build = *std::move(build);
@@ -93,16 +92,6 @@ Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBu
   if (!read) return failure(read.error().message());
   if (const auto done = out->finish(); !done) return failure(file + ": " + done.error());
   return {};
-}
-
-Result<FileBuild, std::string> read_any_build_file(const std::string& file) {
-  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
-  const auto bytes = read_file(file, kPlacedFileBytesMax, FileKinds::regular);
-  if (!bytes) return failure(bytes.error());
-  ForeignReading reading;
-  reading.name = std::filesystem::path(file).stem().string();
-  return read_file_build(
-      file, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
 }
 
 Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build) {

@@ -41,12 +41,6 @@ Result<BuildFile, std::string> read_build_file(const std::string& file, std::uin
 Result<void, std::string> write_build_file(LibraryReader& reader, const StoredBuild& build,
                                            const std::string& file);
 
-/// The maximum size of a file that read_any_build_file() reads, and of the build's memory.
-inline constexpr std::size_t kPlacedFileBytesMax = std::size_t{256} << 20;
-/// Reads a file of any format with a build (docs/formats.md). The error is one line that begins with the
-/// name of the file. Blocks on the disk.
-Result<FileBuild, std::string> read_any_build_file(const std::string& file);
-
 /// Reads a build of the library. The error is one line. Blocks on the disk.
 Result<FileBuild, std::string> read_stored_build(LibraryReader& reader, const StoredBuild& build);
 

@@ -17,6 +17,7 @@
 #include "common/os/text_file.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/control_socket.hpp"
+#include "server/admin/place_words.hpp"
 
 namespace runstone {
 
@@ -26,21 +27,21 @@ bool is_quoted(const std::string& word) {
   return word.size() >= 2 && word.front() == '"' && word.back() == '"';
 }
 
-/// Returns the words of a command. The last one becomes a whole path if it is the name of a file,
-/// because the server reads the file and may run in another folder.
-std::vector<std::string> with_whole_path(std::vector<std::string> words) {
+}  // namespace
+
+std::vector<std::string> with_whole_paths(std::vector<std::string> words) {
   const CommandRow* row = find_command(words);
-  const bool is_file =
-      row != nullptr && row->words.ends_with(" FILE") &&
-      static_cast<std::size_t>(std::count(row->words.begin(), row->words.end(), ' ')) + 1 ==
-          words.size();
-  std::error_code ignored;
-  if (is_file && !is_quoted(words.back()))
-    words.back() = std::filesystem::absolute(words.back(), ignored).string();
+  if (row == nullptr || !row->words.ends_with(" FILE")) return words;
+  const auto file = static_cast<std::size_t>(std::count(row->words.begin(), row->words.end(), ' '));
+  for (std::size_t i = file; i < words.size(); ++i) {
+    const bool is_behind_word = words[i - 1] == kMapWord || words[i - 1] == kColoursWord;
+    const bool is_file = i == file || (row->words == kImportFileWords && is_behind_word);
+    std::error_code ignored;
+    if (is_file && !is_quoted(words[i]))
+      words[i] = std::filesystem::absolute(words[i], ignored).string();
+  }
   return words;
 }
-
-}  // namespace
 
 std::string control_line(const std::vector<std::string>& words) {
   if (words.size() == 1) return words.front();
@@ -69,7 +70,7 @@ Result<std::string, std::string> completed_line(const std::string& line,
 
 Result<ControlEnd, std::string> control_server(const ControlRequest& request, std::ostream& out,
                                                const ReadPassword& read_password) {
-  auto completed = completed_line(control_line(with_whole_path(request.words)), read_password);
+  auto completed = completed_line(control_line(with_whole_paths(request.words)), read_password);
   if (!completed) return failure(completed.error());
   std::string line = *std::move(completed);
   if (!is_printable_utf8(line))

@@ -14,6 +14,10 @@ struct ControlRequest {
   std::vector<std::string> words;  // of the command, as the shell passed them
 };
 
+/// Returns the words of a command. Names of files that the server reads or writes become whole
+/// paths, because the server may run in another folder. Words in quotes stay as they are.
+std::vector<std::string> with_whole_paths(std::vector<std::string> words);
+
 /// Returns the command as one line. A single word is the whole line, as a person would type it at
 /// the console. Of several words, those that contain blanks are put in quotes, because the shell
 /// has removed the quotes around them.

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
+#include "common/formats/mapped_build.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/place_words.hpp"
+#include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -213,26 +217,48 @@ void place_stored_build(const CommandCall& call, const PlacedBuild& wanted) {
 
 struct PlacedFile {
   std::string file;
+  PlacedFileWords file_words;
   PlaceWords words;
 };
 
 Result<PlacedFile, std::string> parse_import_file(WordReader& reader) {
   PlacedFile out;
   out.file = reader.take("import", "a file, such as castle.schem");
-  out.words = take_place_words(reader);
+  out.words = take_place_words(reader, &out.file_words);
   return reader.result(out);
+}
+
+/// A build from a file, and a line about its map of materials, which may be empty.
+struct ReadFile {
+  std::shared_ptr<const FileBuild> build;
+  std::string notice;
+};
+
+Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
+  ForeignReading reading;
+  reading.colours_file = wanted.file_words.colours;
+  auto build = read_build_of_file(wanted.file, std::move(reading));
+  if (!build) return failure(build.error());
+  ReadFile out;
+  if (const std::string& file = wanted.file_words.map; !file.empty()) {
+    const auto map = read_material_map(file);
+    if (!map) return failure(map.error());
+    AppliedRows applied;
+    auto mapped = mapped_build(*build, *map, applied, kBuildFileBytesMax);
+    if (!mapped) return failure(wanted.file + ": " + mapped.error().what);
+    build = std::move(mapped).value();
+    out.notice = unused_rows_notice(file, *map, applied);
+  }
+  out.build = std::make_shared<const FileBuild>(*std::move(build));
+  return out;
 }
 
 void import_file(const CommandCall& call, const PlacedFile& wanted) {
   call.on_worker(
-      "import: ",
-      [file = wanted.file](WorldReader&) -> Result<std::shared_ptr<const FileBuild>, std::string> {
-        auto build = read_any_build_file(file);
-        if (!build) return failure(build.error());
-        return std::make_shared<const FileBuild>(*std::move(build));
-      },
-      [call, wanted](const std::shared_ptr<const FileBuild>& build) {
-        place_build(call, "import", '"' + build->info.name + '"', build, wanted.words);
+      "import: ", [wanted](WorldReader&) { return read_placed_file(wanted); },
+      [call, wanted](const ReadFile& read) {
+        if (!read.notice.empty()) call.report(read.notice);
+        place_build(call, "import", '"' + read.build->info.name + '"', read.build, wanted.words);
       });
 }
 
@@ -277,9 +303,10 @@ constexpr std::array<CommandRow, 9> kLibraryRows = {{
      "             [without air] [materials add | nearest]\n"
      "                          place a build as one action, with its lowest corner at X Y Z",
      parsed_by<parse_place, place_stored_build>()},
-    {"import FILE", kLocal,
+    {kImportFileWords, kLocal,
      "import FILE at X Y Z ...  place a build from a file (.rsb, .schem, .vox and others), with the\n"
-     "                          words of builds place",
+     "                          words of builds place, [map FILE], which chooses materials, and\n"
+     "                          [colours FILE], a PNG with the colours of a height map",
      parsed_by<parse_import_file, import_file>()},
     {"builds cancel", needs(Right::administer),
      "builds cancel             end what you place, and take it back; the console ends all",

@@ -105,7 +105,7 @@ Result<void, std::string> add_missing(const CommandCall& call, MatchedBuild& mad
 
 }  // namespace
 
-PlaceWords take_place_words(WordReader& reader) {
+PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file) {
   PlaceWords out;
   if (!reader.take_word("at")) {
     reader.wrong(reader.command() + ": at X Y Z is missing: the place of its lowest corner");
@@ -131,9 +131,15 @@ PlaceWords take_place_words(WordReader& reader) {
       const bool is_add = reader.take_word("add");
       if (!is_add && !reader.take_word("nearest")) reader.wrong("materials: add or nearest");
       out.missing = is_add ? MissingMaterials::added : MissingMaterials::nearest;
+    } else if (file != nullptr && reader.take_word(kMapWord)) {
+      file->map = reader.take(std::string(kMapWord), "a TOML file that chooses materials");
+    } else if (file != nullptr && reader.take_word(kColoursWord)) {
+      file->colours =
+          reader.take(std::string(kColoursWord), "a PNG with the colours of a height map");
     } else {
       reader.wrong(reader.command() + " \"" + reader.peek() +
-                   "\": turn, mirror, only-into, without or materials");
+                   "\": turn, mirror, only-into, without" +
+                   (file != nullptr ? ", materials, map or colours" : " or materials"));
     }
   }
   return out;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "common/builds/paste_source.hpp"
 #include "common/core/coords.hpp"
@@ -31,8 +32,18 @@ struct PlaceWords {
 /// The materials that one command adds at most. Rows of a world's table are for ever.
 inline constexpr std::size_t kPlacedMaterialsMax = 1024;
 
-/// Takes `at X Y Z` and the words behind it.
-PlaceWords take_place_words(WordReader& reader);
+/// The command that reads a file and places its build, and the words before the names of further
+/// files.
+inline constexpr std::string_view kImportFileWords = "import FILE";
+inline constexpr std::string_view kMapWord = "map", kColoursWord = "colours";
+/// The words of a command that reads a file, besides those that place its build.
+struct PlacedFileWords {
+  std::string map;      // the TOML file that chooses materials (material_map_file.hpp); empty: none
+  std::string colours;  // the PNG with the colours of a height map; empty: none
+};
+
+/// Takes `at X Y Z` and the words behind it. If `file` is not null, also takes the words for it.
+PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file = nullptr);
 
 /// Places a build from a file as an action of the caller. If the world lacks materials of it and the
 /// words do not say how to treat them, refuses and lists them. Only console and operators may add

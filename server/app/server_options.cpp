@@ -2,14 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <iostream>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "common/core/coords_text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
@@ -51,20 +49,6 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   add_setting_flags(app, config_fields(), out.settings);
 }
 
-/// Returns the place of "X,Y,Z", or nullopt.
-std::optional<VoxelPos> parse_place(std::string_view text) {
-  std::array<std::int32_t, 3> at{};
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), at[i]);
-    if (error != std::errc() || at[i] < -kWorldLimit || at[i] >= kWorldLimit) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    const bool is_last = i + 1 == at.size();
-    if (is_last != text.empty() || (!is_last && text.front() != ',')) return std::nullopt;
-    if (!is_last) text.remove_prefix(1);
-  }
-  return VoxelPos{at[0], at[1], at[2]};
-}
-
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   CLI::App* const made = app.add_subcommand(
       "import", "make a new world from a Luanti or Minecraft world, or from a file with a build");
@@ -77,7 +61,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
           ->option_text("luanti|minecraft|file");
   CLI::Option* const source = made->add_option(
       "SOURCE", out.source,
-      "luanti: folder that holds map.sqlite; minecraft: folder of the world, or a region file; "
+      "luanti: folder that holds world.mt and its map; minecraft: folder of the world, or a region file; "
       "file: such as castle.schem");
   kind->needs(source);
   CLI::Option* const luanti = made->add_option_function<std::string>(
@@ -95,16 +79,21 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       ->required()
       ->check(folder_refusal);
   made->add_option_function<std::string>(
-          "--at", [&out](const std::string& text) { out.at = *parse_place(text); },
+          "--at", [&out](const std::string& text) { out.at = *parse_voxel_pos(text); },
           "file: X,Y,Z of its lowest corner; default: 0,0,0")
       ->check([](const std::string& text) {
-        return parse_place(text) ? std::string() : "X,Y,Z: three whole numbers in the world";
+        return parse_voxel_pos(text) ? std::string() : "X,Y,Z: three whole numbers in the world";
       });
   made->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
   made->add_option_function<std::string>(
           "--palette", [&out](const std::string& text) { out.palette = text == "default"; },
           "default: add the built-in materials that the world lacks; none: add nothing")
       ->check(CLI::IsMember({"default", "none"}));
+  made->add_option("--colours", out.colours,
+                   "file: PNG with the colours of the columns, if SOURCE is a height map");
+  made->add_option("--map", out.map,
+                   "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
+                   "\"planks\" below [materials]");
   made->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
   made->add_flag("--progress", out.progress,
                  "print progress even if standard error is no terminal");

@@ -3,16 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <ostream>
 #include <string>
+#include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/core/version.hpp"
 #include "common/formats/file_build.hpp"
-#include "common/os/output_file.hpp"
-#include "common/os/private_file.hpp"
+#include "common/formats/mapped_build.hpp"
+#include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -20,35 +21,35 @@ namespace {
 constexpr std::size_t kFileBytesMax = std::size_t{4} << 30;
 
 struct ConvertOptions {
-  std::string in, out, name;
+  std::string in, out, name, map, colours;
   std::uint64_t memory_mib = 2048;
   bool keep_all = true;
   bool lists = false;
 };
 
 Result<FileBuild, std::string> read(const ConvertOptions& options) {
-  if (auto why = ending_refusal(options.in, false); !why.empty()) return failure(std::move(why));
-  const auto bytes = read_file(options.in, kFileBytesMax, FileKinds::regular);
-  if (!bytes) return failure(bytes.error());
   ForeignReading reading;
   reading.keep_all = options.keep_all;
   reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
-  reading.name = std::filesystem::path(options.in).stem().string();
-  auto build = read_file_build(
-      options.in, {reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, reading);
+  reading.colours_file = options.colours;
+  auto build = read_build_of_file(options.in, std::move(reading), kFileBytesMax);
   if (build && !options.name.empty()) build->info.name = options.name;
   return build;
 }
 
-Result<void, std::string> write(const ConvertOptions& options, const FileBuild& build) {
-  auto to = open_output_file(options.out);
-  if (!to) return failure(to.error());
-  const auto written =
-      write_file_build(options.out, build, [&](ByteView bytes) { return to->write(bytes); });
-  if (!written) {
-    return failure(to->error().empty() ? written.error() : options.out + ": " + to->error());
-  }
-  if (const auto done = to->finish(); !done) return failure(options.out + ": " + done.error());
+/// Replaces the materials of a build as the map says, and prints which of its rows applied to none.
+Result<void, std::string> map_materials(const ConvertOptions& options, FileBuild& build,
+                                        std::ostream& out) {
+  if (options.map.empty()) return {};
+  const auto map = read_material_map(options.map);
+  if (!map) return failure(map.error());
+  AppliedRows applied;
+  auto mapped =
+      mapped_build(build, *map, applied, static_cast<std::size_t>(options.memory_mib) << 20);
+  if (!mapped) return failure(options.in + ": " + mapped.error().what);
+  build = *std::move(mapped);
+  const std::string notice = unused_rows_notice(options.map, *map, applied);
+  if (!notice.empty()) out << notice << '\n';
   return {};
 }
 
@@ -56,10 +57,12 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   if (!options.out.empty()) {
     if (auto why = ending_refusal(options.out, true); !why.empty()) return failure(std::move(why));
   }
-  const auto build = read(options);
+  auto build = read(options);
   if (!build) return failure(build.error());
+  if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
   if (!options.out.empty()) {
-    if (const auto written = write(options, *build); !written) return written;
+    const auto written = write_build_to_file(options.out, *build);
+    if (!written) return failure(written.error());
   }
   const BuildSides& sides = build->info.sides;
   out << (options.out.empty() ? options.in : options.out) << ": \"" << build->info.name << "\", "
@@ -69,7 +72,7 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   if (!options.lists) return {};
   for (const BuildMaterial& material : build->materials) {
     out << material.row.name;
-    if (!material.states.empty()) out << " [" << material.states << ']';
+    if (!material.states.empty()) out << '[' << material.states << ']';
     out << '\n';
   }
   return {};
@@ -95,9 +98,14 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
                  "program only says what IN is");
   app.add_option("--name", options.name, "name of the build; default: that of IN")
       ->check(name_refusal);
+  app.add_option("--colours", options.colours,
+                 "PNG with the colours of the columns, if IN is a height map");
+  app.add_option("--map", options.map,
+                 "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
+                 "\"planks\" below [materials]");
   app.add_option("--memory", options.memory_mib, "MiB that the build may take; default 2048")
       ->check(CLI::Range(1, 1 << 20));
-  app.add_flag("--list", options.lists, "list the materials");
+  app.add_flag("--list", options.lists, "list the materials, as the rows of a map name them");
   app.add_flag_callback(
       "--only-cubes", [&options] { options.keep_all = false; },
       "leave out blocks that are no whole cubes, such as plants and torches");

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/builds/build_builder.hpp"
+#include "common/core/build_info.hpp"
 #include "common/formats/block_assembler.hpp"
 #include "common/runs/cut.hpp"
 
@@ -19,8 +20,8 @@ std::optional<std::string> box_refusal(const VoxelBox& box) {
     if (min < -kWorldLimit || max > kWorldLimit)
       return "the box does not lie in the world: coordinates are " + std::to_string(-kWorldLimit) +
              " to " + std::to_string(kWorldLimit - 1);
-    if (max - min > kBuildEdgeMax)
-      return "the box is longer than " + std::to_string(kBuildEdgeMax) + " voxels";
+    if (max - min > kBuildSideMax)
+      return "the box is longer than " + std::to_string(kBuildSideMax) + " voxels";
   }
   return std::nullopt;
 }

@@ -1,9 +1,8 @@
 #include <array>
-#include <filesystem>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
 #include "common/formats/file_build.hpp"
-#include "common/os/private_file.hpp"
 #include "server/import/import_parts.hpp"
 
 namespace runstone {
@@ -15,19 +14,16 @@ constexpr std::size_t kFileBuildBytesMax = std::size_t{2} << 30;
 
 class FileParts final : public ImportParts {
  public:
-  FileParts(std::string file, VoxelPos at, bool keep_all)
-      : file_(std::move(file)), at_(at), keep_all_(keep_all) {}
+  FileParts(std::string file, VoxelPos at, bool keep_all, std::string colours)
+      : file_(std::move(file)), at_(at), keep_all_(keep_all), colours_(std::move(colours)) {}
 
   std::size_t count() const override { return 1; }
   Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
-    const auto bytes = read_file(file_, kFileBytesMax, FileKinds::regular);
-    if (!bytes) return failure(bytes.error());
-    const ByteView view(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
     ForeignReading reading;
     reading.keep_all = keep_all_;
     reading.bytes_max = kFileBuildBytesMax;
-    reading.name = std::filesystem::path(file_).stem().string();
-    auto build = read_file_build(file_, view, reading);
+    reading.colours_file = colours_;
+    auto build = read_build_of_file(file_, std::move(reading), kFileBytesMax);
     if (!build) return failure(build.error());
     const VoxelPos sides = build->build->sides();
     const std::array<std::pair<std::int64_t, std::int64_t>, 3> axes = {
@@ -43,14 +39,16 @@ class FileParts final : public ImportParts {
   std::string file_;
   VoxelPos at_;
   bool keep_all_;
+  std::string colours_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
-                                                                  VoxelPos at, bool keep_all) {
+                                                                  VoxelPos at, bool keep_all,
+                                                                  const std::string& colours) {
   if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
-  return std::unique_ptr<ImportParts>(std::make_unique<FileParts>(file, at, keep_all));
+  return std::unique_ptr<ImportParts>(std::make_unique<FileParts>(file, at, keep_all, colours));
 }
 
 }  // namespace runstone

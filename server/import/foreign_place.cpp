@@ -98,7 +98,7 @@ std::string words_of_foreign_place(const std::string& place) {
            "Luanti 0.4, which converts it, and import the copy";
   if (has(place, "map.db"))
     return "has a map.db, the map of a Luanti world in LevelDB, and no world.mt: add world.mt with "
-           "\"backend = leveldb\" and run \"luantiserver --world FOLDER --migrate sqlite3\"";
+           "\"backend = leveldb\", and import again";
   if (const std::string world = world_within(place); !world.empty())
     return "holds folders of Luanti worlds, and an import reads one: give " + world;
   return "is no Luanti world: it holds neither map.sqlite nor world.mt";

@@ -72,6 +72,19 @@ VoxelPos top_of_middle(const FileBuild& build, const VoxelBox& box) {
   return {box.min.x + x, box.max.y, box.min.z + z};
 }
 
+/// Returns the lowest place at or above `at` where a player, who is two voxels high, does not stand
+/// in a voxel of a part.
+VoxelPos raised_from(VoxelPos at, const FileBuild& build, const VoxelBox& box) {
+  if (!box.contains({at.x, box.min.y, at.z})) return at;
+  const auto is_solid = [&](std::int32_t y) {
+    if (y < box.min.y || y >= box.max.y) return false;
+    const auto material = build.build->at({at.x - box.min.x, y - box.min.y, at.z - box.min.z});
+    return material && *material != kEmpty;
+  };
+  while (at.y < box.max.y && (is_solid(at.y) || is_solid(at.y + 1))) ++at.y;
+  return at;
+}
+
 /// Returns the place on top of the part that is nearest to the middle of all.
 VoxelPos spawn_of(const VoxelBox& bounds, const std::vector<VoxelPos>& tops) {
   const auto distance = [&](const VoxelPos& top) {
@@ -101,6 +114,7 @@ Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
   std::map<std::string, MaterialRow> rows;
   std::vector<VoxelPos> tops;
   ImportFaults faults;  // the second pass finds them again
+  std::optional<VoxelPos> spawn = parts.spawn();
   for (std::size_t i = 0; i < parts.count(); ++i) {
     if (progress) progress(i, 2 * parts.count());
     const auto part = parts.read(i, faults);
@@ -115,12 +129,15 @@ Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
     const VoxelBox box = moved(build.build->box(), (*part)->at, 1);
     survey.bounds = around(survey.bounds, box);
     tops.push_back(top_of_middle(build, box));
+    if (spawn) spawn = raised_from(*spawn, build, box);
   }
   if (tops.empty()) {
     return failure("nothing but empty voxels is in it" +
                    (faults.empty() ? std::string() : "; " + faults.front()));
   }
-  survey.spawn = parts.spawn().value_or(spawn_of(survey.bounds, tops));
+  const VoxelBox& all = survey.bounds;
+  const bool is_inside = spawn && all.contains({spawn->x, all.min.y, spawn->z});
+  survey.spawn = is_inside ? *spawn : spawn_of(all, tops);
   for (auto& [name, row] : rows) {
     const auto added = survey.materials.add(
         {row.name, row.colour, row.visibility, std::nullopt, row.body, row.look});

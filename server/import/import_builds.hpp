@@ -18,7 +18,9 @@ namespace runstone {
 struct BuildsSurvey {
   MaterialTable materials;  // id 0 is air; the others ascend by name
   VoxelBox bounds;          // around all parts
-  VoxelPos spawn;           // of the source, or on top of the part in the middle
+  // The place that the source says, raised until two voxels there are empty. If the source says
+  // none, or one outside the bounds along x and z, the top of the part in the middle.
+  VoxelPos spawn;
 };
 
 struct BuildsReport {

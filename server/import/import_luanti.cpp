@@ -21,14 +21,14 @@ constexpr std::uint64_t kProgressEvery = 64;  // blocks
 
 class Importer {
  public:
-  Importer(std::string file, LuantiMap map, const Format& format,
+  Importer(std::string file, LuantiMap& map, const Format& format,
            const LuantiImportOptions& options, const LuantiImportSink& sink)
       : file_(std::move(file)),
-        map_(std::move(map)),
+        map_(map),
         format_(format),
         options_(options),
         sink_(sink),
-        block_materials_(format, options.keep_all) {}
+        block_materials_(format, options.keep_all, options.map) {}
 
   Result<LuantiImportReport, ImportError> run() {
     if (const auto scanned = scan(); !scanned) return error(scanned.error());
@@ -36,6 +36,7 @@ class Importer {
     if (!table) return error(table.error().what);
     std::sort(positions_.begin(), positions_.end());  // a damaged map may have another order
     report_.materials = *std::move(table);
+    report_.applied = block_materials_.applied();
     sink_.materials(report_.materials);
     report_.voxels.assign(report_.materials.size(), 0);
     report_.spawn = {(report_.bounds.min.x + report_.bounds.max.x) / 2, report_.bounds.max.y,
@@ -173,7 +174,7 @@ class Importer {
   }
 
   std::string file_;
-  LuantiMap map_;
+  LuantiMap& map_;
   const Format& format_;
   const LuantiImportOptions& options_;
   const LuantiImportSink& sink_;
@@ -192,15 +193,15 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
                   options.edge == 128);
   auto found = find_luanti_map(folder);
   if (!found) return failure(found.error());
-  const Format* format = format_of_file(found->map);
+  const Format* format = format_of_file("map.sqlite");  // of rows, whatever keeps them
   RUNSTONE_ASSERT(format != nullptr);
-  auto map = LuantiMap::open(found->map);
+  const auto map = open_luanti_map(*found);
   if (!map) return failure(ImportError{found->map, map.error()});
-  if (map->row_count() == 0)
+  if ((*map)->row_count() == 0)
     return failure(ImportError{found->map,
                                "has no blocks: start Luanti once with this world, so that there "
                                "is ground, or give the folder of another world"});
-  auto report = Importer(found->map, std::move(map).value(), *format, options, sink).run();
+  auto report = Importer(found->map, **map, *format, options, sink).run();
   if (report) report->has_seed_map = found->has_seed_map;
   return report;
 }

@@ -1,7 +1,7 @@
-// Import of a Luanti world: its map.sqlite, if world.mt names no other map, is read block by block
-// and becomes chunks of runs. A sink takes the chunks and decides where they go. There are two
-// passes: the first finds names and places, because materials must be known before the first chunk;
-// the second makes one chunk at a time.
+// Import of a Luanti world: its map, in map.sqlite or in a LevelDB as world.mt says, is read block
+// by block and becomes chunks of runs. A sink takes the chunks and decides where they go. There are
+// two passes: the first finds names and places, because materials must be known before the first
+// chunk; the second makes one chunk at a time.
 //   LuantiImportSink sink{materials, chunk, progress}; const auto report =
 //   import_luanti("worlds/valley", {.edge = 32}, sink);
 // A damaged block is listed and left empty.
@@ -16,6 +16,7 @@
 
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
+#include "common/formats/material_map.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "server/import/import_error.hpp"
@@ -26,6 +27,8 @@ struct LuantiImportOptions {
   std::int32_t edge = 32;  // of the chunks to make: 16, 32, 64 or 128
   /// Plants, torches and similar nodes become see-through cubes. Otherwise they are left out.
   bool keep_all = false;
+  /// Chooses materials, if it is not null. It must outlive the import.
+  const MaterialMap* map = nullptr;
 };
 
 struct LuantiImportSink {
@@ -56,6 +59,7 @@ struct LuantiImportReport {
   std::uint64_t chunks = 0;  // that the sink got
   std::uint64_t runs = 0;    // in all of them
   MaterialTable materials;
+  AppliedRows applied;  // of the map
   /// Number of voxels by material id, in the chunks that the sink got. [0] counts their empty
   /// voxels.
   std::vector<std::uint64_t> voxels;
@@ -64,8 +68,8 @@ struct LuantiImportReport {
 };
 
 /// Imports the map of a world, which is opened for reading only. Fails if
-///   - world.mt says that the map is not in map.sqlite, or the folder holds no Luanti world;
-///   - map.sqlite cannot be read as a Luanti map, or has no blocks;
+///   - world.mt names another backend than sqlite3 and leveldb, or the folder holds no Luanti world;
+///   - the map cannot be read as a Luanti map, or has no blocks;
 ///   - it has more names than a material table can hold;
 ///   - the sink returns false.
 Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,

@@ -35,13 +35,19 @@ class ImportParts {
                                                               ImportFaults& faults) = 0;
   /// Returns the place where players arrive, if the source says one.
   virtual std::optional<VoxelPos> spawn() const { return std::nullopt; }
+  /// Returns lines about what the source lacks although parts can be read.
+  virtual std::vector<std::string> notices() const { return {}; }
 };
 
-/// Opens a file of any format (file_build.hpp), whose lowest corner comes to `at`.
+/// Opens a file of any format (file_build.hpp), whose lowest corner comes to `at`. `colours`: the
+/// PNG with the colours of a height map; empty: none.
 Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
-                                                                  VoxelPos at, bool keep_all);
+                                                                  VoxelPos at, bool keep_all,
+                                                                  const std::string& colours);
 /// Opens a Minecraft Java world: a folder with a folder `region`, a folder of region files, or one
 /// region file. Each region is a part. Voxels keep their places. Chunks that are damaged are left out.
+/// In a folder with a folder `region`, players arrive where level.dat says; a notice tells why it
+/// says no place.
 /// Fails if there is no region file.
 Result<std::unique_ptr<ImportParts>, std::string> open_minecraft_parts(const std::string& place,
                                                                        bool keep_all);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "common/os/progress_line.hpp"
 #include "server/import/import_builds.hpp"
 #include "server/import/import_luanti.hpp"
+#include "server/import/mapped_parts.hpp"
+#include "server/mapping/material_map_file.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -78,14 +81,14 @@ Result<void, std::string> fill(
   return {};
 }
 
-Result<void, std::string> fill_from_luanti(const ImportRequest& request,
+Result<void, std::string> fill_from_luanti(const ImportRequest& request, const MaterialMap* map,
                                            const LuantiImportReport& survey, BaseWriter& base) {
   LuantiImportSink sink;
   sink.materials = [](const MaterialTable&) {};
   sink.chunk = [&](const ChunkKey& key, RunChunk&& voxels) {
     return base.add(key, std::move(voxels));
   };
-  const auto report = import_luanti(request.source, {request.edge, request.keep_all}, sink);
+  const auto report = import_luanti(request.source, {request.edge, request.keep_all, map}, sink);
   if (!report) return failure(report.error().message());
   if (report->materials != survey.materials || report->chunks != survey.chunks) {
     return failure(request.source +
@@ -152,11 +155,20 @@ Result<MaterialTable, std::string> make_world(
   return *materials;
 }
 
-Result<void, std::string> import_luanti_world(const ImportRequest& request, std::ostream& out) {
+void print_unused_rows(const ImportRequest& request, const MaterialMap* map,
+                       const AppliedRows& applied, std::ostream& out) {
+  if (map == nullptr) return;
+  const std::string notice = unused_rows_notice(request.map, *map, applied);
+  if (!notice.empty()) out << notice << '\n';
+}
+
+Result<void, std::string> import_luanti_world(const ImportRequest& request, const MaterialMap* map,
+                                              std::ostream& out) {
   LuantiImportSink survey_sink;
   survey_sink.materials = [](const MaterialTable&) {};
   survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
-  const auto survey = import_luanti(request.source, {request.edge, request.keep_all}, survey_sink);
+  const auto survey =
+      import_luanti(request.source, {request.edge, request.keep_all, map}, survey_sink);
   if (!survey) return failure(survey.error().message());
   if (survey->blocks == 0 && !survey->damaged.empty()) {
     const DamagedBlock& first = survey->damaged.front();
@@ -171,10 +183,11 @@ Result<void, std::string> import_luanti_world(const ImportRequest& request, std:
   }
   const auto materials = make_world(request, survey->materials, survey->spawn, out,
                                     [&](const MaterialTable&, BaseWriter& base) {
-                                      return fill_from_luanti(request, *survey, base);
+                                      return fill_from_luanti(request, map, *survey, base);
                                     });
   if (!materials) return failure(materials.error());
   print(*survey, request, *materials, out);
+  print_unused_rows(request, map, survey->applied, out);
   return {};
 }
 
@@ -217,6 +230,7 @@ Result<void, std::string> import_parts(const ImportRequest& request, ImportParts
                  });
   if (!materials) return failure(materials.error());
   print(report, request, *survey, materials->size(), out);
+  for (const std::string& notice : parts.notices()) out << notice << '\n';
   return {};
 }
 
@@ -228,13 +242,26 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
     return failure("--edge " + std::to_string(request.edge) +
                    ": chunks have an edge of 16, 32, 64 or 128");
   }
+  if (!request.colours.empty() && request.kind != ImportKind::file)
+    return failure("--colours: only import file takes it, for a height map");
   if (const auto free = NewFolder::check(request.world); !free) return failure(free.error());
-  if (request.kind == ImportKind::luanti) return import_luanti_world(request, out);
+  std::optional<MaterialMap> map;
+  if (!request.map.empty()) {
+    auto read = read_material_map(request.map);
+    if (!read) return failure(read.error());
+    map = *std::move(read);
+  }
+  const MaterialMap* const chosen = map ? &*map : nullptr;
+  if (request.kind == ImportKind::luanti) return import_luanti_world(request, chosen, out);
   auto parts = request.kind == ImportKind::file
-                   ? open_file_parts(request.source, request.at, request.keep_all)
+                   ? open_file_parts(request.source, request.at, request.keep_all, request.colours)
                    : open_minecraft_parts(request.source, request.keep_all);
   if (!parts) return failure(parts.error());
-  return import_parts(request, **parts, out);
+  if (chosen == nullptr) return import_parts(request, **parts, out);
+  MappedParts mapped(*std::move(parts), *chosen);
+  const auto done = import_parts(request, mapped, out);
+  if (done) print_unused_rows(request, chosen, mapped.applied(), out);
+  return done;
 }
 
 }  // namespace runstone

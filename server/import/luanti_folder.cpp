@@ -16,6 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSettingsBytesMax = 1 << 20;
+constexpr const char* kNoMap =
+    "does not exist: the world has world.mt and no map. Start Luanti once with it, so that there is "
+    "a map, or check whether the folder was copied in full";
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
@@ -46,13 +49,12 @@ std::string words_of_backend(const std::string& backend, bool has_map) {
            "nothing to import";
   if (backend == "postgresql") where = "in a PostgreSQL database";
   if (backend == "redis") where = "in a Redis server";
-  if (backend == "leveldb") where = "in map.db, a LevelDB";
   if (where.empty())
     return "world.mt says backend = " + backend +
-           ", which this program does not know: an import reads the backend sqlite3";
+           ", which this program does not know: an import reads the backends sqlite3 and leveldb";
   return "world.mt says backend = " + backend + ": the map is " + where +
          (has_map ? ", and map.sqlite is from before that" : "") +
-         ". An import reads the backend sqlite3 only. Stop the Luanti server, " +
+         ". An import reads the backends sqlite3 and leveldb only. Stop the Luanti server, " +
          (has_map ? "move map.sqlite away, " : "") +
          "run \"luantiserver --world FOLDER --migrate sqlite3\", and import again";
 }
@@ -76,8 +78,11 @@ Result<LuantiFolder, ImportError> find_luanti_map(const std::string& folder) {
     if (!text) return refused(folder, text.error());
     const auto settings = settings_of(*text);
     const auto backend = settings.find("backend");
-    if (backend != settings.end() && backend->second != "sqlite3")
+    if (backend != settings.end() && backend->second == "leveldb") {
+      out.backend = LuantiBackend::leveldb;
+    } else if (backend != settings.end() && backend->second != "sqlite3") {
       return refused(folder, words_of_backend(backend->second, has_map));
+    }
     const auto block_size = settings.find("blocksize");
     if (block_size != settings.end() && block_size->second != "16")
       return refused(folder, "world.mt says blocksize = " + block_size->second +
@@ -85,10 +90,12 @@ Result<LuantiFolder, ImportError> find_luanti_map(const std::string& folder) {
     const auto seed = settings.find("readonly_backend");
     out.has_seed_map = seed != settings.end() && seed->second != "dummy";
   }
-  if (!has_map)
-    return refused(out.map,
-                   "does not exist: the world has world.mt and no map. Start Luanti once with it, "
-                   "so that there is a map, or check whether the folder was copied in full");
+  if (out.backend == LuantiBackend::leveldb) {
+    out.map = (fs::path(folder) / "map.db").string();
+    if (!fs::is_directory(out.map, error)) return refused(out.map, kNoMap);
+    return out;
+  }
+  if (!has_map) return refused(out.map, kNoMap);
   if (fs::is_directory(out.map, error)) return refused(out.map, "is a folder, not a map");
   if (const auto kind = check_file_kind(out.map); !kind)
     return refused(out.map, kind.error().substr(out.map.size() + 2));

@@ -1,6 +1,7 @@
 // The folder of a Luanti world: where its map is. world.mt decides, because a map.sqlite from before
 // a change of the backend may lie beside it.
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "common/core/result.hpp"
@@ -8,9 +9,12 @@
 
 namespace runstone {
 
+enum class LuantiBackend : std::uint8_t { sqlite, leveldb };
+
 struct LuantiFolder {
-  std::string map;  // the path of map.sqlite
-  /// The world has a second map, which is read where map.sqlite has no block. It is not imported.
+  std::string map;  // the path of map.sqlite, or of the folder map.db of a LevelDB
+  LuantiBackend backend = LuantiBackend::sqlite;
+  /// The world has a second map, which is read where the map has no block. It is not imported.
   bool has_seed_map = false;
 };
 

@@ -1,16 +1,20 @@
-// LuantiMap: the rows of a Luanti world's map.sqlite, for reading only. Its one table has two
-// layouts: blocks(pos, data), and blocks(x, y, z, data) since Luanti 5.12.
+// LuantiMap: the rows of the map of a Luanti world, for reading only: one for each block of 16^3
+// nodes. The setting `backend` of the world decides what keeps them:
+//   - sqlite3: map.sqlite, whose one table has two layouts: blocks(pos, data), and since Luanti 5.12
+//     blocks(x, y, z, data);
+//   - leveldb: the folder map.db, whose keys are the decimal digits of pos.
+// All calls read the same state of the map. Threads: any, one at a time. It blocks on the disk.
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
-#include "common/sql/database.hpp"
+#include "server/import/luanti_folder.hpp"
 
 namespace runstone {
 
@@ -24,35 +28,25 @@ struct LuantiRow {
 
 class LuantiMap {
  public:
-  /// Opens a map. The error is one line of text, and says what to do if the map is in use or has a
-  /// journal. One read transaction lasts as long as the object, so all calls read the same state
-  /// of the map, even while Luanti writes to it.
-  static Result<LuantiMap, std::string> open(const std::string& file);
+  virtual ~LuantiMap() = default;
 
-  std::uint64_t row_count() const { return row_count_; }
+  virtual std::uint64_t row_count() const = 0;
 
-  /// Calls `to_row` for every row, ascending by key. Fails if not all rows could be read.
-  Result<void, std::string> each_row(const std::function<void(const LuantiRow&)>& to_row);
+  /// Calls `to_row` for every row, in the order of the keys. Rows of one position come one after
+  /// another. Fails if not all rows could be read.
+  virtual Result<void, std::string> each_row(
+      const std::function<void(const LuantiRow&)>& to_row) = 0;
 
   /// Returns the bytes of the first row of a block, or nullopt if the row is missing or cannot be
   /// read. The bytes are valid until the next call. The caller knows from each_row() which rows
   /// exist, so both cases mean damage.
-  std::optional<ByteView> find(ChunkCoord block);
-
- private:
-  LuantiMap(sql::Database database, sql::Statement scan, sql::Statement find, bool has_coordinates,
-            std::uint64_t row_count)
-      : database_(std::move(database)),
-        scan_(std::move(scan)),
-        find_(std::move(find)),
-        has_coordinates_(has_coordinates),
-        row_count_(row_count) {}
-  LuantiRow row() const;
-
-  sql::Database database_;  // before its statements
-  sql::Statement scan_, find_;
-  bool has_coordinates_;
-  std::uint64_t row_count_;
+  virtual std::optional<ByteView> find(ChunkCoord block) = 0;
 };
+
+/// Opens a map. The error is one line of text, and says what to do if the map is in use, is damaged
+/// or has a journal.
+Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_map(const LuantiFolder& folder);
+Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_sqlite_map(const std::string& file);
+Result<std::unique_ptr<LuantiMap>, std::string> open_luanti_leveldb_map(const std::string& folder);
 
 }  // namespace runstone

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/formats/minecraft_level.hpp"
 #include "common/formats/minecraft_region.hpp"
 #include "common/formats/piece_joiner.hpp"
 #include "common/os/private_file.hpp"
@@ -22,14 +23,40 @@ ByteView view_of(const std::string& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
+/// What level.dat says, or why it says nothing.
+struct LevelFile {
+  std::optional<VoxelPos> spawn;
+  std::string notice;
+};
+
+/// Reads level.dat of the folder of a world.
+LevelFile read_level_file(const std::filesystem::path& folder) {
+  constexpr std::size_t kLevelBytesMax = std::size_t{16} << 20;
+  constexpr const char* kMiddle = ": players arrive in the middle of the world";
+  const std::string file = (folder / "level.dat").string();
+  const auto bytes = read_file(file, kLevelBytesMax, FileKinds::regular);
+  if (!bytes) return {std::nullopt, bytes.error() + kMiddle};
+  const auto spawn = read_minecraft_spawn(view_of(*bytes));
+  if (!spawn) return {std::nullopt, file + ": " + spawn.error().what + kMiddle};
+  if (!*spawn) return {std::nullopt, file + ": says no place in the overworld" + kMiddle};
+  return {*spawn, ""};
+}
+
 class MinecraftParts final : public ImportParts {
  public:
-  MinecraftParts(std::vector<std::string> files, bool keep_all)
-      : files_(std::move(files)), keep_all_(keep_all), format_(format_of_file(kRegionEnding)) {
+  MinecraftParts(std::vector<std::string> files, LevelFile level, bool keep_all)
+      : files_(std::move(files)),
+        level_(std::move(level)),
+        keep_all_(keep_all),
+        format_(format_of_file(kRegionEnding)) {
     RUNSTONE_ASSERT(format_ != nullptr);
   }
 
   std::size_t count() const override { return files_.size(); }
+  std::optional<VoxelPos> spawn() const override { return level_.spawn; }
+  std::vector<std::string> notices() const override {
+    return level_.notice.empty() ? std::vector<std::string>() : std::vector{level_.notice};
+  }
   Result<std::optional<ImportPart>, std::string> read(std::size_t index,
                                                       ImportFaults& faults) override {
     const std::string& file = files_[index];
@@ -88,6 +115,7 @@ class MinecraftParts final : public ImportParts {
   }
 
   std::vector<std::string> files_;
+  LevelFile level_;
   bool keep_all_;
   const Format* format_;
   MinecraftChunkReader reader_;
@@ -121,8 +149,10 @@ Result<std::unique_ptr<ImportParts>, std::string> open_minecraft_parts(const std
                                                                        bool keep_all) {
   std::error_code unknown;
   std::vector<std::string> files;
+  LevelFile level;
   if (std::filesystem::is_directory(place, unknown)) {
     auto found = region_files(std::filesystem::path(place) / "region");
+    if (found && !found->empty()) level = read_level_file(place);
     if (found && found->empty()) found = region_files(place);
     if (!found) return failure(found.error());
     files = *std::move(found);
@@ -136,7 +166,8 @@ Result<std::unique_ptr<ImportParts>, std::string> open_minecraft_parts(const std
   } else {
     return failure(place + ": is neither a folder nor a region file (r.X.Z.mca)");
   }
-  return std::unique_ptr<ImportParts>(std::make_unique<MinecraftParts>(std::move(files), keep_all));
+  return std::unique_ptr<ImportParts>(
+      std::make_unique<MinecraftParts>(std::move(files), std::move(level), keep_all));
 }
 
 }  // namespace runstone

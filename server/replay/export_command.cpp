@@ -1,42 +1,24 @@
 #include "server/replay/replay_commands.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <string_view>
 
+#include "common/build_files/build_files.hpp"
+#include "common/core/coords_text.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/file_build.hpp"
-#include "common/os/output_file.hpp"
+#include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/history/build_at.hpp"
 #include "server/replay/command_world.hpp"
+#include "server/replay/export_luanti.hpp"
+#include "server/replay/luanti_world_writer.hpp"
 #include "server/replay/rlog_file.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
 namespace {
-
-/// Returns the box of "X,Y,Z,X,Y,Z", two opposite corners that are both inside, or nullopt.
-std::optional<VoxelBox> parse_box(std::string_view text) {
-  std::array<std::int32_t, 6> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
-    if (error != std::errc()) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    const bool is_last = i + 1 == numbers.size();
-    if (is_last != text.empty() || (!is_last && text.front() != ',')) return std::nullopt;
-    if (!is_last) text.remove_prefix(1);
-  }
-  for (const std::int32_t number : numbers) {
-    if (number < -kWorldLimit || number >= kWorldLimit) return std::nullopt;
-  }
-  const auto low = [&](std::size_t i) { return std::min(numbers[i], numbers[i + 3]); };
-  const auto high = [&](std::size_t i) { return std::max(numbers[i], numbers[i + 3]) + 1; };
-  return VoxelBox{{low(0), low(1), low(2)}, {high(0), high(1), high(2)}};
-}
 
 Result<int, std::string> export_log(const ExportOptions& options, std::ostream& out) {
   const auto store = open_world(options.common.world, StoreAccess::read_only);
@@ -59,24 +41,8 @@ Result<int, std::string> export_log(const ExportOptions& options, std::ostream& 
   return code_of_output(**store);
 }
 
-/// Writes a build to a file, which replaces an old one when it is whole. Returns its bytes.
-Result<std::uint64_t, std::string> write_build_to(const std::string& file, const FileBuild& build) {
-  auto to = open_output_file(file);
-  if (!to) return failure(to.error());
-  std::uint64_t bytes = 0;
-  const auto written = write_file_build(file, build, [&](ByteView part) {
-    bytes += part.size();
-    return to->write(part);
-  });
-  if (!written) return failure(to->error().empty() ? written.error() : file + ": " + to->error());
-  if (const auto done = to->finish(); !done) return failure(file + ": " + done.error());
-  return bytes;
-}
-
-std::string name_of_build(const ExportOptions& options) {
-  if (!options.name.empty()) return options.name;
-  const std::string stem = std::filesystem::path(options.file).stem().string();
-  return is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
+std::string name_of_build(const ExportOptions& options, const std::string& place) {
+  return options.name.empty() ? build_name_of_file(place) : options.name;
 }
 
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
@@ -101,8 +67,8 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
                     });
   }();
   if (!build) return failure(options.common.world + ": " + build.error());
-  build->info.name = name_of_build(options);
-  const auto bytes = write_build_to(options.file, *build);
+  build->info.name = name_of_build(options, options.file);
+  const auto bytes = write_build_to_file(options.file, *build);
   if (!bytes) return failure(bytes.error());
   const BuildSides& sides = build->info.sides;
   print_world(out, store);
@@ -122,18 +88,70 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
   return code_of_output(store);
 }
 
+Result<int, std::string> export_luanti_world(const ExportOptions& options, std::ostream& out) {
+  if (!options.box) {
+    return failure(
+        "--luanti: --box is missing: X,Y,Z,X,Y,Z of the part of the world that becomes a Luanti "
+        "world");
+  }
+  if (auto why = luanti_box_refusal(*options.box); !why.empty()) return failure(std::move(why));
+  if (const auto free = NewFolder::check(options.luanti); !free) return failure(free.error());
+  const auto world = open_for_reading(options.common.world, options.at);
+  if (!world) return failure(world.error());
+  Store& store = *world->store;
+  const auto last = store.last_sequence();
+  if (!last) return failure(last.error().message());
+  const Sequence at = std::min(world->end, *last);
+  const auto then = WorldAt::open(store, *world->generator, at);
+  if (!then) return failure(then.error().message());
+  const auto materials = store.materials(at);
+  if (!materials) return failure(materials.error().message());
+  auto writer =
+      LuantiWorldWriter::make(options.luanti, name_of_build(options, options.luanti), out);
+  if (!writer) return failure(writer.error());
+  const auto solid = [&] {
+    ProgressLine line("chunks read", options.common.progress);
+    return export_luanti(*then, store, *materials, *options.box, store.meta().chunk_edge, *writer,
+                         [&](std::uint64_t done, std::uint64_t total) {
+                           line.show(done, total);
+                           return true;
+                         });
+  }();
+  if (!solid) return failure(options.common.world + ": " + solid.error());
+  const std::uint64_t blocks = writer->blocks();
+  if (const auto done = writer->finish(); !done) return failure(done.error());
+  const VoxelBox& box = *options.box;
+  print_world(out, store);
+  row(out, "moment") << "after sequence " << at << '\n';
+  row(out, "box") << box.max.x - box.min.x << " x " << box.max.y - box.min.y << " x "
+                  << box.max.z - box.min.z << " voxels, " << *solid << " of them not empty\n";
+  row(out, "written") << options.luanti << ", " << blocks << " blocks of 16 x 16 x 16\n";
+  const nlohmann::ordered_json json = {
+      {"seq", at},
+      {"sides", {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}},
+      {"solid", *solid},
+      {"lost", store.loss() ? store.loss()->message() : ""},
+      {"blocks", blocks}};
+  const auto written = write_report(options.common.json, json.dump(1));
+  if (!written) return failure(written.error());
+  return code_of_output(store);
+}
+
 }  // namespace
 
 void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
   command_line.common(options.common, "folder of the world; a server may be running it");
   command_line.output_file("FILE", options.file,
                            "the .rlog file to write, or with --box a build such as town.schem; an "
-                           "old one is replaced");
+                           "old one is replaced",
+                           SubcommandOptions::Presence::may_be_missing);
+  command_line.folder("--luanti", options.luanti,
+                      "with --box and without FILE: folder of the Luanti world to make");
   command_line.moment("--at", options.at, "last edit to export");
   command_line.parsed(
       "--box",
       [&options](const std::string& text) -> std::string {
-        options.box = parse_box(text);
+        options.box = parse_voxel_box(text);
         return options.box ? "" : "X,Y,Z,X,Y,Z: two opposite corners, both inside";
       },
       "X,Y,Z,X,Y,Z: export this box of the world as a build, in the format of the ending");
@@ -148,6 +166,11 @@ Result<int, std::string> run_export(const ExportOptions& options, std::ostream& 
     return failure("--name: 1 to " + std::to_string(kBuildNameBytesMax) +
                    " bytes without quotes, backslashes, control characters and outer blanks");
   }
+  if (options.luanti.empty() == options.file.empty()) {
+    return failure(options.file.empty() ? "FILE is missing: the file to write"
+                                        : "FILE and --luanti: give one of them");
+  }
+  if (!options.luanti.empty()) return export_luanti_world(options, out);
   return options.box ? export_box(options, out) : export_log(options, out);
 }
 

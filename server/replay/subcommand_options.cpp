@@ -12,7 +12,9 @@ namespace {
 void set_presence(CLI::Option* option, const std::string& name,
                   SubcommandOptions::Presence presence) {
   const bool is_positional = !name.starts_with('-');
-  if (is_positional || presence == SubcommandOptions::Presence::required) option->required();
+  using Presence = SubcommandOptions::Presence;
+  if (presence == Presence::required || (is_positional && presence == Presence::optional))
+    option->required();
 }
 
 }  // namespace
@@ -53,10 +55,10 @@ void SubcommandOptions::existing_file(const std::string& name, std::string& out,
 }
 
 void SubcommandOptions::output_file(const std::string& name, std::string& out,
-                                    const std::string& help) {
+                                    const std::string& help, Presence presence) {
   CLI::Option* option = app_.add_option(name, out, help);
   option->check(output_refusal);
-  set_presence(option, name, Presence::optional);
+  set_presence(option, name, presence);
 }
 
 void SubcommandOptions::texts(const std::string& name, std::vector<std::string>& out,

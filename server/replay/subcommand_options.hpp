@@ -23,11 +23,11 @@ struct CommonOptions {
 };
 
 /// Every output parameter is set while the command line is parsed and must live until then. A name
-/// without dashes declares a positional argument, which is required. An option given twice takes
-/// its last value.
+/// without dashes declares a positional argument, which is required unless it may be missing. An
+/// option given twice takes its last value.
 class SubcommandOptions {
  public:
-  enum class Presence { optional, required };
+  enum class Presence { optional, required, may_be_missing };
   /// Stores the parsed text and returns "", or returns what is wrong with the text.
   using Parser = std::function<std::string(const std::string& text)>;
 
@@ -45,7 +45,8 @@ class SubcommandOptions {
   void folder(const std::string& name, std::string& out, const std::string& help);
   void existing_file(const std::string& name, std::string& out, const std::string& help);
   /// Declares a file to write. It may not be what output_refusal() refuses.
-  void output_file(const std::string& name, std::string& out, const std::string& help);
+  void output_file(const std::string& name, std::string& out, const std::string& help,
+                   Presence presence = Presence::optional);
   /// Declares one or more values behind one name.
   void texts(const std::string& name, std::vector<std::string>& out, const std::string& help);
   void number(const std::string& name, std::uint64_t& out, std::uint64_t min, std::uint64_t max,

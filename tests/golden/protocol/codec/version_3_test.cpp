@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <string_view>
+#include <vector>
 
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
@@ -7,6 +9,76 @@
 
 // The additions of version 3 of the protocol. They may change until version 3 is released.
 namespace runstone::test {
+namespace {
+
+static_assert(kMessageKindCount == 58, "a kind that is added needs golden bytes here");
+
+Builds golden_builds() {
+  ListedBuild mill;
+  mill.number = 811;
+  mill.info.name = "Mill";
+  mill.info.author = "Ann";
+  mill.info.tags = {"mill", "wood"};
+  mill.info.created_us = 1'700'000'000'000'000;
+  mill.info.sides = {70, 30, 20};
+  mill.info.origin = {-8, 64, 100};
+  mill.touched = 12'345;
+  mill.file_bytes = 4'096;
+  mill.added_by = 7;
+  mill.added_by_name = "ann";
+  ListedBuild small;
+  small.number = 5;
+  small.info.name = "a";
+  return {3, {mill, small}, true, 9, ""};
+}
+
+struct GoldenOfVersion3 {
+  Message message;
+  std::string_view hex;
+};
+
+std::vector<GoldenOfVersion3> messages_of_version_3() {
+  return {
+      {BuildsRequest{3, "mill", "ann", "wood", 812, 20},
+       "18000000000000001000200008000c0010001400180007001000000000000014"
+       "03000000280000001c0000000c0000002c0300000000000004000000776f6f64"
+       "0000000003000000616e6e00040000006d696c6c00000000"},
+      {golden_builds(),
+       "1400000000000e001c0008000c000700140010000e0000000000000103000000"
+       "180000000c000000090000000000000000000000000000000200000054000000"
+       "100000000c00200008000400100018000c0000001c0000000500000000000000"
+       "010000000000000001000000000000000b000000000000000000000161000000"
+       "10002800100004001800200008000c00100000002c000000070000001c000000"
+       "2b030000000000003930000000000000001000000000000003000000616e6e00"
+       "24000000451d130f8001c8018080f9c0c1c48203044d696c6c03416e6e02046d"
+       "696c6c04776f6f64"},
+      {Builds{4, {}, false, 9, "your role does not allow to see"},
+       "180000000000000000000e00180004000800000010000c000e00000004000000"
+       "340000000c00000009000000000000001f000000796f757220726f6c6520646f"
+       "6573206e6f7420616c6c6f7720746f207365650000000000"},
+      {BuildPieceRequest{4, 811, 65'536},
+       "1000000000000a0018000400080010000a000000040000002b03000000000000"
+       "0000010000000000"},
+      {BuildPiece{4, {1, 2, 3}, ""},
+       "1000000000000a001000040008000c000a000000040000001000000004000000"
+       "00000000000000000300000001020300"},
+      {BuildPiece{5, {}, "no such build"},
+       "1000000000000a001000040008000c000a000000050000001c00000004000000"
+       "0d0000006e6f2073756368206275696c6400000000000000"},
+      {BuildOffer{6, 70'000}, "1000000000000000080010000400080008000000060000007011010000000000"},
+      {BuildUpload{6, 32'768, {1, 2, 3}},
+       "140000000000000000000a00140004000c0008000a000000060000000c000000"
+       "00800000000000000300000001020300"},
+      {BuildAnswer{6, 70'000, 812, ""},
+       "14000000000000000c001c0004000c00140008000c0000000600000014000000"
+       "70110100000000002c030000000000000000000000000000"},
+      {BuildAnswer{6, 100, 0, "the library is full"},
+       "14000000000000000c00140004000c00000008000c000000060000000c000000"
+       "640000000000000013000000746865206c6962726172792069732066756c6c00"},
+  };
+}
+
+}  // namespace
 
 TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") {
   CHECK(kFeatureTimeCorrections == 1 << 14);
@@ -46,6 +118,17 @@ TEST_CASE("messages with the additions of version 3 decode", "[protocol][golden]
                 "140000000000000000000a0014000c00070008000a0000000000000a0c00000007000000000000000"
                 "00000000000000000"),
             16) == unknown);
+}
+
+TEST_CASE("messages of version 3 are read", "[protocol][golden]") {
+  for (const GoldenOfVersion3& golden : messages_of_version_3()) {
+    const MessageInfo& info = info_of(golden.message);
+    CAPTURE(info.name);
+    const Sender sender = may_send(info, Sender::client) ? Sender::client : Sender::server;
+    const auto decoded = decode_message(sender, golden.message.index(), from_hex(golden.hex), 16);
+    if (!decoded) FAIL(decoded.error().what);
+    CHECK(*decoded == golden.message);
+  }
 }
 
 }  // namespace runstone::test

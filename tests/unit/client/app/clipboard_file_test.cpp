@@ -1,12 +1,15 @@
 #include "client/app/clipboard_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "client/app/clipboard_transfer.hpp"
 #include "common/materials/material_table.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
@@ -64,9 +67,13 @@ TEST_CASE("the clipboard of a program is that of the next one, in another world,
   }
   CHECK(std::distance(std::filesystem::directory_iterator(place.folder / "sub"), {}) == 1);
   ToolBox box;
-  ClipboardFile file(place.file());
-  REQUIRE(file.load(box));
-  CHECK(box.clipboard_changes() == 0);  // nothing new to write
+  {
+    ClipboardFile file(place.file());
+    REQUIRE(file.load(box));
+    std::filesystem::remove(place.file());
+    CHECK(file.step(box).empty());
+  }
+  CHECK_FALSE(std::filesystem::exists(place.file()));  // there was nothing new to write
   REQUIRE(box.set_materials(table_of_names({"clay", "ice", "sand"})).empty());
   const BuildPtr build = box.clipboard().build;
   REQUIRE(build);
@@ -137,6 +144,12 @@ TEST_CASE("a damaged clipboard is refused and stays on disk, and a bad folder is
     CHECK_FALSE(box.clipboard().build);
   }
   CHECK(std::filesystem::file_size(place.file()) == 8);
+  std::filesystem::create_directories(place.folder / "pipe");
+  const std::string pipe = place.folder / "pipe" / "clipboard.rsb";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  ToolBox box;
+  CHECK(ClipboardFile(pipe).load(box).error() ==
+        pipe + ": is a device, a pipe or a socket, and no file");
   ClipboardFile nowhere((place.folder / "sub" / "clipboard.rsb" / "no" / "folder").string());
   CHECK(nowhere.step(bench.box).empty());
   std::string failed;
@@ -145,6 +158,54 @@ TEST_CASE("a damaged clipboard is refused and stays on disk, and a bad folder is
   ClipboardFile none("");
   CHECK(none.load(bench.box));
   CHECK(none.step(bench.box).empty());
+}
+
+TEST_CASE("a typed path may be below the home folder, with blanks and quotes around it",
+          "[client_app]") {
+  const std::string home = std::getenv("HOME") == nullptr ? "~" : std::getenv("HOME");
+  CHECK(typed_path("~/a b.schem") == home + "/a b.schem");
+  CHECK(typed_path(" '/tmp/a b.vox' ") == "/tmp/a b.vox");
+  CHECK(typed_path("a~/b.vox") == "a~/b.vox");
+  CHECK(typed_path("  ").empty());
+}
+
+TEST_CASE("the clipboard goes to a file and back while the player goes on", "[client_app]") {
+  const ClipboardFolder place;
+  std::filesystem::create_directories(place.folder);
+  const std::string file = place.folder / "tower.schem";
+  CopiedBench bench;
+  ClipboardTransfer transfer;
+  const auto outcome = [&](ToolBox& tools) {
+    std::optional<PlayerNotice> notice;
+    while (!notice) notice = transfer.step(tools);
+    return *notice;
+  };
+  REQUIRE_FALSE(transfer.begin({file, true}, bench.box));
+  CHECK(transfer.state() == "writing tower.schem");
+  CHECK(transfer.begin({file, false}, bench.box)->text == "wait: writing tower.schem");
+  CHECK(outcome(bench.box).text == "written: " + file);
+  CHECK_FALSE(transfer.take_loaded());
+
+  ToolBox box;
+  static_cast<void>(box.set_materials(table_of_names({"ice", "sand"})));
+  REQUIRE_FALSE(transfer.begin({file, false}, box));
+  CHECK(transfer.state() == "reading tower.schem");
+  const PlayerNotice read = outcome(box);
+  CHECK(read.text.starts_with("clipboard: tower.schem, 3 x 1 x 1"));
+  CHECK(read.kind == NoticeKind::information);
+  CHECK(transfer.take_loaded());
+  CHECK_FALSE(transfer.take_loaded());
+  CHECK(transfer.state().empty());
+  REQUIRE(box.clipboard().build);
+
+  REQUIRE_FALSE(transfer.begin({place.folder / "none.vox", false}, box));
+  const PlayerNotice missing = outcome(box);
+  CHECK(missing.kind == NoticeKind::warning);
+  CHECK(missing.text.find("none.vox") != std::string::npos);
+  CHECK_FALSE(transfer.take_loaded());
+  CHECK(transfer.begin({"tower.exe", false}, box)->kind == NoticeKind::warning);
+  CHECK(transfer.begin({file, true}, ToolBox())->text ==
+        "the clipboard is empty: copy a selection first");
 }
 
 }  // namespace runstone::test

@@ -32,6 +32,10 @@ struct ToolWindowBench {
   void frame() {
     static_cast<void>(hud.make_frame(state, kToolsSize, 0.016));
     for (UiAction& action : hud.take_actions()) {
+      if (const auto* file = std::get_if<ClipboardOfFile>(&action)) {
+        files.push_back(*file);
+        continue;
+      }
       REQUIRE(std::holds_alternative<ToolCommand>(action));
       commands.push_back(std::get<ToolCommand>(std::move(action)));
       // Edits and copies need a world, which is not here.
@@ -71,6 +75,7 @@ struct ToolWindowBench {
   Replica replica;
   HudState state;
   std::vector<ToolCommand> commands;
+  std::vector<ClipboardOfFile> files;
   double found_y = 0;
 };
 
@@ -180,4 +185,30 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
   REQUIRE(copied);
   CHECK(copied->kind == SelectionCommand::Kind::copy);
   CHECK(copied->is_solid);
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "a path is typed from which the clipboard is loaded",
+                 "[client_ui]") {
+  const auto below = [] {
+    const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
+    return static_cast<double>(window->Pos.y + window->Size.y);
+  };
+  state.has_files = true;
+  frames();
+  // The last header is that of the selection; it is closed. The field and its buttons are last in it.
+  click(x(kRow), below() - 15);
+  frames();
+  const double buttons_y = below() - 18, field_y = buttons_y - 23;
+  click(x(kRow), buttons_y);
+  CHECK(files.empty());  // no path
+  click(x(kRow), field_y);
+  type("~/castle.schem");
+  click(x(kRow), buttons_y);
+  REQUIRE(files.size() == 1);
+  CHECK(files[0].file == "~/castle.schem");
+  CHECK_FALSE(files[0].is_saved);
+  const double full = below();
+  state.file_state = "reading castle.schem";
+  frames();
+  CHECK(below() < full);  // the text takes the place of the field
 }

@@ -6,6 +6,7 @@
 #include "common/builds/build_builder.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/builds/paste_source.hpp"
+#include "common/core/build_info.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -83,9 +84,9 @@ TEST_CASE("uniform sections are one object, and a build without a touched cell i
 TEST_CASE("a build that takes more memory than allowed is refused when the bound is reached",
           "[builds]") {
   CHECK(BuildBuilder::of(cube_cuts(512, 64), 1000).error().code == ErrorCode::limit_exceeded);
-  CHECK(BuildBuilder::of({grid_cuts(kBuildEdgeMax + 1, 64), {0, 1}, {0, 1}}).error().what ==
+  CHECK(BuildBuilder::of({grid_cuts(kBuildSideMax + 1, 64), {0, 1}, {0, 1}}).error().what ==
         std::string("build is longer than 1,048,576 voxels"));
-  const std::vector<std::int32_t> longest = grid_cuts(kBuildEdgeMax, 1);
+  const std::vector<std::int32_t> longest = grid_cuts(kBuildSideMax, 1);
   CHECK(BuildBuilder::of({longest, longest, longest}).error().code == ErrorCode::limit_exceeded);
   SplitMix64 rng{4};
   auto out = BuildBuilder::of(cube_cuts(512, 64), 3'000'000);

@@ -94,3 +94,22 @@ TEST_CASE("names and states of a world are bounded", "[formats]") {
   REQUIRE_FALSE(table.has_value());
   CHECK(table.error().code == ErrorCode::limit_exceeded);
 }
+
+TEST_CASE("a map chooses the materials of blocks, and a kept material of that name has its look",
+          "[formats]") {
+  const ForeignPiece piece = piece_of(kHouse);
+  const auto map = MaterialMap::of(
+      {{"stairs[facing=west]", "stone"}, {"stairs", "planks"}, {"nothing", "stone"}});
+  REQUIRE(map.has_value());
+  BlockMaterials materials(kWithStates, false, &*map);
+  materials.note(piece);
+  const auto table = materials.make_table();
+  REQUIRE(table.has_value());
+  CHECK(names_of(*table) == std::vector<std::string>{"air", "planks", "stone"});
+  CHECK((*table)[*table->find("stone")].colour == MaterialColour{1, 2, 3, 255});
+  CHECK(materials.applied() == AppliedRows{0, 1});
+  const RunChunk voxels = materials.resolve(piece);
+  CHECK(material_at(voxels, {0, 0, 0}) == *table->find("stone"));
+  CHECK(material_at(voxels, {4, 0, 0}) == kEmpty);
+  CHECK(material_at(voxels, {6, 0, 0}) == *table->find("planks"));
+}

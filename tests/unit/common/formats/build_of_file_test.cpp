@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "common/core/build_info.hpp"
 #include "common/core/hash.hpp"
 #include "common/runs/run_builder.hpp"
 
@@ -166,8 +167,8 @@ TEST_CASE("builds that are too long, too large or outside the world are refused"
   CHECK(code(joined({{{}, uniform_chunk(Extent::cube(1), 0), {}}})) == ErrorCode::bad_value);
   CHECK(code(joined({small({kWorldLimit, 0, 0})})) == ErrorCode::bad_value);
   CHECK(code(joined({small({0, -kWorldLimit - 1, 0})})) == ErrorCode::bad_value);
-  CHECK(code(joined({small({}), small({kBuildEdgeMax, 0, 0})})) == ErrorCode::limit_exceeded);
-  CHECK(joined({small({}), small({kBuildEdgeMax - 1, 0, 0})}).has_value());
+  CHECK(code(joined({small({}), small({kBuildSideMax, 0, 0})})) == ErrorCode::limit_exceeded);
+  CHECK(joined({small({}), small({kBuildSideMax - 1, 0, 0})}).has_value());
   // The grid alone is too large.
   CHECK(code(joined({small({}), small({1 << 19, 1 << 19, 1 << 19})})) == ErrorCode::limit_exceeded);
   // The pieces take too much.

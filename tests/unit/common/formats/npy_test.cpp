@@ -135,6 +135,8 @@ TEST_CASE("arrays that are no voxels are refused", "[formats]") {
   CHECK(code("{'descr': '|u1', 'shape': (1, 1, 1)}", {1}) == ErrorCode::bad_value);
   CHECK(code("{'descr': [('a', '|u1')], 'fortran_order': False, 'shape': (1,)}", {1}) ==
         ErrorCode::bad_value);
+  CHECK(npy_error(kNpy, {0x93, 'N', 'U', 'M', 'P', 'Y', 1, 0, 255, 255, '{'}).code ==
+        ErrorCode::truncated);
   CHECK(npy_error(kNpy, npy_of(4, "{}", {})).code == ErrorCode::bad_version);
   CHECK(npy_error(kNpy, {0x93, 'N', 'U', 'M', 'P', 'Z', 1, 0}).code == ErrorCode::bad_value);
   CHECK(npy_error(kNpy, {0x93, 'N', 'U', 'M', 'P', 'Y', 2, 0, 255, 255, 255, 255}).code ==
@@ -172,6 +174,15 @@ TEST_CASE("an .npz has names, states, colours and an origin", "[formats]") {
   CHECK(code(zip_of({})) == ErrorCode::bad_value);
   CHECK(code(zip_of({{"voxels.npy", voxels}}, 1)) == ErrorCode::bad_value);
   CHECK(code(zip_of({{"voxels.npy", voxels}}, 0, 12)) == ErrorCode::bad_value);
+  // Arrays that say more items than the file holds.
+  CHECK(code(zip_of({{"voxels.npy", voxels},
+                     {"names.npy", npy_of(1, npy_head("|S4096", "(65536,)"), {'a'})}})) ==
+        ErrorCode::truncated);
+  CHECK(code(zip_of({{"voxels.npy", voxels},
+                     {"colours.npy", npy_of(1, npy_head("|u1", "(65536, 4)"), {1})}})) ==
+        ErrorCode::truncated);
+  CHECK(code(zip_of({{"voxels.npy", npy_of(1, npy_head("|u1", "(16384, 16384, 1)"), {1})}})) ==
+        ErrorCode::truncated);
   const Bytes two = npy_of(1, npy_head("|S1", "(2,)"), {'a', 'b'});
   CHECK(code(zip_of({{"voxels.npy", voxels}, {"names.npy", two}})) == ErrorCode::bad_value);
   CHECK(code(zip_of({{"voxels.npy", voxels}, {"names.npy", names}, {"states.npy", two}})) ==

@@ -64,7 +64,7 @@ TEST_CASE("an .rsb gives back info, materials and cells", "[rsb]") {
 TEST_CASE("a build of the greatest sides has its sections at both ends", "[rsb]") {
   SampleBuild build = small_build();
   build.info.sides = {kBuildSideMax, kBuildSideMax, kBuildSideMax};
-  build.info.origin = {-kWorldLimit, 0, kWorldLimit - static_cast<std::int32_t>(kBuildSideMax)};
+  build.info.origin = {-kWorldLimit, 0, kWorldLimit - kBuildSideMax};
   constexpr std::uint32_t kLast = kBuildSideMax / kBuildSectionEdge - 1;
   build.sections = {{{0, 0, 0}, uniform_chunk(Extent::cube(64), 1)},
                     {{kLast, 0, 0}, uniform_chunk(Extent::cube(64), 2)},

@@ -214,14 +214,14 @@ TEST_CASE("scenes with cycles and with too many nodes are refused", "[formats]")
   std::vector<Bytes> doubled = {model};
   for (std::int32_t i = 0; i < 40; ++i) doubled.push_back(vox_group(i, {i + 1, i + 1}));
   doubled.push_back(vox_shape(40, 0));
-  CHECK(what(doubled) == "vox: the scene visits more than 131072 nodes");
-  // A chain of 100,000 nodes is deep, and no more.
+  CHECK(what(doubled) == "vox: the scene visits more than 65536 nodes");
+  // A chain of 65,536 nodes is deep, and no more.
   std::vector<Bytes> deep = {model};
-  for (std::int32_t i = 0; i < 100'000; ++i) deep.push_back(vox_transform(i, i + 1, {}));
-  deep.push_back(vox_shape(100'000, 0));
+  for (std::int32_t i = 0; i < 65'535; ++i) deep.push_back(vox_transform(i, i + 1, {}));
+  deep.push_back(vox_shape(65'535, 0));
   CHECK(vox_names(vox_file(deep)).size() == 1);
-  for (std::int32_t i = 100'001; i <= 131'072; ++i) deep.push_back(vox_group(i, {}));
-  CHECK(what(deep) == "vox: the scene has more than 131072 nodes");
+  deep.push_back(vox_group(65'536, {}));
+  CHECK(what(deep) == "vox: the scene has more than 65536 nodes");
 }
 
 TEST_CASE("every .vox that is cut is refused", "[formats]") {

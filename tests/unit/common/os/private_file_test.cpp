@@ -23,6 +23,8 @@ TEST_CASE("a file is read as a whole, up to its limit", "[os]") {
   const std::string file = folder / "settings.toml";
   std::ofstream(file) << std::string(100, 'a');
   CHECK(*read_file(file, 100) == std::string(100, 'a'));
+  CHECK(*read_file_bytes(file, 100) == Bytes(100, 'a'));
+  CHECK(read_file_bytes(file, 99).error() == file + ": is larger than 99 bytes");
   CHECK(error_of(file, 99) == file + ": is larger than 99 bytes");
   std::ofstream(file, std::ios::trunc).flush();
   CHECK(*read_file(file, 100) == std::string());

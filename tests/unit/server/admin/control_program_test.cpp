@@ -1,6 +1,9 @@
 #include "server/admin/control_program.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "protocol/codec/password_key.hpp"
 #include "server/admin/password_commands.hpp"
@@ -20,6 +23,23 @@ TEST_CASE("the words of a shell become one command line", "[admin][control]") {
   // A whole line in single quotes: 'log author "the mole"'
   CHECK(control_line({"log author \"the mole\""}) == "log author \"the mole\"");
   CHECK(control_line({"log", "author", ""}) == "log author \"\"");
+}
+
+TEST_CASE("names of files in the words of a shell become whole paths", "[admin][control]") {
+  using Words = std::vector<std::string>;
+  const std::string here = std::filesystem::current_path().string() + '/';
+  CHECK(with_whole_paths({"materials", "add", "wool.toml"}) ==
+        Words{"materials", "add", here + "wool.toml"});
+  CHECK(with_whole_paths({"builds", "export", "7", "mill.rsb"}) ==
+        Words{"builds", "export", "7", here + "mill.rsb"});
+  CHECK(with_whole_paths({"import", "a.schem", "at", "1", "2", "3", "map", "m.toml", "without",
+                          "air"}) == Words{"import", here + "a.schem", "at", "1", "2", "3", "map",
+                                           here + "m.toml", "without", "air"});
+  CHECK(with_whole_paths({"import", "\"a b.schem\"", "at", "1", "2", "3", "map", "/m.toml",
+                          "colours", "c.png"}) == Words{"import", "\"a b.schem\"", "at", "1", "2",
+                                                        "3", "map", "/m.toml", "colours",
+                                                        here + "c.png"});
+  CHECK(with_whole_paths({"say", "map", "file"}) == Words{"say", "map", "file"});
 }
 
 TEST_CASE("a name with blanks is one author however the shell is quoted", "[admin][control]") {

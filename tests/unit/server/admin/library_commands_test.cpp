@@ -213,4 +213,26 @@ TEST_CASE("the log names what happened to the library", "[admin][library]") {
   CHECK(library_change_text(RemoveBuild{7}) == "removed build 7");
 }
 
+TEST_CASE("a file is placed with the materials that a map chooses", "[admin][library]") {
+  LibraryBench bench;
+  const std::string file = bench.make_file("mill.rsb", bench.info("Mill"));
+  const std::string map = bench.folder / "map.toml";
+  std::ofstream(map) << "[materials]\n\"*\" = \"no such material\"\n\"a:b\" = \"stone\"\n";
+  CommandAnswer answer = bench.give("import " + file + " at 0 0 0 map " + map);
+  CHECK_FALSE(answer.is_ok);
+  CHECK(answer.text.find("lacks 1 material of it: no such material;") != std::string::npos);
+  REQUIRE(bench.answers.size() == 2);
+  CHECK(bench.answers[0].text == map + ": these rows fit no material: \"a:b\"");
+
+  std::ofstream(bench.folder / "c.png") << "x";
+  answer = bench.give("import " + file + " at 0 0 0 colours " + (bench.folder / "c.png"));
+  CHECK(answer.text.find("mill.rsb: is no height map (.png)") != std::string::npos);
+
+  std::ofstream(map) << "[materials]\n\"*\" = 4\n";
+  answer = bench.give("import " + file + " at 0 0 0 map " + map);
+  CHECK_FALSE(answer.is_ok);
+  CHECK(answer.text == "import: " + map + ":2: \"*\": must be the name of a material, in quotes");
+  CHECK_FALSE(bench.give("builds place 1 at 0 0 0 map " + map).is_ok);
+}
+
 }  // namespace runstone::test

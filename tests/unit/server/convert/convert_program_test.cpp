@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/formats/file_build.hpp"
+#include "common/formats/height_map.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
@@ -98,6 +99,69 @@ TEST_CASE("runstone-convert says what a file is, and lists its materials", "[con
   REQUIRE(said.code == 0);
   for (const BuildMaterial& material : build.materials)
     CHECK(said.out.find('\n' + material.row.name) != std::string::npos);
+}
+
+TEST_CASE("runstone-convert maps materials, and names the rows that fit none", "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb", map = folder / "map.toml";
+  make_rsb(file);
+  std::ofstream(map) << "[materials]\n\"m100*\" = \"planks\"\n\"m1003\" = \"air\"\n"
+                        "\"other:*\" = \"sand\"\n";
+  const Outcome done = convert({file, folder / "out.rsb", "--map", map});
+  INFO(done.err);
+  REQUIRE(done.code == 0);
+  CHECK(done.out.find(map + ": these rows fit no material: \"other:*\"\n") != std::string::npos);
+  const FileBuild read = read_back(folder / "out.rsb");
+  REQUIRE(read.materials.size() == 2);
+  CHECK(read.materials[0].row.name == "air");
+  CHECK(read.materials[1].row.name == "planks");
+
+  std::ofstream(map) << "[materials]\na = 4\n";
+  const Outcome refused = convert({file, folder / "new.rsb", "--map", map});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("map.toml:2: \"a\": must be") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "new.rsb"));
+}
+
+TEST_CASE("runstone-convert takes the colours of a height map from a second file", "[convert]") {
+  const TempFolder folder;
+  const std::string land = folder / "land.png", colours = folder / "colours.png";
+  const FileBuild build = file_build(
+      {3, 2, 2},
+      {file_material("a", "", {255, 0, 0, 255}), file_material("b", "", {0, 255, 0, 255})},
+      [](VoxelPos at) { return static_cast<std::uint16_t>(at.x == 0 ? 1 : 2); });
+  write_bytes(land, *written(write_height_map, build));
+  write_bytes(colours, *written(write_colour_map, build));
+  const Outcome done = convert({land, folder / "out.rsb", "--colours", colours});
+  INFO(done.err);
+  REQUIRE(done.code == 0);
+  const FileBuild read = read_back(folder / "out.rsb");
+  const auto name = [&](VoxelPos at) {
+    return read.materials[*read.build->number_of(*read.build->at(at)) - 1U].row.name;
+  };
+  CHECK(name({0, 0, 0}) == "colour #ff0000");
+  CHECK(name({2, 1, 1}) == "colour #00ff00");
+
+  const auto refusal = [&](const std::string& file, const std::string& picture) {
+    const Outcome refused = convert({file, folder / "new.rsb", "--colours", picture});
+    CHECK(refused.code == 1);
+    CHECK_FALSE(std::filesystem::exists(folder / "new.rsb"));
+    return refused.err;
+  };
+  make_rsb(folder / "house.rsb");
+  CHECK(refusal(folder / "house.rsb", colours).find("house.rsb: is no height map (.png)") !=
+        std::string::npos);
+  CHECK(refusal(land, folder / "none.png").find("none.png") != std::string::npos);
+  write_bytes(folder / "empty.png", {});
+  CHECK(refusal(land, folder / "empty.png").find("empty.png: has no bytes") != std::string::npos);
+  write_bytes(folder / "bad.png", {1, 2, 3});
+  CHECK(refusal(land, folder / "bad.png")
+            .find("land.png with the colours of " + (folder / "bad.png")) != std::string::npos);
+  const FileBuild narrow = file_build({1, 2, 2}, {file_material("a", "", {255, 0, 0, 255})},
+                                      [](VoxelPos) { return std::uint16_t{1}; });
+  write_bytes(folder / "narrow.png", *written(write_colour_map, narrow));
+  CHECK(refusal(land, folder / "narrow.png").find("the colour map has another size") !=
+        std::string::npos);
 }
 
 TEST_CASE("runstone-convert refuses with the file and the reason, and keeps an old file",

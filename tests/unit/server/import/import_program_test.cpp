@@ -104,3 +104,24 @@ TEST_CASE("the report of an import names versions, repeated rows and the second 
   CHECK(out.str().find("1 rows have the position of an earlier row") != std::string::npos);
   CHECK(out.str().find("readonly_backend") != std::string::npos);
 }
+
+TEST_CASE("a Luanti world is imported with the materials that a map chooses", "[server][import]") {
+  const TempFolder folder;
+  ImportRequest request;
+  request.source = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
+  request.world = folder / "world";
+  request.palette = false;
+  request.map = folder / "map.toml";
+  std::ofstream(request.map) << "[materials]\n\"default:*\" = \"stone\"\n\"none:*\" = \"sand\"\n"
+                                "\"default:water_source\" = \"air\"\n";
+  std::ostringstream out;
+  const auto imported = import_world(request, out);
+  INFO((imported ? out.str() : imported.error()));
+  REQUIRE(imported.has_value());
+  CHECK(out.str().find("these rows fit no material: \"none:*\"") != std::string::npos);
+  const auto store = open_world(request.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  const MaterialTable& materials = (*store)->meta().materials;
+  CHECK(materials.find("stone").has_value());
+  for (const MaterialInfo& info : materials.rows()) CHECK_FALSE(info.name.starts_with("default:"));
+}

@@ -33,7 +33,7 @@ bool says(const std::string& text, const std::string& words) {
 TEST_CASE_METHOD(Folder, "world.mt decides where the map is, whatever map.sqlite lies there",
                  "[server][import]") {
   const std::string backend =
-      GENERATE(as<std::string>{}, "postgresql", "leveldb", "redis", "dummy", "cassandra");
+      GENERATE(as<std::string>{}, "postgresql", "redis", "dummy", "cassandra");
   const bool has_map = GENERATE(false, true);
   CAPTURE(backend, has_map);
   write("world/world.mt", "gameid = minetest\nbackend = " + backend +
@@ -60,6 +60,18 @@ TEST_CASE_METHOD(Folder, "a world with the backend sqlite3, or without one, has 
   REQUIRE(found.has_value());
   CHECK(found->map == *this / "world/map.sqlite");
   CHECK_FALSE(found->has_seed_map);
+}
+
+TEST_CASE_METHOD(Folder, "a world with the backend leveldb has map.db", "[server][import]") {
+  write("world/map.sqlite", "rows of long ago");
+  write("world/world.mt", "backend = leveldb\nreadonly_backend = sqlite3\n");
+  CHECK(says(refusal(), "world/map.db: does not exist"));
+  write("world/map.db/CURRENT", "x");
+  const auto found = find_luanti_map(*this / "world");
+  REQUIRE(found.has_value());
+  CHECK(found->map == *this / "world/map.db");
+  CHECK(found->backend == LuantiBackend::leveldb);
+  CHECK(found->has_seed_map);
 }
 
 TEST_CASE_METHOD(Folder, "a second map and blocks of another size are known from world.mt",

@@ -1,0 +1,55 @@
+#include "common/build_files/build_files.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "common/core/build_info.hpp"
+#include "common/core/text.hpp"
+#include "common/os/output_file.hpp"
+#include "common/os/private_file.hpp"
+
+namespace runstone {
+namespace {
+
+std::string stem_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+}  // namespace
+
+Result<FileBuild, std::string> read_build_of_file(const std::string& file, ForeignReading reading,
+                                                  std::size_t file_bytes_max) {
+  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  const auto bytes = read_file_bytes(file, file_bytes_max, FileKinds::regular);
+  if (!bytes) return failure(bytes.error());
+  if (reading.name.empty()) reading.name = stem_of(file);
+  Bytes colours;
+  if (!reading.colours_file.empty()) {
+    auto picture = read_file_bytes(reading.colours_file, file_bytes_max, FileKinds::regular);
+    if (!picture) return failure(picture.error());
+    if (picture->empty()) return failure(reading.colours_file + ": has no bytes");
+    colours = *std::move(picture);
+    reading.colours = colours;
+  }
+  return read_file_build(file, *bytes, reading);
+}
+
+Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
+                                                       const FileBuild& build) {
+  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  auto out = open_output_file(file);
+  if (!out) return failure(out.error());
+  std::uint64_t bytes = 0;
+  const auto written = write_file_build(file, build, [&](ByteView part) {
+    bytes += part.size();
+    return out->write(part);
+  });
+  if (!written) return failure(out->error().empty() ? written.error() : file + ": " + out->error());
+  if (const auto done = out->finish(); !done) return failure(file + ": " + done.error());
+  return bytes;
+}
+
+std::string build_name_of_file(const std::string& file) {
+  const std::string stem = stem_of(file);
+  return is_plain_name(stem) ? std::string(cut_utf8(stem, kBuildNameBytesMax)) : "build";
+}
+
+}  // namespace runstone

@@ -1,0 +1,35 @@
+// Builds in files of the disk, in any format (docs/formats.md): the one way in which programs read
+// and write them. Thread: any. Calls block on the disk.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "common/core/result.hpp"
+#include "common/formats/file_build.hpp"
+
+namespace runstone {
+
+/// The maximum size of a file with a build that a player or a command names.
+inline constexpr std::size_t kBuildFileBytesMax = std::size_t{256} << 20;
+
+/// Reads a file with a build, whose ending names the format. If `reading` has no name, a build
+/// without a name gets that of the file without its ending. If it names a file of colours, this is
+/// read, too. The error is one line that begins with the name of the file. Fails if a file has more
+/// than `file_bytes_max` bytes, and if it is a pipe or a device, because reading it may never end.
+/// Memory: the files and the build.
+Result<FileBuild, std::string> read_build_of_file(const std::string& file,
+                                                  ForeignReading reading = {},
+                                                  std::size_t file_bytes_max = kBuildFileBytesMax);
+
+/// Writes a build in the format of the file's ending, as open_output_file() does: an old file is
+/// replaced when the new one is whole. Returns the number of bytes. The error is one line that
+/// begins with the name of the file.
+Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
+                                                       const FileBuild& build);
+
+/// Returns the name of a build that is written to a file and has no other name: that of the file
+/// without its ending, or "build" if no build may have that name.
+std::string build_name_of_file(const std::string& file);
+
+}  // namespace runstone

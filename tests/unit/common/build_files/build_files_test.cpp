@@ -1,0 +1,92 @@
+#include "common/build_files/build_files.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/core/temp_folder.hpp"
+#include "tests/support/formats/file_builds.hpp"
+
+namespace runstone::test {
+namespace {
+
+FileBuild sample_tower() {
+  return file_build({3, 9, 2}, {file_material("stone", "", {90, 90, 90, 255})},
+                    [](VoxelPos) { return std::uint16_t{1}; });
+}
+
+std::string error_of_read(const std::string& file, std::size_t bytes_max = kBuildFileBytesMax) {
+  const auto read = read_build_of_file(file, {}, bytes_max);
+  return read ? "no error" : read.error();
+}
+
+}  // namespace
+
+TEST_CASE("a build that is written to a file is read from it, in every format", "[build_files]") {
+  const TempFolder folder;
+  const FileBuild build = sample_tower();
+  for (const char* name : {"tower.rsb", "tower.schem", "tower.litematic", "tower.vox", "tower.npy",
+                           "tower.npz", "tower.mts"}) {
+    CAPTURE(name);
+    const std::string file = folder / name;
+    const auto bytes = write_build_to_file(file, build);
+    REQUIRE(bytes);
+    CHECK(*bytes == std::filesystem::file_size(file));
+    const auto read = read_build_of_file(file);
+    REQUIRE(read);
+    CHECK(read->build->sides() == VoxelPos{3, 9, 2});
+    CHECK(solid_cells(*read) == 54);
+  }
+  CHECK(read_build_of_file(folder / "tower.npy")->info.name == "tower");
+  ForeignReading reading;
+  reading.name = "mill";
+  CHECK(read_build_of_file(folder / "tower.npy", reading)->info.name == "mill");
+}
+
+TEST_CASE("files with builds that cannot be read are refused in one line", "[build_files]") {
+  const TempFolder folder;
+  const std::string file = folder / "tower.npy";
+  const auto bytes = write_build_to_file(file, sample_tower());
+  REQUIRE(bytes);
+  const auto size = static_cast<std::size_t>(*bytes);
+  CHECK(error_of_read(file, size) == "no error");
+  CHECK(error_of_read(file, size - 1) ==
+        file + ": is larger than " + std::to_string(size - 1) + " bytes");
+  CHECK(error_of_read(folder / "none.npy") ==
+        (folder / "none.npy") + ": cannot be read: No such file or directory");
+  CHECK(error_of_read(folder / "tower.exe").find("the endings are .rsb") != std::string::npos);
+  std::ofstream(folder / "bad.rsb") << "no build";
+  CHECK(error_of_read(folder / "bad.rsb").find((folder / "bad.rsb") + ": ") == 0);
+  // Nobody writes to it: a reader that waits for its other end does not return.
+  const std::string pipe = folder / "pipe.rsb";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK(error_of_read(pipe) == pipe + ": is a device, a pipe or a socket, and no file");
+}
+
+TEST_CASE("a build that cannot be written leaves the old file", "[build_files]") {
+  const TempFolder folder;
+  const std::string file = folder / "old.mts";
+  std::ofstream(file) << "old";
+  const FileBuild too_long = file_build({65'536, 1, 1}, {file_material("a", "", {1, 2, 3, 255})},
+                                        [](VoxelPos) { return std::uint16_t{1}; });
+  const auto refused = write_build_to_file(file, too_long);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error() == file + ": mts: a side of the build is longer than 65,535");
+  CHECK(std::filesystem::file_size(file) == 3);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+  CHECK(write_build_to_file(folder / "a.exe", too_long).error().find("written") !=
+        std::string::npos);
+  std::ofstream(folder / "world.mts") << std::string("SQLite format 3\0", 16);
+  CHECK(write_build_to_file(folder / "world.mts", sample_tower()).error().find("database") !=
+        std::string::npos);
+}
+
+TEST_CASE("a build has the name of its file if that is a name of a build", "[build_files]") {
+  CHECK(build_name_of_file("/tmp/old mill.schem") == "old mill");
+  CHECK(build_name_of_file("\"mill\".schem") == "build");
+  CHECK(build_name_of_file(std::string(300, 'a') + ".vox") == std::string(kBuildNameBytesMax, 'a'));
+}
+
+}  // namespace runstone::test
