@@ -33,16 +33,28 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file, Forei
 }
 
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
-                                                       const FileBuild& build) {
+                                                       const FileBuild& build,
+                                                       const ModelWriting& writing) {
   if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
   auto out = open_output_file(file);
   if (!out) return failure(out.error());
   std::uint64_t bytes = 0;
-  const auto written = write_file_build(file, build, [&](ByteView part) {
-    bytes += part.size();
-    return out->write(part);
-  });
+  const auto to = [&bytes](FileWriter& writer) {
+    return [&bytes, &writer](ByteView part) {
+      bytes += part.size();
+      return writer.write(part);
+    };
+  };
+  const auto written = write_file_build(file, build, to(*out), writing);
   if (!written) return failure(out->error().empty() ? written.error() : file + ": " + out->error());
+  // The first file names the second one, so it is finished last.
+  if (const std::string companion = companion_file(file); !companion.empty()) {
+    auto second = open_output_file(companion);
+    if (!second) return failure(second.error());
+    const auto done = write_companion(file, build, to(*second));
+    if (!done) return failure(companion + ": " + second->error());
+    if (const auto end = second->finish(); !end) return failure(companion + ": " + end.error());
+  }
   if (const auto done = out->finish(); !done) return failure(file + ": " + done.error());
   return bytes;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/assert.hpp"
 #include "common/formats/grid_cells.hpp"
 #include "common/formats/rsb_block.hpp"
 
@@ -24,6 +25,10 @@ std::string error_text(const std::string& file, const Error& error) {
   std::string text = file + ": " + error.what;
   if (error.offset != 0) text += " (at byte " + std::to_string(error.offset) + ")";
   return text;
+}
+
+std::string without_folders(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
 }
 
 }  // namespace
@@ -49,7 +54,7 @@ Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView
 }
 
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
-                                           const FormatSink& sink) {
+                                           const FormatSink& sink, ModelWriting writing) {
   if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
   bool is_written = true;
   const FormatSink noting = [&](ByteView bytes) { return is_written = sink(bytes); };
@@ -59,9 +64,29 @@ Result<void, std::string> write_file_build(const std::string& file, const FileBu
     if (!done) return failure(file + ": " + done.error().message());
     return {};
   }
-  const auto done = file_format(file)->write(build, noting);
+  const Format& format = *file_format(file);
+  writing.material_file = without_folders(companion_file(file));
+  const auto done = format.model != nullptr ? format.model->write(build, writing, noting)
+                                            : format.write(build, noting);
   if (!is_written) return failure(file + ": cannot be written");
   if (!done) return failure(file + ": " + done.error().what);
+  return {};
+}
+
+std::string companion_file(const std::string& file) {
+  const Format* format = file_format(file);
+  if (format == nullptr || format->model == nullptr || format->model->companion_ending.empty())
+    return "";
+  return file.substr(0, file.size() - format->file_ending.size()) +
+         std::string(format->model->companion_ending);
+}
+
+Result<void, std::string> write_companion(const std::string& file, const FileBuild& build,
+                                          const FormatSink& sink) {
+  const std::string companion = companion_file(file);
+  RUNSTONE_ASSERT(!companion.empty());
+  const auto done = file_format(file)->model->write_companion(build, sink);
+  if (!done) return failure(companion + ": cannot be written");
   return {};
 }
 

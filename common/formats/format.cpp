@@ -8,6 +8,7 @@
 #include "common/formats/luanti_block.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_region.hpp"
+#include "common/formats/model_formats.hpp"
 #include "common/formats/mts.hpp"
 #include "common/formats/npy.hpp"
 #include "common/formats/qb.hpp"
@@ -31,6 +32,10 @@ constexpr Format kFormats[] = {
     {"height map", ".png", read_height_map, material_of_look, write_height_map},
     {"numpy", ".npy", read_npy, material_of_look, write_npy},
     {"numpy archive", ".npz", read_npz, material_of_look, write_npz},
+    {"glTF", ".glb", nullptr, nullptr, write_glb, true, &kGlbFormat},
+    {"glTF as text", ".gltf", nullptr, nullptr, write_gltf, true, &kGltfFormat},
+    {"wavefront", ".obj", nullptr, nullptr, write_obj, true, &kObjFormat},
+    {"polygon file", ".ply", nullptr, nullptr, write_ply, true, &kPlyFormat},
 };
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }

@@ -30,6 +30,7 @@
 namespace runstone {
 
 struct FileBuild;
+struct ModelWriting;
 
 /// The look of a block, in formats that give it. A block with alpha below 255 is transparent.
 struct ForeignLook {
@@ -69,6 +70,18 @@ using PieceSink = std::function<Result<void>(ForeignPiece&&)>;
 /// Takes the next bytes of a file. Returns false if they cannot be written, which ends the writing.
 using FormatSink = std::function<bool(ByteView)>;
 
+/// What a format of triangles has besides Format::write, which takes the default choices.
+struct ModelFormat {
+  /// Writes a build with choices. Fails as Format::write does, and before anything is written with
+  /// bad_value if the build shows no face.
+  Result<void> (*write)(const FileBuild& build, const ModelWriting& writing,
+                        const FormatSink& sink);
+  /// A second file holds the materials: its name has this ending instead of that of the format, and
+  /// ModelWriting::material_file names it in the first file. Empty: there is none.
+  std::string_view companion_ending = {};
+  Result<void> (*write_companion)(const FileBuild& build, const FormatSink& sink) = nullptr;
+};
+
 struct Format {
   std::string_view name;         // of the program or of the format
   std::string_view file_ending;  // the path of a file of this format ends so
@@ -88,6 +101,8 @@ struct Format {
   Result<void> (*write)(const FileBuild& build, const FormatSink& sink) = nullptr;
   /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
   bool is_file = true;
+  /// Not null: a format of triangles, which is only written.
+  const ModelFormat* model = nullptr;
 };
 
 std::span<const Format> formats();

@@ -25,6 +25,7 @@ struct ConvertOptions {
   std::uint64_t memory_mib = 2048;
   bool keep_all = true;
   bool lists = false;
+  ModelWriting model;
 };
 
 Result<FileBuild, std::string> read(const ConvertOptions& options) {
@@ -61,7 +62,7 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   if (!build) return failure(build.error());
   if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
   if (!options.out.empty()) {
-    const auto written = write_build_to_file(options.out, *build);
+    const auto written = write_build_to_file(options.out, *build, options.model);
     if (!written) return failure(written.error());
   }
   const BuildSides& sides = build->info.sides;
@@ -109,6 +110,16 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_flag_callback(
       "--only-cubes", [&options] { options.keep_all = false; },
       "leave out blocks that are no whole cubes, such as plants and torches");
+  app.add_flag("--close-t-junctions", options.model.closes_t_junctions,
+               "models: let each edge of a triangle end where an edge of its neighbour ends");
+  app.add_flag_callback(
+      "--split", [&options] { options.model.is_welded = false; },
+      "models: give each rectangle vertices of its own");
+  app.add_flag("--quantise", options.model.is_quantised,
+               "models: write a .glb with small vertices, for readers of KHR_mesh_quantization");
+  app.add_option("--metres-per-voxel", options.model.metres_per_voxel,
+                 "models: side of a voxel; default 1")
+      ->check(CLI::Range(1e-6, 1e6));
   app.footer("docs/formats.md lists the formats, and what each of them keeps.");
   try {
     app.parse(argc, argv);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/formats/file_builds.hpp"
@@ -43,6 +44,28 @@ TEST_CASE("a build that is written to a file is read from it, in every format", 
   ForeignReading reading;
   reading.name = "mill";
   CHECK(read_build_of_file(folder / "tower.npy", reading)->info.name == "mill");
+}
+
+TEST_CASE("an .obj is written with its materials beside it, and both or none", "[build_files]") {
+  const TempFolder folder;
+  const std::string file = folder / "tower of stone.OBJ", second = folder / "tower of stone.mtl";
+  const auto bytes = write_build_to_file(file, sample_tower());
+  REQUIRE(bytes);
+  CHECK(*bytes == std::filesystem::file_size(file) + std::filesystem::file_size(second));
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  CHECK(text.find("\nmtllib tower of stone.mtl\n") != std::string::npos);
+  CHECK(text.find("\nusemtl stone\n") != std::string::npos);
+
+  const FileBuild air = file_build({1, 1, 1}, {file_material("air", "", {0, 0, 0, 0})},
+                                   [](VoxelPos) { return std::uint16_t{1}; });
+  const auto refused = write_build_to_file(folder / "air.obj", air);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error() == (folder / "air.obj") + ": model: build shows no face");
+  CHECK_FALSE(std::filesystem::exists(folder / "air.mtl"));
+  std::filesystem::create_directory(folder / "lake.mtl");
+  CHECK_FALSE(write_build_to_file(folder / "lake.obj", sample_tower()));
+  CHECK_FALSE(std::filesystem::exists(folder / "lake.obj"));
 }
 
 TEST_CASE("files with builds that cannot be read are refused in one line", "[build_files]") {

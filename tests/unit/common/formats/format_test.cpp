@@ -14,7 +14,7 @@ TEST_CASE("a format is found by the end of a path", "[formats]") {
   CHECK(format_of_file("") == nullptr);
 }
 
-TEST_CASE("every format rejects no bytes and passes the error of a sink on", "[formats]") {
+TEST_CASE("every format that is read rejects no bytes and passes the error of a sink on", "[formats]") {
   int pieces = 0;
   const auto stop = [&](ForeignPiece&&) -> Result<void> {
     ++pieces;
@@ -22,6 +22,7 @@ TEST_CASE("every format rejects no bytes and passes the error of a sink on", "[f
   };
   for (const Format& format : formats()) {
     CAPTURE(format.name);
+    if (format.read == nullptr) continue;  // only written
     CHECK_FALSE(format.read({}, stop).has_value());
     CHECK(pieces == 0);
   }

@@ -101,6 +101,31 @@ TEST_CASE("runstone-convert says what a file is, and lists its materials", "[con
     CHECK(said.out.find('\n' + material.row.name) != std::string::npos);
 }
 
+TEST_CASE("runstone-convert writes models with the choices of its options", "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb";
+  make_rsb(file);
+  const auto size_with = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {file, folder / "house.glb"});
+    const Outcome done = convert(options);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    return std::filesystem::file_size(folder / "house.glb");
+  };
+  const auto size = size_with({});
+  CHECK(size_with({"--split"}) > size);
+  CHECK(size_with({"--close-t-junctions"}) > size);
+  CHECK(size_with({"--quantise"}) < size);
+  size_with({"--metres-per-voxel", "0.25"});
+  const Bytes bytes = bytes_of(folder / "house.glb");
+  CHECK(std::string(bytes.begin(), bytes.end()).find(R"("scale":[0.25,0.25,0.25])") !=
+        std::string::npos);
+  CHECK(convert({file, folder / "house.glb", "--metres-per-voxel", "0"}).code != 0);
+  const Outcome read = convert({folder / "house.glb"});
+  CHECK(read.code == 1);
+  CHECK(read.err.find("no format of this ending is read") != std::string::npos);
+}
+
 TEST_CASE("runstone-convert maps materials, and names the rows that fit none", "[convert]") {
   const TempFolder folder;
   const std::string file = folder / "house.rsb", map = folder / "map.toml";

@@ -1,0 +1,60 @@
+#include "common/formats/model_formats.hpp"
+
+#include "common/formats/material_match.hpp"
+#include "common/materials/default_look.hpp"
+#include "common/model_writers/model_writers.hpp"
+
+namespace runstone {
+namespace {
+
+ModelSource model_source(const FileBuild& build) {
+  ModelSource source{*build.build, build.info, {}};
+  for (const BuildMaterial& material : build.materials) {
+    const MaterialRow& row = material.row;
+    source.materials.push_back({world_name_of(material), row.colour, row.visibility,
+                                row.look ? *row.look : default_look(row.name, row.body)});
+  }
+  return source;
+}
+
+Result<void> write_glb_with(const FileBuild& build, const ModelWriting& writing,
+                            const FormatSink& sink) {
+  return write_glb_model(model_source(build), writing, sink);
+}
+Result<void> write_gltf_with(const FileBuild& build, const ModelWriting& writing,
+                             const FormatSink& sink) {
+  return write_gltf_model(model_source(build), writing, sink);
+}
+Result<void> write_obj_with(const FileBuild& build, const ModelWriting& writing,
+                            const FormatSink& sink) {
+  return write_obj_model(model_source(build), writing, sink);
+}
+Result<void> write_ply_with(const FileBuild& build, const ModelWriting& writing,
+                            const FormatSink& sink) {
+  return write_ply_model(model_source(build), writing, sink);
+}
+Result<void> write_mtl(const FileBuild& build, const FormatSink& sink) {
+  return write_mtl_model(model_source(build), sink);
+}
+
+}  // namespace
+
+constexpr ModelFormat kGlbFormat{write_glb_with};
+constexpr ModelFormat kGltfFormat{write_gltf_with};
+constexpr ModelFormat kObjFormat{write_obj_with, ".mtl", write_mtl};
+constexpr ModelFormat kPlyFormat{write_ply_with};
+
+Result<void> write_glb(const FileBuild& build, const FormatSink& sink) {
+  return write_glb_with(build, {}, sink);
+}
+Result<void> write_gltf(const FileBuild& build, const FormatSink& sink) {
+  return write_gltf_with(build, {}, sink);
+}
+Result<void> write_obj(const FileBuild& build, const FormatSink& sink) {
+  return write_obj_with(build, {}, sink);
+}
+Result<void> write_ply(const FileBuild& build, const FormatSink& sink) {
+  return write_ply_with(build, {}, sink);
+}
+
+}  // namespace runstone

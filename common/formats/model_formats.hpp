@@ -1,0 +1,20 @@
+// Models of triangles: .glb, .gltf, .obj with .mtl, and .ply: out. The rows of the table of formats that
+// hand a build to common/model_writers.
+#pragma once
+#include "common/core/result.hpp"
+#include "common/formats/format.hpp"
+#include "common/formats/rsb_build.hpp"
+
+namespace runstone {
+
+/// Write a build with the default choices of ModelWriting. Fail as the writers of
+/// model_writers.hpp do. The name of a material is world_name_of(). An .obj names no
+/// file of materials.
+Result<void> write_glb(const FileBuild& build, const FormatSink& sink);
+Result<void> write_gltf(const FileBuild& build, const FormatSink& sink);
+Result<void> write_obj(const FileBuild& build, const FormatSink& sink);
+Result<void> write_ply(const FileBuild& build, const FormatSink& sink);
+
+extern const ModelFormat kGlbFormat, kGltfFormat, kObjFormat, kPlyFormat;
+
+}  // namespace runstone

@@ -1,0 +1,51 @@
+// GltfLayout: the counts of a glTF model, from which its JSON and the places in its buffer follow. The
+// buffer has, region by region, the vertices of all parts and then their indices. A part is a primitive
+// with three accessors: positions, normals, indices.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/core/coords.hpp"
+#include "common/mesh/quad_corners.hpp"
+#include "common/model_writers/model_output.hpp"
+#include "common/model_writers/model_walk.hpp"
+#include "common/model_writers/model_writing.hpp"
+
+namespace runstone {
+
+struct GltfPart {
+  std::uint16_t number = 0;  // cell number of the build
+  std::uint32_t vertices = 0, indices = 0;
+  Corner min{}, max{};  // of the places of its vertices
+  /// Returns the bytes of an index. 65,535 is no index of a u16.
+  std::uint32_t index_bytes() const { return vertices <= 65'535 ? 2 : 4; }
+  /// Returns the bytes of all indices, with those that fill up the last four.
+  std::uint64_t indices_bytes() const {
+    return (std::uint64_t{indices} * index_bytes() + 3) / 4 * 4;
+  }
+};
+
+struct GltfRegion {
+  VoxelPos origin;
+  std::size_t first_part = 0, part_count = 0;
+  std::uint64_t vertices_bytes = 0, indices_bytes = 0;
+};
+
+struct GltfLayout {
+  /// Counts what a walk gives. Fails with bad_value if it gives no face.
+  static Result<GltfLayout> of(ModelWalk& walk, bool is_quantised);
+
+  std::uint32_t vertex_bytes = 24;
+  std::vector<GltfRegion> regions;
+  std::vector<GltfPart> parts;
+  std::uint64_t buffer_bytes = 0;
+};
+
+/// Writes the JSON of a model up to the buffer: what follows are the members of its object, then "}]}".
+void write_gltf_json(const ModelSource& source, const ModelWriting& writing,
+                     const GltfLayout& layout, ModelOutput& out);
+
+/// Writes the part of the buffer that a region takes. Each call writes a multiple of four bytes.
+void write_gltf_region(const RegionModel& region, bool is_quantised, ModelOutput& out);
+
+}  // namespace runstone

@@ -1,0 +1,102 @@
+#include "common/model_writers/model_walk.hpp"
+
+#include <cstddef>
+
+namespace runstone {
+namespace {
+
+/// The regions along one axis whose closed range of points holds a point of the build.
+struct RegionsAlong {
+  std::int32_t first = 0, last = 0;
+};
+
+RegionsAlong regions_at(std::int32_t point, std::int32_t count) {
+  const std::int32_t above = point / kModelRegionEdge;
+  const std::int32_t below = point % kModelRegionEdge == 0 && above > 0 ? above - 1 : above;
+  return {below, above < count ? above : count - 1};
+}
+
+}  // namespace
+
+ModelWalk::ModelWalk(const ModelSource& source, const ModelWriting& writing)
+    : build_(source.build),
+      counts_(region_counts(source.build)),
+      closes_t_junctions_(writing.closes_t_junctions),
+      mesher_(source),
+      maker_(writing.is_welded) {
+  if (closes_t_junctions_) collect_shared_corners();
+}
+
+template <class F>
+bool ModelWalk::for_each_quads(F&& f) {
+  for (RegionPos at; at.z < counts_.z; ++at.z) {
+    for (at.y = 0; at.y < counts_.y; ++at.y) {
+      for (at.x = 0; at.x < counts_.x; ++at.x) {
+        const std::vector<Quad>& quads = mesher_.quads_of(at);
+        if (!quads.empty() && !f(at, quads)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+std::uint64_t ModelWalk::key_of(RegionPos at) const {
+  return static_cast<std::uint64_t>(at.x) +
+         static_cast<std::uint64_t>(counts_.x) *
+             (static_cast<std::uint64_t>(at.y) +
+              static_cast<std::uint64_t>(counts_.y) * static_cast<std::uint64_t>(at.z));
+}
+
+/// Gives a corner of a quad to the other regions that it touches.
+void ModelWalk::share(RegionPos from, const Corner& at) {
+  const auto is_inside = [](int place) { return place % kModelRegionEdge != 0; };
+  if (is_inside(at[0]) && is_inside(at[1]) && is_inside(at[2])) return;
+  const VoxelPos point = {from.x * kModelRegionEdge + at[0], from.y * kModelRegionEdge + at[1],
+                          from.z * kModelRegionEdge + at[2]};
+  const RegionsAlong x = regions_at(point.x, counts_.x), y = regions_at(point.y, counts_.y),
+                     z = regions_at(point.z, counts_.z);
+  const auto place_in = [](std::int32_t place, std::int32_t region) {
+    return static_cast<std::uint8_t>(place - region * kModelRegionEdge);
+  };
+  for (RegionPos to{x.first, y.first, z.first}; to.z <= z.last; ++to.z) {
+    for (to.y = y.first; to.y <= y.last; ++to.y) {
+      for (to.x = x.first; to.x <= x.last; ++to.x) {
+        if (to == from) continue;
+        shared_[key_of(to)].push_back(
+            {place_in(point.x, to.x), place_in(point.y, to.y), place_in(point.z, to.z)});
+      }
+    }
+  }
+}
+
+void ModelWalk::collect_shared_corners() {
+  for_each_quads([&](RegionPos at, const std::vector<Quad>& quads) {
+    corners_.clear();
+    for (const Quad quad : quads) {
+      for (const Corner& corner : quad_corners(quad)) {
+        if (corners_.add(corner)) share(at, corner);
+      }
+    }
+    return true;
+  });
+}
+
+void ModelWalk::mark_corners(RegionPos at, const std::vector<Quad>& quads) {
+  corners_.clear();
+  for (const Quad quad : quads) {
+    for (const Corner& corner : quad_corners(quad)) corners_.add(corner);
+  }
+  const auto shared = shared_.find(key_of(at));
+  if (shared == shared_.end()) return;
+  for (const PlaceInRegion& place : shared->second) corners_.add({place[0], place[1], place[2]});
+}
+
+bool ModelWalk::for_each_region(const RegionSink& sink) {
+  return for_each_quads([&](RegionPos at, const std::vector<Quad>& quads) {
+    if (closes_t_junctions_) mark_corners(at, quads);
+    return sink(maker_.make(region_box(build_, at).min, quads,
+                            closes_t_junctions_ ? &corners_ : nullptr));
+  });
+}
+
+}  // namespace runstone

@@ -1,0 +1,49 @@
+// ModelSource and ModelWriting: what a writer of triangles gets: a build, and the choices of how its
+// faces become triangles.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/builds/build.hpp"
+#include "common/core/build_info.hpp"
+#include "common/core/material_look.hpp"
+#include "common/core/material_row.hpp"
+#include "common/core/visibility.hpp"
+
+namespace runstone {
+
+/// A material of a model that is written.
+struct WrittenMaterial {
+  std::string name;                    // UTF-8; several may have one name
+  MaterialColour colour{0, 0, 0, 255};  // sRGB and alpha
+  Visibility visibility = Visibility::opaque;
+  MaterialLook look;
+};
+
+/// A build whose faces are written. It is borrowed for one call.
+struct ModelSource {
+  const Build& build;
+  const BuildInfo& info;
+  std::vector<WrittenMaterial> materials;  // by palette entry of the build
+};
+
+/// The choices of a writer.
+struct ModelWriting {
+  /// True: quads share a vertex of equal place and normal, within a material and a region. In an .obj
+  /// they share each equal place. False: every quad has vertices of its own.
+  bool is_welded = true;
+  /// True: each edge of a triangle ends where an edge of another one ends, so that no seam can show and
+  /// a solid build is a closed surface. It costs triangles and one more pass over the build. False: a
+  /// corner of a quad may lie within an edge of its neighbour.
+  bool closes_t_junctions = false;
+  /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24. Readers need KHR_mesh_quantization.
+  bool is_quantised = false;
+  /// The side of a voxel. Finite and above 0.
+  double metres_per_voxel = 1;
+  /// The name of the .mtl file that an .obj names, without folders. Empty: none. A name of several
+  /// lines is left out.
+  std::string material_file;
+};
+
+}  // namespace runstone

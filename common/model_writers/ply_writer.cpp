@@ -1,0 +1,98 @@
+#include <array>
+#include <cmath>
+
+#include "common/core/assert.hpp"
+#include "common/core/version.hpp"
+#include "common/model_writers/model_walk.hpp"
+#include "common/model_writers/model_writers.hpp"
+
+namespace runstone {
+namespace {
+
+struct PlyCounts {
+  std::uint64_t vertices = 0, triangles = 0;
+};
+
+void write_ply_head(const ModelSource& source, const PlyCounts& counts, ModelOutput& out) {
+  out.text("ply\nformat binary_little_endian 1.0\ncomment Runstone ");
+  out.text(version());
+  out.text("\ncomment origin in the world: ");
+  const VoxelPos& origin = source.info.origin;
+  out.number(origin.x);
+  out.text(" ");
+  out.number(origin.y);
+  out.text(" ");
+  out.number(origin.z);
+  out.text("\nelement vertex ");
+  out.number(counts.vertices);
+  for (const std::string_view name : {"x", "y", "z", "nx", "ny", "nz"}) {
+    out.text("\nproperty float ");
+    out.text(name);
+  }
+  for (const std::string_view name : {"red", "green", "blue", "alpha"}) {
+    out.text("\nproperty uchar ");
+    out.text(name);
+  }
+  out.text("\nelement face ");
+  out.number(counts.triangles);
+  out.text("\nproperty list uchar int vertex_indices\nend_header\n");
+}
+
+void write_ply_vertices(const ModelSource& source, double scale, const RegionModel& region,
+                        ModelOutput& out) {
+  const std::array<std::int32_t, 3> origin = {region.origin.x, region.origin.y, region.origin.z};
+  for (const ModelPart& part : region.parts) {
+    const MaterialColour& colour = source.materials[part.number - 1U].colour;
+    for (const ModelVertex& vertex : region.vertices_of(part)) {
+      const std::array<std::uint8_t, 3> place = {vertex.x, vertex.y, vertex.z};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        out.f32(static_cast<float>((origin[axis] + place[axis]) * scale));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool is_along = axis == static_cast<std::size_t>(axis_of(vertex.direction));
+        out.f32(!is_along ? 0.0F : is_positive(vertex.direction) ? 1.0F : -1.0F);
+      }
+      out.bytes(colour);
+    }
+  }
+}
+
+}  // namespace
+
+Result<void> write_ply_model(const ModelSource& source, const ModelWriting& writing,
+                             const ModelSink& sink) {
+  RUNSTONE_ASSERT(std::isfinite(writing.metres_per_voxel) && writing.metres_per_voxel > 0);
+  ModelWalk walk(source, writing);
+  PlyCounts counts;
+  walk.for_each_region([&](const RegionModel& region) {
+    counts.vertices += region.vertices.size();
+    counts.triangles += region.indices.size() / 3;
+    return true;
+  });
+  if (counts.triangles == 0) return fail(ErrorCode::bad_value, "model: build shows no face");
+  if (counts.vertices > kPlyCountMax || counts.triangles > kPlyCountMax) {
+    return fail(ErrorCode::limit_exceeded,
+                "model: a .ply has at most 2,147,483,647 vertices and triangles; write a smaller box");
+  }
+  ModelOutput out(sink);
+  write_ply_head(source, counts, out);
+  walk.for_each_region([&](const RegionModel& region) {
+    write_ply_vertices(source, writing.metres_per_voxel, region, out);
+    return out.ok();
+  });
+  std::uint32_t first = 0;
+  walk.for_each_region([&](const RegionModel& region) {
+    for (const ModelPart& part : region.parts) {
+      const auto indices = region.indices_of(part);
+      for (std::size_t i = 0; i < indices.size(); i += 3) {
+        out.u8(3);
+        for (std::size_t k = i; k < i + 3; ++k) out.u32(first + indices[k]);
+      }
+      first += static_cast<std::uint32_t>(part.vertex_count);
+    }
+    return out.ok();
+  });
+  if (!out.flush()) return fail(ErrorCode::io_failed, "model: cannot be written");
+  return {};
+}
+
+}  // namespace runstone
