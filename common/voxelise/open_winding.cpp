@@ -7,21 +7,33 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Returns half the solid angle of the strip from a to b and along -x to infinity; a and b are seen from
+/// Returns half the solid angle of the strip from a to b and along x to infinity; a and b are seen from
 /// the point. Source: van Oosterom and Strackee 1983, with the third corner at infinity.
 double half_angle(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  // The point moves by an infinitesimal along y, and by an infinitely smaller one along z. If it is on the
+  // side of the strip that begins at a, a is seen in the direction of -y there, and the strip is a lune.
+  const auto is_behind = [](const std::array<double, 3>& corner) {
+    return corner[1] == 0 && corner[2] == 0 && corner[0] < 0;
+  };
+  if (is_behind(a)) {
+    if (b[1] == 0 && b[2] == 0) return 0;
+    return b[2] != 0 || b[1] < 0 ? std::atan2(-b[2], -b[1]) : kPi;
+  }
+  if (is_behind(b)) {
+    if (a[1] == 0 && a[2] == 0) return 0;
+    return a[2] != 0 || a[1] < 0 ? std::atan2(a[2], -a[1]) : -kPi;
+  }
   // Coordinates are whole and below 2^22, so this is exact.
-  double volume = a[2] * b[1] - a[1] * b[2];
+  double volume = a[1] * b[2] - a[2] * b[1];
   if (volume == 0) {
-    // The point moves by an infinitesimal along y, and an infinitely smaller one along z.
-    const double side = a[2] != b[2] ? b[2] - a[2] : a[1] - b[1];
+    const double side = a[2] != b[2] ? a[2] - b[2] : b[1] - a[1];
     if (side == 0) return 0;
     volume = side > 0 ? 0.0 : -0.0;
   }
   const double length_a = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   const double length_b = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
-  const double rest = length_a * length_b + a[0] * b[0] + a[1] * b[1] + a[2] * b[2] -
-                      a[0] * length_b - b[0] * length_a;
+  const double rest = length_a * length_b + a[0] * b[0] + a[1] * b[1] + a[2] * b[2] +
+                      a[0] * length_b + b[0] * length_a;
   return std::atan2(volume, rest);
 }
 

@@ -1,8 +1,8 @@
 // OpenWinding: what the open edges of a mesh add to the generalised winding number. Internal to this room.
 //
 // The winding number of a point is the solid angle of the mesh seen from it, by 4 pi (Jacobson,
-// Kavan, Sorkine-Hornung 2013). Strips from the open edges to infinity, against the x axis, close the
-// mesh. The closed surface has a whole winding number: the signed crossings of a ray from the point
+// Kavan, Sorkine-Hornung 2013). Strips from the open edges along the x axis close the mesh at
+// infinity. The closed surface has a whole winding number: the signed crossings of a ray from the point
 // against the x axis, which no strip crosses. So the winding number of the mesh is this count, plus the
 // solid angles of the strips, and its cost depends on the open edges only, not on the triangles. (The
 // same idea: Martens and Bessmeltsev 2025, one-shot winding numbers.)
