@@ -19,7 +19,6 @@ find_package(OpenSSL 3.0 REQUIRED)
 find_package(zstd REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)  # reads height maps
-find_package(leveldb REQUIRED CONFIG)  # reads maps of Luanti
 find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
@@ -30,6 +29,14 @@ pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 pkg_check_modules(ICU REQUIRED IMPORTED_TARGET icu-i18n)
+
+# Reads maps of Luanti. Its CMake file also asks for the files to build with Snappy, which the shared library
+# links itself and Debian's package does not depend on.
+find_library(LEVELDB_LIBRARY leveldb REQUIRED)
+find_path(LEVELDB_INCLUDE_DIR leveldb/db.h REQUIRED)
+add_library(runstone_leveldb UNKNOWN IMPORTED)
+set_target_properties(runstone_leveldb PROPERTIES IMPORTED_LOCATION ${LEVELDB_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${LEVELDB_INCLUDE_DIR})
 
 # Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)

@@ -127,11 +127,11 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   const VoxelBox box = *world->bounds;
   std::vector<LitChunk> out = each_chunk(
       box, [&](VoxelPos origin) { return unlit(chunk_of_world(*world, origin, kByteEdge)); });
-  auto map = LuantiMap::open(folder + "/map.sqlite");
+  auto map = open_luanti_sqlite_map(folder + "/map.sqlite");
   if (!map) return failure(map.error());
   LuantiNodes nodes;
   std::optional<std::string> damaged;
-  const auto read = map->each_row([&](const LuantiRow& row) {
+  const auto read = (*map)->each_row([&](const LuantiRow& row) {
     const auto place = place_of(row.block, box);
     if (!place || damaged) return;
     if (const auto decoded = decode_luanti_row(row.data, nodes); !decoded) {

@@ -112,7 +112,7 @@ Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox
 }
 
 Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools) {
-  if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = file_refusal(file, true); !why.empty()) return failure(std::move(why));
   const auto build = build_of_clipboard(file, tools);
   if (!build) return failure(build.error());
   if (const auto written = write_build_to_file(file, *build); !written)

@@ -41,7 +41,7 @@ std::optional<PlayerNotice> ClipboardTransfer::begin(const ClipboardOfFile& orde
   if (!state_.empty()) return transfer_warning("wait: " + state_);
   file_ = typed_path(order.file);
   if (file_.empty()) return transfer_warning("type the path of a file, such as ~/castle.schem");
-  if (auto why = ending_refusal(file_, order.is_saved); !why.empty()) return transfer_warning(why);
+  if (auto why = file_refusal(file_, order.is_saved); !why.empty()) return transfer_warning(why);
   if (order.is_saved) {
     auto build = build_of_clipboard(file_, tools);
     if (!build) return transfer_warning(build.error());
@@ -54,7 +54,14 @@ std::optional<PlayerNotice> ClipboardTransfer::begin(const ClipboardOfFile& orde
                           });
   } else {
     state_ = "reading " + last_part(file_);
-    reading_ = std::async(std::launch::async, [file = file_] { return read_build_of_file(file); });
+    notices_ = std::make_shared<std::string>();
+    reading_ = std::async(std::launch::async, [file = file_, order, notices = notices_] {
+      BuildReading reading;
+      reading.model.voxels = order.voxels;
+      reading.model.is_solid = !order.is_hollow;
+      reading.notice = [&](const std::string& line) { *notices += ". " + line; };
+      return read_build_of_file(file, std::move(reading));
+    });
   }
   return std::nullopt;
 }
@@ -73,6 +80,7 @@ std::optional<PlayerNotice> ClipboardTransfer::step(ToolBox& tools) {
   const std::string said = set_clipboard(*std::move(read), tools);
   has_loaded_ = true;
   std::string text = "clipboard: " + last_part(file_) + ", " + size_text(*tools.clipboard().build);
+  text += *notices_;
   if (!said.empty()) text += ". " + said;
   return PlayerNotice{std::move(text)};
 }

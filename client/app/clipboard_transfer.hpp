@@ -3,6 +3,7 @@
 // frame. One file at a time. Thread: the main thread.
 #pragma once
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -40,6 +41,7 @@ class ClipboardTransfer {
   std::string file_, state_;
   bool has_loaded_ = false;
   std::future<Result<FileBuild, std::string>> reading_;
+  std::shared_ptr<std::string> notices_;  // of the reading thread, until its outcome is here
   std::future<Result<void, std::string>> writing_;
 };
 

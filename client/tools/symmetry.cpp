@@ -75,9 +75,9 @@ std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
 }
 
 Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, bool along_z) {
-  if (build != of_) {
+  if (build != build_) {
     forget();
-    of_ = build;
+    build_ = build;
   }
   BuildPtr& form = forms_[(along_x ? 1U : 0U) + (along_z ? 2U : 0U)];
   if (!form) {

@@ -48,7 +48,7 @@ class MirroredBuilds {
   void forget() { *this = MirroredBuilds(); }
 
  private:
-  BuildPtr of_;
+  BuildPtr build_;
   std::array<BuildPtr, 4> forms_;  // bit 0: along x; bit 1: along z
 };
 

@@ -13,6 +13,7 @@
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
 #include "common/materials/readable_name.hpp"
+#include "common/models/model_format.hpp"
 
 namespace runstone {
 namespace {
@@ -23,6 +24,8 @@ constexpr std::array<const char*, 5> kSymmetries = {"none", "mirrored along x", 
                                                     "mirrored along x and z", "a half turn"};
 /// The range of the coordinates that can be typed.
 constexpr int kCoordinateMin = -kWorldLimit, kCoordinateMax = kWorldLimit - 1;
+/// The longest side of a model that the slider reaches.
+constexpr int kModelVoxelsShown = 1024;
 const ImVec4 kToolWarning = {1, 0.82F, 0.47F, 1};
 
 std::array<int, 3> numbers_of(VoxelPos at) { return {at.x, at.y, at.z}; }
@@ -339,12 +342,21 @@ void ToolWindow::build_file(const HudState& state, std::vector<ToolCommand>& out
   ImGui::InputTextWithHint("##file", "path, such as ~/castle.schem", &file_);
   if (ImGui::IsItemHovered()) {
     ImGui::SetTooltip(
-        "The ending names the format: .schem, .litematic, .vox, .mts, .rsb and others.\n"
+        "The ending names the format: .schem, .litematic, .vox, .mts, .rsb and others; .obj, "
+        ".stl, .ply, .gltf and .glb are models, which become voxels.\n"
         "A file that is dropped on the window is loaded, too.");
   }
   const ToolBox& box = *state.tools;
+  if (model_format_of(file_)) {
+    ImGui::SliderInt("longest side", &voxels_, 8, kModelVoxelsShown, "%d voxels",
+                     ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    ImGui::SameLine();
+    ImGui::Checkbox("hollow", &is_hollow_);
+  }
   ImGui::BeginDisabled(file_.empty());
-  if (button_beside("Load into the clipboard", true)) wanted_ = ClipboardOfFile{file_, false};
+  if (button_beside("Load into the clipboard", true)) {
+    wanted_ = ClipboardOfFile{file_, false, static_cast<std::uint32_t>(voxels_), is_hollow_};
+  }
   ImGui::BeginDisabled(!box.clipboard().build);
   if (button_beside("Save the clipboard")) wanted_ = ClipboardOfFile{file_, true};
   ImGui::EndDisabled();

@@ -60,6 +60,8 @@ class ToolWindow {
   bool keeps_air_ = false;
   std::string replaced_;  // the name of the material to be replaced, as typed
   std::string file_;      // a path, as typed
+  int voxels_ = 128;      // of the longest side of a model
+  bool is_hollow_ = false;
   std::optional<ClipboardOfFile> wanted_;
 };
 

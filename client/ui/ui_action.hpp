@@ -1,5 +1,6 @@
 // UiAction: what the user did in a window of the interface. The client carries it out.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <variant>
 
@@ -29,6 +30,8 @@ struct ShowMoment {
 struct ClipboardOfFile {
   std::string file;  // as typed
   bool is_saved = false;
+  std::uint32_t voxels = 128;  // of the longest side of a model that is read
+  bool is_hollow = false;      // the inside of a model stays untouched
 };
 
 /// The user chose what frames show of storage and meshing.

@@ -15,13 +15,36 @@ std::string stem_of(const std::string& file) { return std::filesystem::path(file
 
 }  // namespace
 
-Result<FileBuild, std::string> read_build_of_file(const std::string& file, ForeignReading reading,
+std::string file_refusal(const std::string& file, bool is_written) {
+  if (!is_written && is_model_file(file)) return "";
+  std::string why = ending_refusal(file, is_written);
+  if (!why.empty() && !is_written) why += ", and of models " + model_endings();
+  return why;
+}
+
+Result<FileBuild, std::string> read_build_of_file(const std::string& file, BuildReading reading,
                                                   std::size_t file_bytes_max) {
-  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
+  if (auto why = file_refusal(file, false); !why.empty()) return failure(std::move(why));
+  ForeignReading& foreign = reading.foreign;
+  if (foreign.name.empty()) foreign.name = stem_of(file);
+  if (is_model_file(file)) {
+    if (!foreign.colours_file.empty())
+      return failure(file + ": is no height map, and only these take colours from another file");
+    auto build = read_model_build(file, reading.model, foreign.bytes_max, reading.notice);
+    if (build) build->info.name = build_name_of_file(foreign.name);
+    return build;
+  }
   const auto bytes = read_file_bytes(file, file_bytes_max, FileKinds::regular);
   if (!bytes) return failure(bytes.error());
-  if (reading.name.empty()) reading.name = stem_of(file);
-  return read_file_build(file, *bytes, reading);
+  Bytes colours;
+  if (!foreign.colours_file.empty()) {
+    auto picture = read_file_bytes(foreign.colours_file, file_bytes_max, FileKinds::regular);
+    if (!picture) return failure(picture.error());
+    if (picture->empty()) return failure(foreign.colours_file + ": has no bytes");
+    colours = *std::move(picture);
+    foreign.colours = colours;
+  }
+  return read_file_build(file, *bytes, foreign);
 }
 
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,

@@ -17,7 +17,8 @@ struct ForeignReading {
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces
   std::string name;                        // of the build, if the file has none; see BuildInfo
   // Of a height map: a PNG with the colours of its columns (height_map.hpp), which must outlive the
-  // call, and the file that has it, for messages. Empty: there is none.
+  // call. Empty: there is none. `colours_file` is the file that has it, for messages; programs name
+  // it, and read_build_of_file() (common/build_files) reads it.
   ByteView colours = {};
   std::string colours_file = {};
 };

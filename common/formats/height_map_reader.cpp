@@ -5,16 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "common/formats/colour_quantiser.hpp"
 #include "common/formats/height_map.hpp"
 #include "common/formats/png_rows.hpp"
 #include "common/formats/vox_look.hpp"
+#include "common/materials/colour_quantiser.hpp"
 #include "common/runs/run_builder.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::uint32_t kMapTile = 64;
+constexpr std::size_t kMapColoursMax = 255;  // MapBand keeps their indices as bytes
 
 /// The height in voxels and the index of the colour of the pixels of up to 64 rows.
 struct MapBand {
@@ -80,7 +81,7 @@ std::uint32_t map_height_max(const HeightMapOptions& options, const PngHead& hea
 Result<ForeignInfo> read_height_map(ByteView heights, ByteView colours,
                                     const HeightMapOptions& options, const PieceSink& sink) {
   if (options.height_max > kHeightMapHeightMax || options.colours_max < 1 ||
-      options.colours_max > kQuantisedColoursMax)
+      options.colours_max > kMapColoursMax)
     return fail(ErrorCode::bad_value,
                 "height map: height must be 1 .. 65535, and colours 1 .. 255");
   const auto head = read_png_head(heights, kHeightMapSideMax);
@@ -129,8 +130,8 @@ Result<ForeignInfo> read_height_map(ByteView heights, ByteView colours,
         const std::uint64_t sample = std::uint64_t{row[2 * x]} << 8 | row[2 * x + 1];
         band.heights[at] = static_cast<std::uint32_t>((sample * height_max + 32'767) / 65'535);
         if (quantiser)
-          band.colours[at] = quantiser->index_of(
-              {colour_row[3 * x], colour_row[3 * x + 1], colour_row[3 * x + 2]});
+          band.colours[at] = static_cast<std::uint8_t>(quantiser->index_of(
+              {colour_row[3 * x], colour_row[3 * x + 1], colour_row[3 * x + 2]}));
       }
     }
     for (std::uint32_t x = 0; x < band.width; x += kMapTile) {

@@ -7,8 +7,8 @@
 namespace runstone {
 namespace {
 
-ModelSource model_source(const FileBuild& build) {
-  ModelSource source{*build.build, build.info, {}};
+WrittenBuild model_source(const FileBuild& build) {
+  WrittenBuild source{*build.build, build.info, {}};
   for (const BuildMaterial& material : build.materials) {
     const MaterialRow& row = material.row;
     source.materials.push_back({world_name_of(material), row.colour, row.visibility,

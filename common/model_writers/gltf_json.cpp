@@ -30,7 +30,7 @@ void write_json_text(std::string_view text, ModelOutput& out) {
 
 class GltfJson {
  public:
-  GltfJson(const ModelSource& source, const ModelWriting& writing, const GltfLayout& layout,
+  GltfJson(const WrittenBuild& source, const ModelWriting& writing, const GltfLayout& layout,
            ModelOutput& out)
       : source_(source), writing_(writing), layout_(layout), out_(out) {}
 
@@ -220,7 +220,7 @@ class GltfJson {
     }
   }
 
-  const ModelSource& source_;
+  const WrittenBuild& source_;
   const ModelWriting& writing_;
   const GltfLayout& layout_;
   ModelOutput& out_;
@@ -230,7 +230,7 @@ class GltfJson {
 
 }  // namespace
 
-void write_gltf_json(const ModelSource& source, const ModelWriting& writing,
+void write_gltf_json(const WrittenBuild& source, const ModelWriting& writing,
                      const GltfLayout& layout, ModelOutput& out) {
   GltfJson(source, writing, layout, out).write();
 }

@@ -42,7 +42,7 @@ struct GltfLayout {
 };
 
 /// Writes the JSON of a model up to the buffer: what follows are the members of its object, then "}]}".
-void write_gltf_json(const ModelSource& source, const ModelWriting& writing,
+void write_gltf_json(const WrittenBuild& source, const ModelWriting& writing,
                      const GltfLayout& layout, ModelOutput& out);
 
 /// Writes the part of the buffer that a region takes. Each call writes a multiple of four bytes.

@@ -45,7 +45,7 @@ class Base64Output {
 };
 
 /// Returns the bytes of the JSON up to the buffer.
-std::uint64_t gltf_json_bytes(const ModelSource& source, const ModelWriting& writing,
+std::uint64_t gltf_json_bytes(const WrittenBuild& source, const ModelWriting& writing,
                               const GltfLayout& layout) {
   const ModelSink drop = [](ByteView) { return true; };
   ModelOutput counted(drop);
@@ -64,7 +64,7 @@ void require_scale(const ModelWriting& writing) {
 
 }  // namespace
 
-Result<void> write_glb_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink) {
   require_scale(writing);
   ModelWalk walk(source, writing);
@@ -96,7 +96,7 @@ Result<void> write_glb_model(const ModelSource& source, const ModelWriting& writ
   return gltf_outcome(out.flush());
 }
 
-Result<void> write_gltf_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& writing,
                               const ModelSink& sink) {
   require_scale(writing);
   ModelWalk walk(source, writing);

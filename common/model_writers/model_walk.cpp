@@ -18,7 +18,7 @@ RegionsAlong regions_at(std::int32_t point, std::int32_t count) {
 
 }  // namespace
 
-ModelWalk::ModelWalk(const ModelSource& source, const ModelWriting& writing)
+ModelWalk::ModelWalk(const WrittenBuild& source, const ModelWriting& writing)
     : build_(source.build),
       counts_(region_counts(source.build)),
       closes_t_junctions_(writing.closes_t_junctions),

@@ -22,7 +22,7 @@ using RegionSink = std::function<bool(const RegionModel&)>;
 class ModelWalk {
  public:
   /// Keeps a reference to the build. Visits the build once if T-junctions are closed.
-  ModelWalk(const ModelSource& source, const ModelWriting& writing);
+  ModelWalk(const WrittenBuild& source, const ModelWriting& writing);
 
   /// Gives each region with faces to the sink: x fastest, then y, then z. Each walk gives the same.
   /// Returns false if the sink did. Cost: O(regions), and that of RegionMesher and RegionModelMaker.

@@ -32,19 +32,19 @@ inline constexpr std::uint64_t kPlyCountMax = 0x7fff'ffff;
 
 /// Writes binary glTF 2.0: a node for each region, with a primitive for each material in it. Memory: 32
 /// bytes for each primitive.
-Result<void> write_glb_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the glTF 2.0 of write_glb_model() as JSON, which holds its buffer as base64.
-Result<void> write_gltf_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& writing,
                               const ModelSink& sink);
 /// Writes a Wavefront .obj. It names `writing.material_file`, which write_mtl_model() writes. Memory:
 /// 8.6 MB, and 40 bytes for each vertex between regions.
-Result<void> write_obj_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_obj_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the materials of an .obj of the same source. Cost: O(materials).
-Result<void> write_mtl_model(const ModelSource& source, const ModelSink& sink);
+Result<void> write_mtl_model(const WrittenBuild& source, const ModelSink& sink);
 /// Writes a binary, little-endian .ply whose vertices have normals and colours. Memory: nothing more.
-Result<void> write_ply_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_ply_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// ModelSource and ModelWriting: what a writer of triangles gets: a build, and the choices of how its
+// WrittenBuild and ModelWriting: what a writer of triangles gets: a build, and the choices of how its
 // faces become triangles.
 #pragma once
 #include <cstdint>
@@ -22,7 +22,7 @@ struct WrittenMaterial {
 };
 
 /// A build whose faces are written. It is borrowed for one call.
-struct ModelSource {
+struct WrittenBuild {
   const Build& build;
   const BuildInfo& info;
   std::vector<WrittenMaterial> materials;  // by palette entry of the build

@@ -34,7 +34,7 @@ std::vector<std::string> obj_names(const std::vector<WrittenMaterial>& materials
   return out;
 }
 
-void write_obj_comment(const ModelSource& source, ModelOutput& out) {
+void write_obj_comment(const WrittenBuild& source, ModelOutput& out) {
   out.text("# Runstone ");
   out.text(version());
   out.text("\n");
@@ -50,7 +50,7 @@ void write_obj_comment(const ModelSource& source, ModelOutput& out) {
 
 class ObjWriter {
  public:
-  ObjWriter(const ModelSource& source, const ModelWriting& writing, const ModelSink& sink)
+  ObjWriter(const WrittenBuild& source, const ModelWriting& writing, const ModelSink& sink)
       : source_(source), writing_(writing), walk_(source, writing), out_(sink) {}
 
   Result<void> write() {
@@ -146,7 +146,7 @@ class ObjWriter {
     return ++vertex_count_;
   }
 
-  const ModelSource& source_;
+  const WrittenBuild& source_;
   const ModelWriting& writing_;
   ModelWalk walk_;
   ModelOutput out_;
@@ -163,13 +163,13 @@ class ObjWriter {
 
 }  // namespace
 
-Result<void> write_obj_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_obj_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink) {
   RUNSTONE_ASSERT(std::isfinite(writing.metres_per_voxel) && writing.metres_per_voxel > 0);
   return ObjWriter(source, writing, sink).write();
 }
 
-Result<void> write_mtl_model(const ModelSource& source, const ModelSink& sink) {
+Result<void> write_mtl_model(const WrittenBuild& source, const ModelSink& sink) {
   ModelOutput out(sink);
   write_obj_comment(source, out);
   const std::vector<std::string> names = obj_names(source.materials);

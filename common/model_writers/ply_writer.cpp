@@ -13,7 +13,7 @@ struct PlyCounts {
   std::uint64_t vertices = 0, triangles = 0;
 };
 
-void write_ply_head(const ModelSource& source, const PlyCounts& counts, ModelOutput& out) {
+void write_ply_head(const WrittenBuild& source, const PlyCounts& counts, ModelOutput& out) {
   out.text("ply\nformat binary_little_endian 1.0\ncomment Runstone ");
   out.text(version());
   out.text("\ncomment origin in the world: ");
@@ -38,7 +38,7 @@ void write_ply_head(const ModelSource& source, const PlyCounts& counts, ModelOut
   out.text("\nproperty list uchar int vertex_indices\nend_header\n");
 }
 
-void write_ply_vertices(const ModelSource& source, double scale, const RegionModel& region,
+void write_ply_vertices(const WrittenBuild& source, double scale, const RegionModel& region,
                         ModelOutput& out) {
   const std::array<std::int32_t, 3> origin = {region.origin.x, region.origin.y, region.origin.z};
   for (const ModelPart& part : region.parts) {
@@ -58,7 +58,7 @@ void write_ply_vertices(const ModelSource& source, double scale, const RegionMod
 
 }  // namespace
 
-Result<void> write_ply_model(const ModelSource& source, const ModelWriting& writing,
+Result<void> write_ply_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink) {
   RUNSTONE_ASSERT(std::isfinite(writing.metres_per_voxel) && writing.metres_per_voxel > 0);
   ModelWalk walk(source, writing);

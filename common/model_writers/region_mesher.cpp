@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-std::vector<Visibility> visibility_of_cells(const ModelSource& source) {
+std::vector<Visibility> visibility_of_cells(const WrittenBuild& source) {
   RUNSTONE_ASSERT(source.materials.size() == source.build.palette().size());
   std::vector<Visibility> out = {Visibility::empty};  // untouched cells
   for (const WrittenMaterial& material : source.materials) out.push_back(material.visibility);
@@ -60,7 +60,7 @@ VoxelBox region_box(const Build& build, ModelRegionPos at) {
   return intersect(build.box(), box_of(ChunkCoord{at.x, at.y, at.z}, kModelRegionEdge));
 }
 
-RegionMesher::RegionMesher(const ModelSource& source)
+RegionMesher::RegionMesher(const WrittenBuild& source)
     : build_(source.build), visibility_(visibility_of_cells(source)) {}
 
 bool RegionMesher::is_empty(const RunChunk& cells) const {

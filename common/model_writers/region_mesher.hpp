@@ -31,7 +31,7 @@ VoxelBox region_box(const Build& build, ModelRegionPos at);
 class RegionMesher {
  public:
   /// Keeps a reference to the build. Requires a material for each palette entry.
-  explicit RegionMesher(const ModelSource& source);
+  explicit RegionMesher(const WrittenBuild& source);
 
   /// Returns the quads of a region, in coordinates from its lowest corner. The material of a quad is a
   /// cell number of the build. The quads ascend: opaque ones first, then by material, direction and

@@ -89,7 +89,7 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
     if (decision.is_allowed) return std::nullopt;
     names += (names.empty() ? "" : " or ") + std::string(name_of(right));
     if (const auto kind = restriction_of(decision.reason))
-      restricted = "you are " + restriction_text(state, *kind, key, now_us);
+      restricted = "you are " + why_restricted(state, *kind, key, now_us);
   }
   if (restricted) return restricted;
   return "this command needs the right " + names + "; your role is " + state.role_of(key).name;

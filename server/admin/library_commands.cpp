@@ -5,13 +5,13 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/build_files/build_files.hpp"
 #include "common/formats/mapped_build.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/place_words.hpp"
-#include "server/mapping/colour_map_file.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -229,20 +229,20 @@ Result<PlacedFile, std::string> parse_import_file(WordReader& reader) {
   return reader.result(out);
 }
 
-/// A build from a file, and a line about its map of materials, which may be empty.
+/// A build from a file, and lines about what was read.
 struct ReadFile {
   std::shared_ptr<const FileBuild> build;
-  std::string notice;
+  std::vector<std::string> notices;
 };
 
 Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
-  ForeignReading reading;
-  std::string colours;
-  if (const auto added = add_colour_map(wanted.file_words.colours, colours, reading); !added)
-    return failure(added.error());
+  ReadFile out;
+  BuildReading reading;
+  reading.foreign.colours_file = wanted.file_words.colours;
+  reading.model = wanted.file_words.model;
+  reading.notice = [&out](const std::string& line) { out.notices.push_back(line); };
   auto build = read_build_of_file(wanted.file, std::move(reading));
   if (!build) return failure(build.error());
-  ReadFile out;
   if (const std::string& file = wanted.file_words.map; !file.empty()) {
     const auto map = read_material_map(file);
     if (!map) return failure(map.error());
@@ -250,7 +250,8 @@ Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
     auto mapped = mapped_build(*build, *map, applied, kBuildFileBytesMax);
     if (!mapped) return failure(wanted.file + ": " + mapped.error().what);
     build = std::move(mapped).value();
-    out.notice = unused_rows_notice(file, *map, applied);
+    if (auto unused = unused_rows_notice(file, *map, applied); !unused.empty())
+      out.notices.push_back(std::move(unused));
   }
   out.build = std::make_shared<const FileBuild>(*std::move(build));
   return out;
@@ -260,7 +261,7 @@ void import_file(const CommandCall& call, const PlacedFile& wanted) {
   call.on_worker(
       "import: ", [wanted](WorldReader&) { return read_placed_file(wanted); },
       [call, wanted](const ReadFile& read) {
-        if (!read.notice.empty()) call.report(read.notice);
+        for (const std::string& notice : read.notices) call.report(notice);
         place_build(call, "import", '"' + read.build->info.name + '"', read.build, wanted.words);
       });
 }

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <variant>
 
-#include "common/core/utc_text.hpp"
 #include "common/names/folded_name.hpp"
+#include "common/rights/restriction_text.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/rights_change_text.hpp"
@@ -172,14 +172,14 @@ std::string exempt_by_default(const RightsState& rights) {
 void restrict_subject(const CommandCall& call, const RestrictCommand& command) {
   with_subject(call, command.who,
                [call, command](const RestrictionSubject& subject, const std::string& who) {
-                 std::string text = who + (command.who.range ? ", except administrators," : "") +
-                                    " is " + restricted_text(command.kind);
-                 if (command.until_us != 0) text += " until " + utc_text(command.until_us);
-                 if (!command.reason.empty()) text += ": " + command.reason;
+                 const Restrict change{command.kind, subject, command.until_us, command.reason};
+                 std::string text =
+                     restriction_text(who + (command.who.range ? ", except administrators," : "") +
+                                          " is " + restricted_text(command.kind),
+                                      change);
                  if (command.who.is_widened) text += kWidened;
                  if (command.who.range) text += exempt_by_default(call.rights());
-                 call.change_rights(
-                     Restrict{command.kind, subject, command.until_us, command.reason}, text);
+                 call.change_rights(change, text);
                });
 }
 

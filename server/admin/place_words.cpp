@@ -103,6 +103,26 @@ Result<void, std::string> add_missing(const CommandCall& call, MatchedBuild& mad
   return {};
 }
 
+/// Takes a word that says how a model becomes a build. Returns false if there is none.
+bool take_model_word(WordReader& reader, ModelReading& model) {
+  if (reader.take_word("voxels")) {
+    model.voxels = static_cast<std::uint32_t>(reader.number("voxels", 1, kVoxeliseSideMax));
+  } else if (reader.take_word("surface")) {
+    const auto mode = surface_of_word(reader.take("surface", "none, thin, thick or all"));
+    if (!mode) reader.wrong("surface: none, thin, thick or all");
+    model.surface = mode.value_or(model.surface);
+  } else if (reader.take_word("hollow")) {
+    model.is_solid = false;
+  } else if (reader.take_word("up")) {
+    const bool is_y = reader.take_word("y");
+    if (!is_y && !reader.take_word("z")) reader.wrong("up: y or z");
+    model.file.up = is_y ? ModelUp::y : ModelUp::z;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file) {
@@ -136,10 +156,11 @@ PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file) {
     } else if (file != nullptr && reader.take_word(kColoursWord)) {
       file->colours =
           reader.take(std::string(kColoursWord), "a PNG with the colours of a height map");
-    } else {
+    } else if (file == nullptr || !take_model_word(reader, file->model)) {
       reader.wrong(reader.command() + " \"" + reader.peek() +
                    "\": turn, mirror, only-into, without" +
-                   (file != nullptr ? ", materials, map or colours" : " or materials"));
+                   (file != nullptr ? ", materials, map, colours, voxels, surface, hollow or up"
+                                    : " or materials"));
     }
   }
   return out;

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/build_files/model_reading.hpp"
 #include "common/builds/paste_source.hpp"
 #include "common/core/coords.hpp"
 #include "common/edits/clipboard/orientation.hpp"
@@ -40,6 +41,7 @@ inline constexpr std::string_view kMapWord = "map", kColoursWord = "colours";
 struct PlacedFileWords {
   std::string map;      // the TOML file that chooses materials (material_map_file.hpp); empty: none
   std::string colours;  // the PNG with the colours of a height map; empty: none
+  ModelReading model;   // how a model becomes a build
 };
 
 /// Takes `at X Y Z` and the words behind it. If `file` is not null, also takes the words for it.

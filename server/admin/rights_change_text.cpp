@@ -12,6 +12,7 @@
 
 #include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/rights/restriction_text.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/edit_budget_text.hpp"
@@ -30,10 +31,8 @@ std::string line_for(const GrantRole& change) {
 }
 std::string line_for(const SetDefaultRole& change) { return "default role " + change.role; }
 std::string line_for(const Restrict& change) {
-  std::string line = std::string(restricted_text(change.kind)) + " " + subject_text(change.subject);
-  if (change.until_us != 0) line += " until " + utc_text(change.until_us);
-  if (!change.reason.empty()) line += ": " + change.reason;
-  return line;
+  const std::string what = restricted_text(change.kind);
+  return restriction_text(what + " " + subject_text(change.subject), change);
 }
 std::string line_for(const Lift& change) {
   return "no longer " + std::string(restricted_text(change.kind)) + ": " +

@@ -2,6 +2,7 @@
 
 #include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/rights/restriction_text.hpp"
 #include "server/admin/rights_change_text.hpp"
 
 namespace runstone {
@@ -12,7 +13,7 @@ std::string decided_by(const RightsState& state, const RightsDecision& decision,
                        const PublicKey& key, TimeUs now_us) {
   using Reason = RightsDecision::Reason;
   if (const auto kind = restriction_of(decision.reason))
-    return "the player is " + restriction_text(state, *kind, key, now_us);
+    return "the player is " + why_restricted(state, *kind, key, now_us);
   if (decision.reason == Reason::box && decision.box != nullptr)
     return "the ground is protected: " + decision.box->name + " " + box_text(*decision.box);
   const Decided<Role>* role = state.find_role(decision.role);
@@ -38,14 +39,11 @@ std::optional<RestrictionKind> restriction_of(RightsDecision::Reason reason) {
   return std::nullopt;
 }
 
-std::string restriction_text(const RightsState& state, RestrictionKind kind, const PublicKey& key,
-                             TimeUs now_us) {
-  std::string text = restricted_text(kind);
+std::string why_restricted(const RightsState& state, RestrictionKind kind, const PublicKey& key,
+                           TimeUs now_us) {
   const Decided<Restrict>* found = state.restriction(kind, key, now_us);
-  if (found == nullptr) return text;
-  if (found->value.until_us != 0) text += " until " + utc_text(found->value.until_us);
-  if (!found->value.reason.empty()) text += ": " + found->value.reason;
-  return text;
+  const char* what = restricted_text(kind);
+  return found == nullptr ? what : restriction_text(what, found->value);
 }
 
 std::string origin_text(const ChangeOrigin& origin, const KnownPlayers& players) {

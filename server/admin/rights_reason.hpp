@@ -11,8 +11,8 @@ namespace runstone {
 /// Returns the restriction behind a reason, or nullopt if the reason is another one.
 std::optional<RestrictionKind> restriction_of(RightsDecision::Reason reason);
 /// Returns "banned until 2026-11-21T23:57:42Z: griefing": what holds for the key at `now_us`.
-std::string restriction_text(const RightsState& state, RestrictionKind kind, const PublicKey& key,
-                             TimeUs now_us);
+std::string why_restricted(const RightsState& state, RestrictionKind kind, const PublicKey& key,
+                           TimeUs now_us);
 /// Returns "record 12, 2026-11-21T23:57:42Z, by ana #3 9M1Q-Z7CR-04KD", or "built in".
 std::string origin_text(const ChangeOrigin& origin, const KnownPlayers& players);
 

@@ -37,11 +37,11 @@ void BackupChild::start(const std::string& folder, CommandReply reply) {
   }
   pid_ = *pid;
   reader_ = std::thread([this, output = ends[0], child_pid = *pid, reply = std::move(reply)] {
-    follow(output, child_pid, reply);
+    await_end(output, child_pid, reply);
   });
 }
 
-void BackupChild::follow(int output, pid_t pid, const CommandReply& reply) {
+void BackupChild::await_end(int output, pid_t pid, const CommandReply& reply) {
   std::string text;
   std::array<char, 4096> part{};
   for (;;) {

@@ -29,7 +29,8 @@ class BackupChild {
   void stop();
 
  private:
-  void follow(int output, pid_t pid, const CommandReply& reply);
+  /// Reads what the program prints, waits for its end, and calls `reply`. Thread: reader_.
+  void await_end(int output, pid_t pid, const CommandReply& reply);
 
   const std::string world_;
   std::mutex mutex_;  // a leaf: guards the members below

@@ -11,6 +11,7 @@
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
+#include "server/convert/model_options.hpp"
 #include "server/store/place_rule.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -91,6 +92,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       ->check(CLI::IsMember({"default", "none"}));
   made->add_option("--colours", out.colours,
                    "file: PNG with the colours of the columns, if SOURCE is a height map");
+  add_model_options(*made, out.model);
   made->add_option("--map", out.map,
                    "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
                    "\"planks\" below [materials]");

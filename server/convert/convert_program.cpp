@@ -13,7 +13,7 @@
 #include "common/core/version.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/formats/mapped_build.hpp"
-#include "server/mapping/colour_map_file.hpp"
+#include "server/convert/model_options.hpp"
 #include "server/mapping/material_map_file.hpp"
 
 namespace runstone {
@@ -26,16 +26,18 @@ struct ConvertOptions {
   std::uint64_t memory_mib = 2048;
   bool keep_all = true;
   bool lists = false;
-  ModelWriting model;
+  ModelReading read_model;
+  ModelWriting model;  // that is written
 };
 
-Result<FileBuild, std::string> read(const ConvertOptions& options) {
-  ForeignReading reading;
-  reading.keep_all = options.keep_all;
-  reading.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
-  std::string colours;
-  if (const auto added = add_colour_map(options.colours, colours, reading); !added)
-    return failure(added.error());
+Result<FileBuild, std::string> read(const ConvertOptions& options, std::ostream& out) {
+  BuildReading reading;
+  reading.foreign.keep_all = options.keep_all;
+  reading.foreign.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
+  reading.foreign.colours_file = options.colours;
+  reading.model = options.read_model;
+  reading.model.file.memory_mib = options.memory_mib;
+  reading.notice = [&out](const std::string& line) { out << line << '\n'; };
   auto build = read_build_of_file(options.in, std::move(reading), kFileBytesMax);
   if (build && !options.name.empty()) build->info.name = options.name;
   return build;
@@ -59,9 +61,9 @@ Result<void, std::string> map_materials(const ConvertOptions& options, FileBuild
 
 Result<void, std::string> convert(const ConvertOptions& options, std::ostream& out) {
   if (!options.out.empty()) {
-    if (auto why = ending_refusal(options.out, true); !why.empty()) return failure(std::move(why));
+    if (auto why = file_refusal(options.out, true); !why.empty()) return failure(std::move(why));
   }
-  auto build = read(options);
+  auto build = read(options, out);
   if (!build) return failure(build.error());
   if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
   if (!options.out.empty()) {
@@ -113,6 +115,7 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_flag_callback(
       "--only-cubes", [&options] { options.keep_all = false; },
       "leave out blocks that are no whole cubes, such as plants and torches");
+  add_model_options(app, options.read_model);
   app.add_flag("--close-t-junctions", options.model.closes_t_junctions,
                "models: let each edge of a triangle end where an edge of its neighbour ends");
   app.add_flag_callback(

@@ -2,9 +2,7 @@
 #include <utility>
 
 #include "common/build_files/build_files.hpp"
-#include "common/formats/file_build.hpp"
 #include "server/import/import_parts.hpp"
-#include "server/mapping/colour_map_file.hpp"
 
 namespace runstone {
 namespace {
@@ -15,17 +13,20 @@ constexpr std::size_t kFileBuildBytesMax = std::size_t{2} << 30;
 
 class FileParts final : public ImportParts {
  public:
-  FileParts(std::string file, VoxelPos at, bool keep_all, std::string colours)
-      : file_(std::move(file)), at_(at), keep_all_(keep_all), colours_(std::move(colours)) {}
+  FileParts(std::string file, VoxelPos at, bool keep_all, std::string colours, ModelReading model)
+      : file_(std::move(file)),
+        at_(at),
+        keep_all_(keep_all),
+        colours_(std::move(colours)),
+        model_(std::move(model)) {}
 
   std::size_t count() const override { return 1; }
   Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
-    ForeignReading reading;
-    reading.keep_all = keep_all_;
-    reading.bytes_max = kFileBuildBytesMax;
-    std::string colours;
-    if (const auto added = add_colour_map(colours_, colours, reading); !added)
-      return failure(added.error());
+    BuildReading reading;
+    reading.foreign.keep_all = keep_all_;
+    reading.foreign.bytes_max = kFileBuildBytesMax;
+    reading.foreign.colours_file = colours_;
+    reading.model = model_;
     auto build = read_build_of_file(file_, std::move(reading), kFileBytesMax);
     if (!build) return failure(build.error());
     const VoxelPos sides = build->build->sides();
@@ -43,15 +44,18 @@ class FileParts final : public ImportParts {
   VoxelPos at_;
   bool keep_all_;
   std::string colours_;
+  ModelReading model_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
                                                                   VoxelPos at, bool keep_all,
-                                                                  const std::string& colours) {
-  if (auto why = ending_refusal(file, false); !why.empty()) return failure(std::move(why));
-  return std::unique_ptr<ImportParts>(std::make_unique<FileParts>(file, at, keep_all, colours));
+                                                                  const std::string& colours,
+                                                                  const ModelReading& model) {
+  if (auto why = file_refusal(file, false); !why.empty()) return failure(std::move(why));
+  return std::unique_ptr<ImportParts>(
+      std::make_unique<FileParts>(file, at, keep_all, colours, model));
 }
 
 }  // namespace runstone

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "common/build_files/model_reading.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 #include "common/formats/rsb_build.hpp"
@@ -39,11 +40,12 @@ class ImportParts {
   virtual std::vector<std::string> notices() const { return {}; }
 };
 
-/// Opens a file of any format (file_build.hpp), whose lowest corner comes to `at`. `colours`: the
-/// PNG with the colours of a height map; empty: none.
+/// Opens a file of any format (build_files.hpp), whose lowest corner comes to `at`. `colours`: the
+/// PNG with the colours of a height map; empty: none. `model`: how a model becomes a build.
 Result<std::unique_ptr<ImportParts>, std::string> open_file_parts(const std::string& file,
                                                                   VoxelPos at, bool keep_all,
-                                                                  const std::string& colours);
+                                                                  const std::string& colours,
+                                                                  const ModelReading& model);
 /// Opens a Minecraft Java world: a folder with a folder `region`, a folder of region files, or one
 /// region file. Each region is a part. Voxels keep their places. Chunks that are damaged are left out.
 /// In a folder with a folder `region`, players arrive where level.dat says; a notice tells why it

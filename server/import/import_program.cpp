@@ -254,7 +254,8 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   const MaterialMap* const chosen = map ? &*map : nullptr;
   if (request.kind == ImportKind::luanti) return import_luanti_world(request, chosen, out);
   auto parts = request.kind == ImportKind::file
-                   ? open_file_parts(request.source, request.at, request.keep_all, request.colours)
+                   ? open_file_parts(request.source, request.at, request.keep_all, request.colours,
+                                     request.model)
                    : open_minecraft_parts(request.source, request.keep_all);
   if (!parts) return failure(parts.error());
   if (chosen == nullptr) return import_parts(request, **parts, out);

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <string>
 
+#include "common/build_files/model_reading.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 
@@ -22,6 +23,7 @@ struct ImportRequest {
   bool progress = false;  // print progress on standard error even if it is no terminal
   bool palette = true;    // add the materials of the built-in table that the world lacks
   std::string colours;    // of a file that is a height map: the PNG with its colours; empty: none
+  ModelReading model;     // of a file that is a model
   std::string map;        // TOML file that chooses materials (material_map_file.hpp); empty: none
 };
 

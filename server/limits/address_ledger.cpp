@@ -10,19 +10,19 @@ constexpr std::size_t kForgetSteps = 1'024;  // budgets more than were kept last
 }  // namespace
 
 bool AddressLedger::take(AddressBlock from, std::uint64_t price, TimeUs now_us) {
-  if (!of_address_.is_limited()) return true;
+  if (!address_budget_.is_limited()) return true;
   const Budgets budgets = budgets_of(from, now_us);
   if (budgets.address.wait_us(price, now_us) > 0) return false;
   return budgets.range.take(price, now_us) && budgets.address.take(price, now_us);
 }
 
 void AddressLedger::charge(AddressBlock from, std::uint64_t price, TimeUs now_us) {
-  if (!of_address_.is_limited()) return;
+  if (!address_budget_.is_limited()) return;
   budgets_of(from, now_us).address.charge(price, now_us);
 }
 
 void AddressLedger::charge_range(AddressBlock from, std::uint64_t price, TimeUs now_us) {
-  if (!of_address_.is_limited()) return;
+  if (!address_budget_.is_limited()) return;
   const Budgets budgets = budgets_of(from, now_us);
   budgets.address.charge(price, now_us);
   budgets.range.charge(price, now_us);
@@ -31,11 +31,11 @@ void AddressLedger::charge_range(AddressBlock from, std::uint64_t price, TimeUs 
 AddressLedger::Budgets AddressLedger::budgets_of(AddressBlock from, TimeUs now_us) {
   if (size() > 2 * size_kept_ + kForgetSteps) forget_full(now_us);
   TokenBucket& address =
-      addresses_.try_emplace(from, of_address_.per_second, of_address_.burst).first->second;
+      addresses_.try_emplace(from, address_budget_.per_second, address_budget_.burst).first->second;
   TokenBucket& range =
       ranges_
-          .try_emplace(address_range_of(from), of_address_.per_second * kBudgetsPerRange,
-                       of_address_.burst * kBudgetsPerRange)
+          .try_emplace(address_range_of(from), address_budget_.per_second * kBudgetsPerRange,
+                       address_budget_.burst * kBudgetsPerRange)
           .first->second;
   return {address, range};
 }
@@ -43,10 +43,10 @@ AddressLedger::Budgets AddressLedger::budgets_of(AddressBlock from, TimeUs now_u
 bool AddressLedger::has(AddressBlock from, std::uint64_t price, TimeUs now_us) const {
   const auto has = [&](const std::map<AddressBlock, TokenBucket>& budgets, AddressBlock of) {
     const auto found = budgets.find(of);
-    if (found == budgets.end()) return price <= of_address_.burst;
+    if (found == budgets.end()) return price <= address_budget_.burst;
     return TokenBucket(found->second).wait_us(price, now_us) == 0;
   };
-  if (!of_address_.is_limited()) return true;
+  if (!address_budget_.is_limited()) return true;
   return has(addresses_, from) && has(ranges_, address_range_of(from));
 }
 

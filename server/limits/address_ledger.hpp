@@ -20,7 +20,7 @@ class AddressLedger {
   /// A range has so many times the budget of an address.
   static constexpr std::uint64_t kBudgetsPerRange = 16;
 
-  explicit AddressLedger(const Budget& of_address) : of_address_(of_address) {}
+  explicit AddressLedger(const Budget& address_budget) : address_budget_(address_budget) {}
 
   /// Takes the price from both budgets. Returns false, and takes nothing, if one of them has less.
   /// Cost: O(log addresses), amortised.
@@ -50,7 +50,7 @@ class AddressLedger {
   Budgets budgets_of(AddressBlock from, TimeUs now_us);
   void forget_full(TimeUs now_us);
 
-  const Budget of_address_;
+  const Budget address_budget_;
   std::map<AddressBlock, TokenBucket> addresses_, ranges_;
   std::size_t size_kept_ = 0;  // after the last forget_full()
 };

@@ -58,9 +58,9 @@ class BudgetLedger {
   /// Returns the account of the payer's key.
   Account& account_of(const Payer& payer, TimeUs now_us);
   /// Returns the price of the same work in the units of an address.
-  std::uint64_t address_price(const Budget& of_key, std::uint64_t price) const;
+  std::uint64_t address_price(const Budget& key_budget, std::uint64_t price) const;
 
-  Budget usual_, of_address_;
+  Budget usual_, address_budget_;
   std::map<PublicKey, Account> keys_;
   std::map<AddressBlock, Account> addresses_;
   std::size_t size_kept_ = 0;  // after the last forget_full()

@@ -43,7 +43,7 @@ StoreResult<void> MapWorld::refresh(TimeUs steady_us, TimeUs utc_us,
   if (!file) {
     done = failure(file.error());
   } else if (world_ != nullptr && world_->file == *file && !has_old_loss(steady_us)) {
-    done = follow(utc_us, progress);
+    done = read_new_edits(utc_us, progress);
     // The log may have been compacted or replaced. Then the world is opened anew.
     if (!done) done = open(*file, utc_us, progress);
   } else {
@@ -101,7 +101,7 @@ StoreResult<void> MapWorld::open_present(Sequence at, const WorldAt::Progress& p
   return {};
 }
 
-StoreResult<void> MapWorld::follow(TimeUs utc_us, const WorldAt::Progress& progress) {
+StoreResult<void> MapWorld::read_new_edits(TimeUs utc_us, const WorldAt::Progress& progress) {
   Opened& world = *world_;
   const auto last = world.reader->last_sequence();
   if (!last) return failure(last.error());

@@ -84,7 +84,8 @@ class MapWorld {
   /// Returns true if the world lacked edits when it was opened, at least kLossAgeUsMax ago.
   bool has_old_loss(TimeUs steady_us) const;
   StoreResult<void> open(const FileId& file, TimeUs utc_us, const WorldAt::Progress& progress);
-  StoreResult<void> follow(TimeUs utc_us, const WorldAt::Progress& progress);
+  /// Brings the present up to the end of the log. Opens the world anew if it is far behind.
+  StoreResult<void> read_new_edits(TimeUs utc_us, const WorldAt::Progress& progress);
   StoreResult<void> open_present(Sequence at, const WorldAt::Progress& progress);
   StoreResult<void> read_materials();
   StoreResult<void> read_names();

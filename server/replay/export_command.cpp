@@ -46,7 +46,7 @@ std::string name_of_build(const ExportOptions& options, const std::string& place
 }
 
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
-  if (auto why = ending_refusal(options.file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = file_refusal(options.file, true); !why.empty()) return failure(std::move(why));
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;

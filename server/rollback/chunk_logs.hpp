@@ -53,13 +53,13 @@ class ChunkLogs {
   /// The records of read_ahead(). An edit may touch many chunks, so each chunk lists the places of its
   /// records.
   struct Ahead {
-    struct Of {
+    struct ChunkRecords {
       Sequence first = 1;
       std::vector<std::size_t> records;  // places in `records`, ascending
     };
     Sequence last = 0;
     std::vector<EditRecord> records;
-    std::map<ChunkKey, Of> chunks;
+    std::map<ChunkKey, ChunkRecords> chunks;
   };
   /// All edits of a chunk with sequences first..last.
   struct Kept {

@@ -137,7 +137,7 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
 }
 
 void CommandRunner::run(Work work, std::function<void(std::string)> then) {
-  readers_.read_log(std::move(work), [this, then = std::move(then)](std::string error) {
+  readers_.run_on_log_reader(std::move(work), [this, then = std::move(then)](std::string error) {
     then(std::move(error));
     tick(read_clocks());
   });

@@ -256,7 +256,7 @@ void ServerCore::read_checkpoint() {
   const auto work = [checkpoint](WorldReader& reader, const Generator& /*generator*/) {
     if (const auto read = reader.checkpoint()) *checkpoint = *read;
   };
-  readers_.read_log(work, [this, checkpoint](const std::string& /*error*/) {
+  readers_.run_on_log_reader(work, [this, checkpoint](const std::string& /*error*/) {
     world_->cluster().checkpoint_moved(*checkpoint);
   });
 }

@@ -81,14 +81,14 @@ bool ServerEnvironment::send_to_owner(const EncodedMessage& message) {
 
 void ServerEnvironment::leave_owner(const std::string& why) { owner_.leave(why); }
 
-void ServerEnvironment::read_log(Sequence first) {
+void ServerEnvironment::read_missed_log(Sequence first) {
   const auto found = std::make_shared<Result<ReadLog, std::string>>(ReadLog{});
   const auto work = [found, first](WorldReader& reader, const Generator& /*generator*/) {
-    *found = read_missed_log(reader, first);
+    *found = runstone::read_missed_log(reader, first);
   };
-  readers_.read_log(work, [this, found](const std::string& error) {
+  readers_.run_on_log_reader(work, [this, found](const std::string& error) {
     if (!error.empty()) *found = failure(error);
-    world_->cluster().log_read(*found, read_clocks());
+    world_->cluster().missed_log_read(*found, read_clocks());
   });
 }
 
@@ -97,7 +97,7 @@ void ServerEnvironment::find_action(const OperationId& first_op) {
   const auto work = [found, first_op](WorldReader& reader, const Generator& /*generator*/) {
     if (const auto action = runstone::find_action(reader, first_op)) *found = *action;
   };
-  readers_.read_log(work, [this, found, first_op](const std::string& /*error*/) {
+  readers_.run_on_log_reader(work, [this, found, first_op](const std::string& /*error*/) {
     world_->people().edits().action_found(first_op, *found, read_clocks());
   });
 }

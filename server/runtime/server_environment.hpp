@@ -74,7 +74,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void trust(SessionId session) override;
   bool send_to_owner(const EncodedMessage& message) override;
   void leave_owner(const std::string& why) override;
-  void read_log(Sequence first) override;
+  void read_missed_log(Sequence first) override;
   void find_action(const OperationId& first_op) override;
   bool owns_world() const override;
   bool log_has_room(std::size_t records) const override;

@@ -171,8 +171,8 @@ void WorldReaders::verify_build(std::vector<Bytes> parts,
   });
 }
 
-void WorldReaders::read_log(RollbackService::Workers::Work work,
-                            std::function<void(std::string)> then) {
+void WorldReaders::run_on_log_reader(RollbackService::Workers::Work work,
+                                     std::function<void(std::string)> then) {
   asio::post(*log_readers_, [this, work = std::move(work), then = std::move(then)] {
     const auto read = chunks_.with_reader([&](WorldReader& reader) { work(reader, generator_); });
     strand_.post([then, error = read ? std::string() : read.error().message()] { then(error); });

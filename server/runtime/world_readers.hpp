@@ -62,9 +62,10 @@ class WorldReaders {
   /// Joins the parts of an uploaded file and verifies all of it.
   void verify_build(std::vector<Bytes> parts, std::function<void(VerifiedBuildResult)> then);
 
-  /// Runs `work` with a reader of its own. The text is empty, or says why there was no reader and
-  /// `work` did not run.
-  void read_log(RollbackService::Workers::Work work, std::function<void(std::string)> then);
+  /// Runs `work` on a thread for reads of the log, with a reader of its own. The text is empty, or
+  /// says why there was no reader and `work` did not run.
+  void run_on_log_reader(RollbackService::Workers::Work work,
+                         std::function<void(std::string)> then);
 
   /// Ends the threads of the history readers, the log readers and the file reader. Waits for the reads under way,
   /// which end soon, and drops the queued ones: their `then` is not called. Requires that

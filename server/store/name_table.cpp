@@ -20,14 +20,14 @@ StoreResult<NameTable> NameTable::open(sql::Database& database) {
   const std::string row = "SELECT author, number, name, checksum FROM player_name";
   auto all = database.prepare(row + " ORDER BY author, number");
   if (!all) return failed(all.error());
-  auto of_author = database.prepare(row + " WHERE author = ?1 ORDER BY number");
-  if (!of_author) return failed(of_author.error());
+  auto by_author = database.prepare(row + " WHERE author = ?1 ORDER BY number");
+  if (!by_author) return failed(by_author.error());
   auto insert = database.prepare(
       "INSERT INTO player_name(author, number, name, checksum) VALUES(?1, ?2, ?3, ?4)");
   if (!insert) return failed(insert.error());
   auto drop = database.prepare("DELETE FROM player_name WHERE author = ?1 AND number <= ?2");
   if (!drop) return failed(drop.error());
-  return NameTable(database.file(), *std::move(all), *std::move(of_author), *std::move(insert),
+  return NameTable(database.file(), *std::move(all), *std::move(by_author), *std::move(insert),
                    *std::move(drop));
 }
 
@@ -61,16 +61,16 @@ StoreResult<std::vector<UsedName>> NameTable::names() {
 StoreResult<std::int64_t> NameTable::add(const UsedName& name) {
   std::vector<std::int64_t> numbers;
   {
-    const sql::ResetAtEnd reset_at_end(of_author_);
-    of_author_.bind(1, std::int64_t{name.author});
+    const sql::ResetAtEnd reset_at_end(by_author_);
+    by_author_.bind(1, std::int64_t{name.author});
     for (;;) {
-      const auto more = of_author_.step();
+      const auto more = by_author_.step();
       if (!more) return failed(more.error());
       if (!*more) break;
-      const auto used = name_of(of_author_);
+      const auto used = name_of(by_author_);
       if (!used) return failed(used.error());
       if (used->name == name.name) return std::int64_t{0};
-      numbers.push_back(of_author_.integer(1));
+      numbers.push_back(by_author_.integer(1));
     }
   }
   const std::int64_t number = numbers.empty() ? 1 : numbers.back() + 1;

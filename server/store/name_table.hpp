@@ -27,18 +27,18 @@ class NameTable {
   StoreResult<std::int64_t> add(const UsedName& name);
 
  private:
-  NameTable(std::string file, sql::Statement all, sql::Statement of_author, sql::Statement insert,
+  NameTable(std::string file, sql::Statement all, sql::Statement by_author, sql::Statement insert,
             sql::Statement drop)
       : file_(std::move(file)),
         all_(std::move(all)),
-        of_author_(std::move(of_author)),
+        by_author_(std::move(by_author)),
         insert_(std::move(insert)),
         drop_(std::move(drop)) {}
 
   StoreResult<UsedName> name_of(const sql::Statement& row) const;
 
   std::string file_;
-  sql::Statement all_, of_author_, insert_, drop_;
+  sql::Statement all_, by_author_, insert_, drop_;
 };
 
 }  // namespace runstone

@@ -22,16 +22,17 @@ void take_one(Counts& counts, AddressBlock of) {
 
 bool WaitingRequests::add(AddressBlock from) {
   const AddressBlock range = address_range_of(from);
-  if (count_of(of_address_, from) >= kOfAddressMax || count_of(of_range_, range) >= kOfRangeMax)
+  if (count_of(address_counts_, from) >= kOfAddressMax ||
+      count_of(range_counts_, range) >= kOfRangeMax)
     return false;
-  ++of_address_[from];
-  ++of_range_[range];
+  ++address_counts_[from];
+  ++range_counts_[range];
   return true;
 }
 
 void WaitingRequests::remove(AddressBlock from) {
-  take_one(of_address_, from);
-  take_one(of_range_, address_range_of(from));
+  take_one(address_counts_, from);
+  take_one(range_counts_, address_range_of(from));
 }
 
 }  // namespace runstone

@@ -20,7 +20,7 @@ class WaitingRequests {
   void remove(AddressBlock from);
 
  private:
-  std::map<AddressBlock, std::size_t> of_address_, of_range_;  // no count is 0
+  std::map<AddressBlock, std::size_t> address_counts_, range_counts_;  // no count is 0
 };
 
 }  // namespace runstone

@@ -273,7 +273,7 @@ void WorldServer::tick(const Clocks& now) {
   people.edits().step(now, [&](const Session& session) { cluster.count_edit(session); });
   commit_one(now);
   if (!cluster.is_following()) {
-    const auto news = rooms_->changes.follow_kept_jump(cluster.correction_refusal(), now);
+    const auto news = rooms_->changes.accept_kept_jump(cluster.correction_refusal(), now);
     if (news) rooms_->environment.report(OperatorLogLevel::warn, *news);
   }
   if (const auto warning = rooms_->order.authority().log_clock().take_warning())

@@ -18,7 +18,7 @@ Cluster::Cluster(const World& world, const RandomBytes& random)
                 world.chat, followers_, following_) {}
 
 void Cluster::follow() {
-  world_.order.ownership().follow();
+  world_.order.ownership().begin_following();
   following_.begin();
 }
 
@@ -44,9 +44,9 @@ void Cluster::owner_disconnected() {
   if (is_following()) following_.disconnected();
 }
 
-void Cluster::log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
+void Cluster::missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
   // The answer may come when this server has become the owner. It ends the read in any case.
-  following_.log_read(read, now);
+  following_.missed_log_read(read, now);
 }
 
 void Cluster::checkpoint_moved(Sequence checkpoint) {

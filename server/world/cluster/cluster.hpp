@@ -64,8 +64,8 @@ class Cluster {
   void owner_connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void owner_received(Message&& message, const Clocks& now);
   void owner_disconnected();
-  /// Handles the answer to WorldEnvironment::read_log().
-  void log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
+  /// Handles the answer to WorldEnvironment::read_missed_log().
+  void missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
   /// Reports that the owner has moved the checkpoint: every edit up to it is contained in
   /// snapshots.
   void checkpoint_moved(Sequence checkpoint);

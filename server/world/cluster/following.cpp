@@ -72,15 +72,15 @@ Result<void, std::string> Following::take(const ReadLog& read, const Clocks& now
   }
   if (!has_head) return failure("the log has other edits than this server");
   for (const PlayerRow& row : read.players) world_.order.players().restore(row);
-  world_.order.names().follow_all(read.names);
-  follow(records, now);
+  world_.order.names().restore_all(read.names);
+  apply_ordered(records, now);
   return {};
 }
 
 /// Applies records that another server has ordered, and sends them to the sessions.
-void Following::follow(std::span<const LogPartRecord> records, const Clocks& now) {
+void Following::apply_ordered(std::span<const LogPartRecord> records, const Clocks& now) {
   world_.players.add_waits(records, now);
-  world_.commits.follow(records, now);
+  world_.commits.apply_ordered(records, now);
 }
 
 // Messages of the owner.
@@ -105,7 +105,7 @@ void Following::go_live(const Clocks& now) {
 void Following::read_more() {
   if (std::exchange(is_reading_, true)) return;
   // The last record that is known is read again: its epoch shows whether the log is still the same.
-  world_.environment.read_log(std::max<Sequence>(1, world_.order.head()));
+  world_.environment.read_missed_log(std::max<Sequence>(1, world_.order.head()));
 }
 
 void Following::on_follow_answer(const FollowAnswer& answer, const Clocks& now) {
@@ -134,8 +134,8 @@ void Following::on_log_part(LogPart part, const Clocks& now) {
   for (const LogPlayer& row : part.players)
     world_.order.players().restore({row.author, row.key, row.name});
   for (const LogName& name : part.names)
-    world_.order.names().follow({{name.folded, name.name, name.key}, name.is_release});
-  follow(part.records, now);
+    world_.order.names().apply({{name.folded, name.name, name.key}, name.is_release});
+  apply_ordered(part.records, now);
   if (!part.records.empty())
     world_.order.authority().log_clock().hear_owner(part.records.back().record.time_us, now);
   not_durable_.push_back({std::move(part), now.steady_us});
@@ -246,7 +246,7 @@ void Following::received(Message&& message, const Clocks& now) {
   leave("the owner sent a message that does not belong here");
 }
 
-void Following::log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
+void Following::missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now) {
   is_reading_ = false;
   if (world_.link.stage() != Stage::reading) return;
   if (!read) return leave(read.error());

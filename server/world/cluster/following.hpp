@@ -77,7 +77,7 @@ class Following {
   void connected(const std::optional<ChannelBinding>& binding, const Clocks& now);
   void received(Message&& message, const Clocks& now);
   void disconnected();
-  void log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
+  void missed_log_read(const Result<ReadLog, std::string>& read, const Clocks& now);
   /// Pings the owner, and leaves it if it is silent.
   void tick(const Clocks& now);
 
@@ -98,7 +98,7 @@ class Following {
   void leave(const std::string& why);
   void leave_slow() { leave(kOwnerReadsTooSlowly); }
   Result<void, std::string> take(const ReadLog& read, const Clocks& now);
-  void follow(std::span<const LogPartRecord> records, const Clocks& now);
+  void apply_ordered(std::span<const LogPartRecord> records, const Clocks& now);
   void go_live(const Clocks& now);
   void read_more();
   void on_follow_answer(const FollowAnswer& answer, const Clocks& now);

@@ -16,10 +16,10 @@ class Resumes {
 
   /// From now on the edits of an open session are ignored, until its client has answered every
   /// Resume.
-  void ignore_edits(const Session& session) { of_[session.id].is_needed = true; }
+  void ignore_edits(const Session& session) { by_session_[session.id].is_needed = true; }
   bool ignores_edits(const Session& session) const {
-    const auto found = of_.find(session.id);
-    return found != of_.end() && (found->second.is_needed || found->second.unanswered > 0);
+    const auto found = by_session_.find(session.id);
+    return found != by_session_.end() && (found->second.is_needed || found->second.unanswered > 0);
   }
   /// Lets the client of an open session offer its edits again: `resolved` is the highest client
   /// sequence that the server has resolved which orders now. Closes the session if the client
@@ -27,15 +27,15 @@ class Resumes {
   void send(Session& session, ClientSequence resolved);
   /// Handles the client's answer. Closes the session if there was no Resume.
   void on_resumed(Session& session);
-  void forget(SessionId session) { of_.erase(session); }
+  void forget(SessionId session) { by_session_.erase(session); }
 
  private:
-  struct Of {
+  struct ResumeState {
     bool is_needed = false;
     std::uint32_t unanswered = 0;
   };
   Sessions& sessions_;
-  std::map<SessionId, Of> of_;
+  std::map<SessionId, ResumeState> by_session_;
 };
 
 }  // namespace runstone

@@ -122,7 +122,7 @@ std::optional<CorrectTime> Changes::time_correction() const {
   return is_needed ? std::optional(change) : std::nullopt;
 }
 
-std::optional<std::string> Changes::follow_kept_jump(const std::optional<std::string>& refusal,
+std::optional<std::string> Changes::accept_kept_jump(const std::optional<std::string>& refusal,
                                                      const Clocks& now) {
   const LogClock& clock = std::as_const(order_).authority().log_clock();
   if (!clock.is_step_due()) {

@@ -67,7 +67,7 @@ class Changes {
   /// a record if one is needed. `refusal` is why no CorrectTime may be ordered, if so: then, and if
   /// the log takes no record, a later call tries again. Returns a line for the operator, if there is
   /// news.
-  std::optional<std::string> follow_kept_jump(const std::optional<std::string>& refusal,
+  std::optional<std::string> accept_kept_jump(const std::optional<std::string>& refusal,
                                               const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log: all or none.
   /// Refuses bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them,
@@ -103,7 +103,7 @@ class Changes {
   const Rights& rights_;
   Quotas& quotas_;
   Commits& commits_;
-  bool is_jump_refused_ = false;  // follow_kept_jump() has reported that it cannot
+  bool is_jump_refused_ = false;  // accept_kept_jump() has reported that it cannot
 };
 
 }  // namespace runstone

@@ -103,14 +103,14 @@ bool Commits::commit(LargeEdits large, const Clocks& now) {
   return true;
 }
 
-void Commits::follow(std::span<const LogPartRecord> records, const Clocks& now) {
+void Commits::apply_ordered(std::span<const LogPartRecord> records, const Clocks& now) {
   while (!records.empty()) {
     const Epoch epoch = records.front().record.version.epoch;
     const auto other = std::ranges::find_if(
         records, [epoch](const LogPartRecord& part) { return part.record.version.epoch != epoch; });
     const auto same = records.first(static_cast<std::size_t>(other - records.begin()));
     if (epoch > order_.epoch()) begin_epoch(epoch);
-    const OrderedBatch batch = order_.authority().follow(same, now);
+    const OrderedBatch batch = order_.authority().apply_ordered(same, now);
     apply(batch.records);
     send_batch(batch, now);
     records = records.subspan(same.size());

@@ -40,7 +40,7 @@ class Commits {
   }
 
   /// Applies records that another server has ordered, which continue the log, and sends them.
-  void follow(std::span<const LogPartRecord> records, const Clocks& now);
+  void apply_ordered(std::span<const LogPartRecord> records, const Clocks& now);
   /// Begins an epoch of the log, in which all that came before stays.
   void begin_epoch(Epoch epoch);
 

@@ -213,8 +213,8 @@ class WorldEnvironment {
   /// Ends the connection with the owner. Answer: Cluster::owner_disconnected().
   virtual void leave_owner(const std::string& /*why*/) {}
   /// Reads durable records from `first` on, on a reader. Called at most once until it is answered.
-  /// Answer: Cluster::log_read().
-  virtual void read_log(Sequence /*first*/) {}
+  /// Answer: Cluster::missed_log_read().
+  virtual void read_missed_log(Sequence /*first*/) {}
 
   /// Looks an action up in the log, on a reader, by the operation of its first edit. Answer:
   /// EditRequests::action_found().

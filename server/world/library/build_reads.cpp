@@ -37,43 +37,44 @@ std::optional<std::string> BuildReads::refusal(const Session& session,
          std::to_string(row->file_bytes);
 }
 
-void BuildReads::send(const Session& session, Of& of, const Message& message) {
+void BuildReads::send(const Session& session, SessionReads& reads, const Message& message) {
   EncodedMessage encoded = encode_message(message);
-  if (of.unsent.empty() && sessions_.send(session, encoded)) return;
-  of.unsent.push_back(std::move(encoded));
+  if (reads.unsent.empty() && sessions_.send(session, encoded)) return;
+  reads.unsent.push_back(std::move(encoded));
 }
 
-bool BuildReads::send_unsent(const Session& session, Of& of) {
-  while (!of.unsent.empty() && sessions_.send(session, of.unsent.front())) of.unsent.pop_front();
-  return of.unsent.empty();
+bool BuildReads::send_unsent(const Session& session, SessionReads& reads) {
+  while (!reads.unsent.empty() && sessions_.send(session, reads.unsent.front()))
+    reads.unsent.pop_front();
+  return reads.unsent.empty();
 }
 
-void BuildReads::serve(const Session& session, Of& of, const Clocks& now) {
-  if (!send_unsent(session, of)) return;
-  const bool may_list = of.list && !of.is_list_read && now.steady_us >= of.list_due_us;
+void BuildReads::serve(const Session& session, SessionReads& reads, const Clocks& now) {
+  if (!send_unsent(session, reads)) return;
+  const bool may_list = reads.list && !reads.is_list_read && now.steady_us >= reads.list_due_us;
   if (may_list && lists_read_ < kBuildListsRead) {
-    of.list_due_us = now.steady_us + config_.view_interval_us;
-    const BuildsRequest request = *std::exchange(of.list, std::nullopt);
+    reads.list_due_us = now.steady_us + config_.view_interval_us;
+    const BuildsRequest request = *std::exchange(reads.list, std::nullopt);
     if (const auto why = refusal(session)) {
       Builds refused;
       refused.request = request.request;
       refused.refusal = refusal_line(*why);
-      send(session, of, refused);
+      send(session, reads, refused);
     } else {
-      of.is_list_read = true;
+      reads.is_list_read = true;
       ++lists_read_;
       sessions_.charge_reading(session, request.count * kListedBuildBytes);
       environment_.find_builds(session.id, request);
     }
   }
-  while (!of.is_piece_read && !of.pieces.empty() && pieces_read_ < kBuildPiecesRead) {
-    const BuildPieceRequest request = of.pieces.front();
+  while (!reads.is_piece_read && !reads.pieces.empty() && pieces_read_ < kBuildPiecesRead) {
+    const BuildPieceRequest request = reads.pieces.front();
     if (const auto why = refusal(session, request)) {
-      of.pieces.pop_front();
-      send(session, of, refused_piece(request, *why));
+      reads.pieces.pop_front();
+      send(session, reads, refused_piece(request, *why));
       continue;
     }
-    of.is_piece_read = true;
+    reads.is_piece_read = true;
     ++pieces_read_;
     const std::uint64_t left = order_.library().find(request.number)->file_bytes - request.offset;
     sessions_.charge_reading(
@@ -83,27 +84,27 @@ void BuildReads::serve(const Session& session, Of& of, const Clocks& now) {
 }
 
 void BuildReads::serve(const Clocks& now) {
-  auto next = of_.upper_bound(last_served_);
-  for (std::size_t left = of_.size(); left > 0; --left, ++next) {
-    if (next == of_.end()) next = of_.begin();
+  auto next = by_session_.upper_bound(last_served_);
+  for (std::size_t left = by_session_.size(); left > 0; --left, ++next) {
+    if (next == by_session_.end()) next = by_session_.begin();
     const Session* const session = std::as_const(sessions_).find(next->first);
     if (session == nullptr) continue;
-    const std::size_t reads = lists_read_ + pieces_read_;
+    const std::size_t reads_before = lists_read_ + pieces_read_;
     serve(*session, next->second, now);
-    if (lists_read_ + pieces_read_ != reads) last_served_ = session->id;
+    if (lists_read_ + pieces_read_ != reads_before) last_served_ = session->id;
   }
 }
 
 void BuildReads::on_request(Session& session, const BuildsRequest& request, const Clocks& now) {
-  of_[session.id].list = request;
+  by_session_[session.id].list = request;
   serve(now);
 }
 
 void BuildReads::on_piece_request(Session& session, const BuildPieceRequest& request,
                                   const Clocks& now) {
-  Of& of = of_[session.id];
-  if (of.pieces.size() + of.unsent.size() < kBuildPiecesMax) {
-    of.pieces.push_back(request);
+  SessionReads& reads = by_session_[session.id];
+  if (reads.pieces.size() + reads.unsent.size() < kBuildPiecesMax) {
+    reads.pieces.push_back(request);
     return serve(now);
   }
   // The answer is dropped if the queue of the session is full: only a client that sends more
@@ -118,9 +119,9 @@ void BuildReads::found(SessionId session, std::uint32_t request,
                        Result<FoundBuilds, std::string> found, const Clocks& now) {
   --lists_read_;
   const Session* const mine = std::as_const(sessions_).find(session);
-  if (mine != nullptr && of_.contains(session)) {
-    Of& of = of_.at(session);
-    of.is_list_read = false;
+  if (mine != nullptr && by_session_.contains(session)) {
+    SessionReads& reads = by_session_.at(session);
+    reads.is_list_read = false;
     Builds answer;
     answer.request = request;
     if (found) {
@@ -136,7 +137,7 @@ void BuildReads::found(SessionId session, std::uint32_t request,
     } else {
       answer.refusal = refusal_line(found.error());
     }
-    send(*mine, of, answer);
+    send(*mine, reads, answer);
   }
   serve(now);
 }
@@ -145,10 +146,10 @@ void BuildReads::piece_read(SessionId session, std::uint32_t request,
                             Result<Bytes, std::string> piece, const Clocks& now) {
   --pieces_read_;
   const Session* const mine = std::as_const(sessions_).find(session);
-  if (mine != nullptr && of_.contains(session)) {
-    Of& of = of_.at(session);
-    of.is_piece_read = false;
-    of.pieces.pop_front();
+  if (mine != nullptr && by_session_.contains(session)) {
+    SessionReads& reads = by_session_.at(session);
+    reads.is_piece_read = false;
+    reads.pieces.pop_front();
     BuildPiece answer;
     answer.request = request;
     if (piece) {
@@ -156,7 +157,7 @@ void BuildReads::piece_read(SessionId session, std::uint32_t request,
     } else {
       answer.refusal = refusal_line(piece.error());
     }
-    send(*mine, of, answer);
+    send(*mine, reads, answer);
   }
   serve(now);
 }

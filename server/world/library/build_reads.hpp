@@ -55,10 +55,10 @@ class BuildReads {
   /// Sends the answers and begins the reads that had to wait. Call it on every tick. Cost: O(sessions
   /// that used the library).
   void serve(const Clocks& now);
-  void forget(SessionId session) { of_.erase(session); }
+  void forget(SessionId session) { by_session_.erase(session); }
 
  private:
-  struct Of {
+  struct SessionReads {
     std::optional<BuildsRequest> list;  // that waits
     bool is_list_read = false;
     TimeUs list_due_us = 0;                // when the next list may be read
@@ -69,17 +69,17 @@ class BuildReads {
   std::optional<std::string> refusal(const Session& session) const;
   std::optional<std::string> refusal(const Session& session,
                                      const BuildPieceRequest& request) const;
-  void send(const Session& session, Of& of, const Message& message);
+  void send(const Session& session, SessionReads& reads, const Message& message);
   /// Returns true if no answer of the session waits any more.
-  bool send_unsent(const Session& session, Of& of);
-  void serve(const Session& session, Of& of, const Clocks& now);
+  bool send_unsent(const Session& session, SessionReads& reads);
+  void serve(const Session& session, SessionReads& reads, const Clocks& now);
 
   const WorldConfig& config_;
   WorldEnvironment& environment_;
   Sessions& sessions_;
   const Order& order_;
   const Rights& rights_;
-  std::map<SessionId, Of> of_;  // of the sessions that used the library
+  std::map<SessionId, SessionReads> by_session_;  // of the sessions that used the library
   SessionId last_served_ = 0;
   std::size_t lists_read_ = 0, pieces_read_ = 0;
 };

@@ -90,7 +90,7 @@ void Authority::accept_wall_clock() {
   timed_from_ = head_ + 1;
 }
 
-OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clocks& now) {
+OrderedBatch Authority::apply_ordered(std::span<const LogPartRecord> records, const Clocks& now) {
   OrderedBatch batch;
   batch.commit.epoch = last_epoch_ = records.front().record.version.epoch;
   for (const LogPartRecord& part : records) {
@@ -98,7 +98,7 @@ OrderedBatch Authority::follow(std::span<const LogPartRecord> records, const Clo
     RUNSTONE_ASSERT(record.version.seq == head_ + 1);
     RUNSTONE_ASSERT(record.version.epoch == batch.commit.epoch);
     ++head_;
-    log_clock_.follow(record.time_us, corrects_time(record));
+    log_clock_.note_ordered(record.time_us, corrects_time(record));
     if (corrects_time(record)) timed_from_ = head_;
     resolved_.raise(record.op);
     OrderedEdit ordered;

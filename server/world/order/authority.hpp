@@ -87,7 +87,7 @@ class Authority {
   // A server that follows. It orders nothing itself.
   /// Applies records that the owner has ordered, now or earlier. The commit has their order and the
   /// time `now`. Requires records of one epoch that continue the log.
-  OrderedBatch follow(std::span<const LogPartRecord> records, const Clocks& now);
+  OrderedBatch apply_ordered(std::span<const LogPartRecord> records, const Clocks& now);
   /// From now on edits are ordered in this epoch. Requires that it is not below epoch().
   void begin_epoch(Epoch epoch) { epoch_ = epoch; }
 

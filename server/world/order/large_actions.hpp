@@ -32,18 +32,18 @@ class LargeActions {
 
   /// `first_op` is the operation of the first edit of an action. Cost: O(log clients).
   Standing find(const OperationId& first_op) const {
-    const auto of = clients_.find({first_op.author, first_op.instance});
-    if (of == clients_.end()) return Standing::unknown;
-    const auto action = find_in(of->second.actions, first_op.seq);
-    if (action == of->second.actions.end()) return Standing::unknown;
+    const auto client = clients_.find({first_op.author, first_op.instance});
+    if (client == clients_.end()) return Standing::unknown;
+    const auto action = find_in(client->second.actions, first_op.seq);
+    if (action == client->second.actions.end()) return Standing::unknown;
     return action->is_ended ? Standing::ended : Standing::open;
   }
   /// Returns the sequence of the first edit of an action, or 0 if it is not ordered or not remembered.
   Sequence first_of(const OperationId& first_op) const {
-    const auto of = clients_.find({first_op.author, first_op.instance});
-    if (of == clients_.end()) return 0;
-    const auto action = find_in(of->second.actions, first_op.seq);
-    return action == of->second.actions.end() ? 0 : action->first;
+    const auto client = clients_.find({first_op.author, first_op.instance});
+    if (client == clients_.end()) return 0;
+    const auto action = find_in(client->second.actions, first_op.seq);
+    return action == client->second.actions.end() ? 0 : action->first;
   }
   /// Notes that the first edit of an action was accepted. It is ordered later.
   void begin(const OperationId& first_op) { add(first_op, {first_op.seq, 0, 0, false}); }
@@ -55,13 +55,13 @@ class LargeActions {
   /// the action, or 0 if it is the first one. An action that was forgotten since its edit was accepted
   /// begins anew. Cost: O(log clients).
   Sequence order(const OperationId& op, ClientSequence action, Sequence seq) {
-    const auto of = clients_.find({op.author, op.instance});
-    if (of != clients_.end()) {
-      std::vector<Open>& actions = of->second.actions;
+    const auto client = clients_.find({op.author, op.instance});
+    if (client != clients_.end()) {
+      std::vector<Open>& actions = client->second.actions;
       const auto found = actions.begin() + (find_in(actions, action) - actions.cbegin());
       if (found != actions.end()) {
         std::rotate(found, std::next(found), actions.end());
-        by_use_.splice(by_use_.end(), by_use_, of->second.place);
+        by_use_.splice(by_use_.end(), by_use_, client->second.place);
         Open& open = actions.back();
         open.last = seq;
         if (open.first != 0) return open.first;
@@ -77,9 +77,9 @@ class LargeActions {
   /// of the author).
   Sequence end(AuthorId author, Sequence first) {
     Sequence last = 0;
-    for (auto of = clients_.lower_bound({author, 0});
-         of != clients_.end() && of->first.first == author; ++of) {
-      for (Open& open : of->second.actions) {
+    for (auto client = clients_.lower_bound({author, 0});
+         client != clients_.end() && client->first.first == author; ++client) {
+      for (Open& open : client->second.actions) {
         if (open.first != first) continue;
         open.is_ended = true;
         last = std::max(last, open.last);
@@ -98,7 +98,7 @@ class LargeActions {
     Sequence last = 0;
     bool is_ended = false;
   };
-  struct Of {
+  struct ClientActions {
     std::vector<Open> actions;          // that of the newest edit is last
     std::list<Client>::iterator place;  // in by_use_
   };
@@ -109,10 +109,10 @@ class LargeActions {
   }
   void add(const OperationId& first_op, const Open& open) {
     const Client client{first_op.author, first_op.instance};
-    const auto [of, is_new] = clients_.try_emplace(client);
-    if (is_new) of->second.place = by_use_.insert(by_use_.end(), client);
-    by_use_.splice(by_use_.end(), by_use_, of->second.place);
-    std::vector<Open>& actions = of->second.actions;
+    const auto [entry, is_new] = clients_.try_emplace(client);
+    if (is_new) entry->second.place = by_use_.insert(by_use_.end(), client);
+    by_use_.splice(by_use_.end(), by_use_, entry->second.place);
+    std::vector<Open>& actions = entry->second.actions;
     const auto known = find_in(actions, open.action);
     if (known != actions.end()) actions.erase(known);
     if (actions.size() == kActionsOfClientMax) actions.erase(actions.begin());
@@ -122,7 +122,7 @@ class LargeActions {
     by_use_.pop_front();
   }
 
-  std::map<Client, Of> clients_;
+  std::map<Client, ClientActions> clients_;
   std::list<Client> by_use_;  // the clients; that of the newest edit is at the end
 };
 

@@ -20,7 +20,7 @@ Library::Library(const LibraryLimits& limits, std::span<const LibraryRow> rows) 
 
 void Library::add(const LibraryRow& row) {
   if (!rows_.emplace(row.number, row).second) return;
-  for (LibraryTotal* total : {&total_, &of_authors_[row.author]}) {
+  for (LibraryTotal* total : {&total_, &author_totals_[row.author]}) {
     ++total->builds;
     total->file_bytes += row.file_bytes;
   }
@@ -37,12 +37,12 @@ void Library::apply(std::span<const EditRecord> records) {
     }
     const auto found = rows_.find(std::get_if<RemoveBuild>(change)->number);
     if (found == rows_.end()) continue;
-    const auto of_author = of_authors_.find(found->second.author);
-    for (LibraryTotal* total : {&total_, &of_author->second}) {
+    const auto author = author_totals_.find(found->second.author);
+    for (LibraryTotal* total : {&total_, &author->second}) {
       --total->builds;
       total->file_bytes -= found->second.file_bytes;
     }
-    if (of_author->second.builds == 0) of_authors_.erase(of_author);
+    if (author->second.builds == 0) author_totals_.erase(author);
     rows_.erase(found);
   }
 }
@@ -79,8 +79,8 @@ const LibraryRow* Library::find(Sequence number) const {
 }
 
 LibraryTotal Library::total_of(AuthorId author) const {
-  const auto found = of_authors_.find(author);
-  return found == of_authors_.end() ? LibraryTotal{} : found->second;
+  const auto found = author_totals_.find(author);
+  return found == author_totals_.end() ? LibraryTotal{} : found->second;
 }
 
 }  // namespace runstone

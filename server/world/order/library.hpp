@@ -27,7 +27,7 @@ class Library {
   /// `rows`: the builds at the start.
   Library(const LibraryLimits& limits, std::span<const LibraryRow> rows);
 
-  /// Follows the changes of the library among records that were ordered just now. A removal of a
+  /// Applies the changes of the library among records that were ordered just now. A removal of a
   /// build that does not exist changes nothing.
   void apply(std::span<const EditRecord> records);
 
@@ -51,7 +51,7 @@ class Library {
 
   LibraryLimits limits_;
   std::map<Sequence, LibraryRow> rows_;
-  std::map<AuthorId, LibraryTotal> of_authors_;
+  std::map<AuthorId, LibraryTotal> author_totals_;
   LibraryTotal total_;
   Sequence newest_ = 0;
   std::uint32_t contents_ = 0;

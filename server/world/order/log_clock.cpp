@@ -54,7 +54,7 @@ void LogClock::warn_of_end_ahead() {
       "is right, the command `clock correct` ends that";
 }
 
-void LogClock::follow(TimeUs time_us, bool is_correction) {
+void LogClock::note_ordered(TimeUs time_us, bool is_correction) {
   if (is_correction) {
     last_us_ = time_us;
     ahead_us_ = 0;

@@ -46,7 +46,7 @@ class LogClock {
   TimeUs stamp();
   /// Reports an edit that another server has ordered at this time, now or earlier. `is_correction` is
   /// true if the record corrects the time.
-  void follow(TimeUs time_us, bool is_correction = false);
+  void note_ordered(TimeUs time_us, bool is_correction = false);
   /// Reports that the owner of the world has ordered an edit at this time just now.
   void hear_owner(TimeUs time_us, const Clocks& now);
   /// From now on this server orders the edits, because it has taken the world over.

@@ -53,13 +53,13 @@ class NameClaims {
     return NameChange{*std::move(claim), true};
   }
   /// Makes these the claims. All of them are on disk.
-  void follow_all(const std::vector<NameClaim>& claims) {
+  void restore_all(const std::vector<NameClaim>& claims) {
     by_folded_.clear();
     by_key_.clear();
     for (const NameClaim& claim : claims) restore(claim);
   }
-  /// Does what another server has written already.
-  void follow(const NameChange& change) {
+  /// Applies a change that another server has written already.
+  void apply(const NameChange& change) {
     remove(change.claim.folded);
     if (!change.is_release) restore(change.claim);
   }

@@ -14,7 +14,7 @@ void Ownership::move(State from, State to) {
   RUNSTONE_ASSERT(has_moved);
 }
 
-void Ownership::follow() { move(State::owning, State::following); }
+void Ownership::begin_following() { move(State::owning, State::following); }
 void Ownership::begin_handover() { move(State::owning, State::handing_over); }
 void Ownership::end_handover() { move(State::handing_over, State::following); }
 void Ownership::begin_takeover() {

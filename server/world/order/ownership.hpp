@@ -1,8 +1,8 @@
 // Ownership: the part that this server plays in its world, as one state with named transitions.
 //
-//             follow()        begin_takeover()       end_takeover()
-//   owning -----------> following ---------> taking_over ---------> owning
+//   owning -- begin_following() --> following
 //   owning -- begin_handover() --> handing_over -- end_handover() --> following
+//   following -- begin_takeover() --> taking_over -- end_takeover() --> owning
 //
 //   lose_log()       owning -> log_lost,  handing_over -> handover_failed
 //   find_fork()      following, taking_over -> forked
@@ -43,7 +43,7 @@ constexpr bool has_failed(OwnershipState state) { return state >= OwnershipState
 
 class Ownership {
  public:
-  /// A server owns its world unless it begins with follow().
+  /// A server owns its world unless it begins with begin_following().
   Ownership() = default;
   Ownership(const Ownership&) = delete;
   Ownership& operator=(const Ownership&) = delete;
@@ -54,7 +54,7 @@ class Ownership {
   // Each transition requires that the server is in a state from which it leads, as the table above
   // says.
   /// The server starts while another one owns the world. No other transition may come before it.
-  void follow();
+  void begin_following();
   /// The server orders nothing from now on, because another one is to take the world over.
   void begin_handover();
   /// The log is complete, and the caller gives the lease up.

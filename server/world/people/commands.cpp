@@ -19,7 +19,7 @@ void Commands::send_lines(Session& session, std::uint32_t id, const std::vector<
 }
 
 void Commands::on_command(Session& session, const CommandRequest& request, const Clocks& now) {
-  Of& mine = of_[session.id];
+  SessionCommands& mine = by_session_[session.id];
   if (mine.under_way) {
     return send_lines(session, request.id,
                       {"one command at a time: the one before is still under way"}, true, false);
@@ -39,21 +39,21 @@ std::optional<View> Commands::restore_preview_view(SessionId session) const {
 
 void Commands::show_restore(SessionId session, RestorePreview preview) {
   const Session* const mine = sessions_.find(session);
-  const auto of = of_.find(session);
-  if (mine == nullptr || of == of_.end() || !of->second.under_way ||
+  const auto commands = by_session_.find(session);
+  if (mine == nullptr || commands == by_session_.end() || !commands->second.under_way ||
       !mine->has(kFeatureRestorePreview))
     return;
-  preview.command = *of->second.under_way;
+  preview.command = *commands->second.under_way;
   sessions_.send_or_skip(*mine, encode_message(preview));
 }
 
 void Commands::answer(SessionId session, const std::vector<std::string>& lines, bool is_done,
                       bool is_ok) {
   Session* const mine = sessions_.find(session);
-  const auto of = of_.find(session);
-  if (mine == nullptr || of == of_.end() || !of->second.under_way) return;
-  const std::uint32_t id = *of->second.under_way;
-  if (is_done) of->second.under_way.reset();
+  const auto commands = by_session_.find(session);
+  if (mine == nullptr || commands == by_session_.end() || !commands->second.under_way) return;
+  const std::uint32_t id = *commands->second.under_way;
+  if (is_done) commands->second.under_way.reset();
   send_lines(*mine, id, lines, is_done, is_ok);
 }
 

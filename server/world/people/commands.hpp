@@ -34,10 +34,10 @@ class Commands {
   /// is none, or if the client cannot show it. If the session's queue is full, the client gets the
   /// text of the answer alone.
   void show_restore(SessionId session, RestorePreview preview);
-  void forget(SessionId session) { of_.erase(session); }
+  void forget(SessionId session) { by_session_.erase(session); }
 
  private:
-  struct Of {
+  struct SessionCommands {
     TokenBucket left{kCommandsPerSecond, kCommandBurst};
     std::optional<std::uint32_t> under_way;  // the id of the command
   };
@@ -47,7 +47,7 @@ class Commands {
   WorldEnvironment& environment_;
   Sessions& sessions_;
   const Ground& ground_;
-  std::map<SessionId, Of> of_;  // of the sessions that have given a command
+  std::map<SessionId, SessionCommands> by_session_;  // of the sessions that have given a command
 };
 
 }  // namespace runstone

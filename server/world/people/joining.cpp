@@ -176,7 +176,7 @@ bool Joining::close_if_not_admitted(Session& session, const JoinCredentials& bro
   if (!why) {
     if (!accepted) {
       world_.rights.note_refusal(session.key, "role: " + accepted.error(), now.utc_us);
-      of_[session.id].no_role = accepted.error();
+      handshakes_[session.id].no_role = accepted.error();
     }
     return false;
   }
@@ -194,7 +194,7 @@ bool Joining::close_if_authenticated(Session& session) {
 }
 
 bool Joining::close_if_forged(Session& session, const Signature& signature) {
-  if (verify(session.key, of_[session.id].transcript, signature)) return false;
+  if (verify(session.key, handshakes_[session.id].transcript, signature)) return false;
   world_.sessions.close(session, GoodbyeReason::not_authenticated,
                         "the signature does not match the key");
   return true;
@@ -266,12 +266,12 @@ void Joining::open(Session& session, const Clocks& now) {
   world_.presence.send_all_poses_to(session);
   world_.chat.send_recent(session, now);
   // A player who is let in without the invite must not believe that it has worked.
-  const std::string no_role = std::exchange(of_[session.id].no_role, {});
+  const std::string no_role = std::exchange(handshakes_[session.id].no_role, {});
   if (!no_role.empty()) world_.chat.tell(session, "you were given no role: " + no_role, now);
 }
 
 void Joining::set_authenticated(Session& session) {
-  of_[session.id].transcript = {};
+  handshakes_[session.id].transcript = {};
   session.is_authenticated = true;
   // Connections without a key no longer replace it.
   if (!session.is_relayed) world_.environment.opened(session.id);
@@ -323,7 +323,7 @@ void Joining::on_hello(Session& session, const Hello& hello) {
   if (password && session.binding) welcome.password_salt = password->salt;
   random_(welcome.challenge);
   welcome.signature = sign(config.server_keys, server_transcript(hello, welcome, session.binding));
-  of_[session.id].transcript = client_transcript(hello, welcome, session.binding);
+  handshakes_[session.id].transcript = client_transcript(hello, welcome, session.binding);
   world_.receipts.welcomed(session, welcome);
   session.stage = SessionStage::authenticating;
   world_.environment.set_encodings(

@@ -78,10 +78,10 @@ class Joining {
   /// Keeps a sealed key of a player who may join, or answers why not. The session ends in any case,
   /// and closes with not_authenticated or not_admitted if the player may not join.
   void on_key_deposit(Session& session, const KeyDeposit& deposit, const Clocks& now);
-  void forget(SessionId session) { of_.erase(session); }
+  void forget(SessionId session) { handshakes_.erase(session); }
 
  private:
-  struct Of {
+  struct Handshake {
     Bytes transcript;     // the bytes that the client must sign; empty in other stages
     std::string no_role;  // why the player's invite or password gave no role, until it is told
   };
@@ -103,7 +103,7 @@ class Joining {
   World world_;
   RandomBytes random_;
   Credentials credentials_;
-  std::map<SessionId, Of> of_;  // of the sessions that have sent hello
+  std::map<SessionId, Handshake> handshakes_;  // of the sessions that have sent hello
 };
 
 }  // namespace runstone

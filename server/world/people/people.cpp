@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "protocol/codec/invite_token.hpp"
 #include "protocol/codec/server_link.hpp"
@@ -40,6 +41,20 @@ std::string People::invite_link(InviteId invite) const {
   const WorldConfig& config = world_.config;
   const std::string token = invite_token(invite, config.world_id, config.server_keys);
   return text_of(ServerLink{config.link_address, token});
+}
+
+std::size_t People::kick(const RestrictionSubject& who, const std::string& reason) {
+  const std::string text = reason.empty() ? "you were kicked" : "you were kicked: " + reason;
+  std::size_t kicked = 0;
+  for (Session* session : world_.sessions.open()) {
+    const auto* key = std::get_if<PublicKey>(&who);
+    const bool is_meant = key != nullptr ? session->key == *key
+                                         : std::get<AddressRange>(who).contains(session->address);
+    if (!is_meant) continue;
+    world_.sessions.close(*session, GoodbyeReason::not_admitted, text);
+    ++kicked;
+  }
+  return kicked;
 }
 
 void People::close_silent(const Clocks& now) {

@@ -49,9 +49,7 @@ class People {
   /// Returns the players with open sessions, ordered by session.
   std::vector<OnlinePlayer> online() const;
   /// Closes the sessions of a key, or of a range of addresses. Returns their number.
-  std::size_t kick(const RestrictionSubject& who, const std::string& reason) {
-    return world_.rights.kick(who, reason);
-  }
+  std::size_t kick(const RestrictionSubject& who, const std::string& reason);
   /// Returns a random number for a new invite.
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite.

@@ -51,7 +51,7 @@ void Presence::forget(const Session& session) {
 }
 
 void Presence::on_move(Session& session, const Move& move, const Clocks& now) {
-  session.position.follow(session.pose.at, config_.speed_max, now.steady_us);
+  session.position.advance(session.pose.at, config_.speed_max, now.steady_us);
   if (session.pose == move.pose) return;
   session.pose = move.pose;
   moved_.insert(session.id);

@@ -57,7 +57,7 @@ void Previews::pass_on(const Session& sender, const std::vector<SessionId>& to,
 }
 
 void Previews::on_share(Session& session, const PreviewShare& share, const Clocks& now) {
-  Of& mine = of_[session.id];
+  SessionPreviews& mine = by_session_[session.id];
   if (!mine.sent.take(1, now.steady_us))
     return sessions_.charge_reading(session, kDroppedPreviewBytes);
   const bool are_possible =
@@ -71,7 +71,7 @@ void Previews::on_share(Session& session, const PreviewShare& share, const Clock
       const Session* const other = sessions_.find(id);
       if (readers.size() == kPreviewReadersMax) break;
       if (other == nullptr || !reads_previews(*other, session)) continue;
-      if (of_[id].read.take(1, now.steady_us)) {
+      if (by_session_[id].read.take(1, now.steady_us)) {
         readers.push_back(id);
       } else if (std::ranges::binary_search(mine.readers, id)) {
         waiting.push_back(id);

@@ -31,10 +31,10 @@ class Previews {
   /// materials, is passed on as none; rights are not checked. What is passed on counts as read from
   /// the sender. Cost: O(touched chunks + their subscribers).
   void on_share(Session& session, const PreviewShare& share, const Clocks& now);
-  void forget(SessionId session) { of_.erase(session); }
+  void forget(SessionId session) { by_session_.erase(session); }
 
  private:
-  struct Of {
+  struct SessionPreviews {
     TokenBucket sent{kPreviewsPerSecond, kPreviewBurst};
     TokenBucket read{kPreviewsReadPerSecond, kPreviewsReadBurst};
     std::vector<SessionId> readers;  // sessions that show its last preview, ascending
@@ -50,7 +50,7 @@ class Previews {
   const Order& order_;
   const Receipts& receipts_;
   const Ground& ground_;
-  std::map<SessionId, Of> of_;  // of the sessions that send or read previews
+  std::map<SessionId, SessionPreviews> by_session_;  // of the sessions that send or read previews
 };
 
 }  // namespace runstone

@@ -18,8 +18,8 @@ namespace runstone {
 
 class WaitingEdits {
  public:
-  bool has_any() const { return !of_.empty(); }
-  bool has_any(SessionId session) const { return of_.contains(session); }
+  bool has_any() const { return !queues_.empty(); }
+  bool has_any(SessionId session) const { return queues_.contains(session); }
   /// Requires that the edits of the session were pushed in ascending order. Cost: O(log edits).
   bool has(SessionId session, ClientSequence seq) const;
   /// Returns false if the session would have more than kWaitingEditsMax edits here, or more than
@@ -27,23 +27,23 @@ class WaitingEdits {
   bool has_room_for(SessionId session, const EditRequest& request) const;
   void push(SessionId session, const EditRequest& request);
   /// Returns the session's oldest edit. Requires has_any(session).
-  const EditRequest& front(SessionId session) const { return of_.at(session).edits.front(); }
+  const EditRequest& front(SessionId session) const { return queues_.at(session).edits.front(); }
   void pop(SessionId session);
   /// Returns the sessions with edits, in the order of their turns.
   std::vector<SessionId> sessions() const;
   /// The next turn begins with this session, or the one behind it.
   void begin_turn_at(SessionId session) { turn_ = session; }
-  void forget(SessionId session) { of_.erase(session); }
-  void clear() { of_.clear(); }
+  void forget(SessionId session) { queues_.erase(session); }
+  void clear() { queues_.clear(); }
   /// Returns the number of edits. Cost: O(sessions).
   std::size_t size() const;
 
  private:
-  struct Of {
+  struct Queue {
     std::deque<EditRequest> edits;
     std::size_t bytes = 0;
   };
-  std::map<SessionId, Of> of_;  // none is empty
+  std::map<SessionId, Queue> queues_;  // none is empty
   SessionId turn_ = 0;
 };
 

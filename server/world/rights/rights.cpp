@@ -2,8 +2,8 @@
 
 #include <variant>
 
-#include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/rights/restriction_text.hpp"
 #include "protocol/rules/refusal_text.hpp"
 
 namespace runstone {
@@ -16,14 +16,6 @@ RightsDecision granted_by_settings() {
 }
 
 constexpr const char* kMayNotEdit = "you may not edit";
-
-/// Returns text such as "you are banned until 2026-12-01T00:00:00Z: griefing".
-std::string restriction_text(const char* what, const Restrict& restriction) {
-  std::string text = what;
-  if (restriction.until_us != 0) text += " until " + utc_text(restriction.until_us);
-  if (!restriction.reason.empty()) text += ": " + restriction.reason;
-  return text;
-}
 
 /// Returns the player whom a change is about, or null.
 const PublicKey* target_of(const RightsChange& change) {
@@ -183,20 +175,6 @@ void Rights::close_refused() {
   }
   for (const auto& [session, why] : refused)
     sessions_.close(*session, GoodbyeReason::not_admitted, why);
-}
-
-std::size_t Rights::kick(const RestrictionSubject& who, const std::string& reason) {
-  const std::string text = reason.empty() ? "you were kicked" : "you were kicked: " + reason;
-  std::size_t kicked = 0;
-  for (Session* session : sessions_.open()) {
-    const auto* key = std::get_if<PublicKey>(&who);
-    const bool is_meant = key != nullptr ? session->key == *key
-                                         : std::get<AddressRange>(who).contains(session->address);
-    if (!is_meant) continue;
-    sessions_.close(*session, GoodbyeReason::not_admitted, text);
-    ++kicked;
-  }
-  return kicked;
 }
 
 }  // namespace runstone

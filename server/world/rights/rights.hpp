@@ -68,8 +68,6 @@ class Rights {
   std::optional<std::vector<VoxelBox>> apply(const std::vector<EditRecord>& records);
   /// Closes the sessions that may not stay.
   void close_refused();
-  /// Closes the sessions of a player or of a range of addresses. Returns their number.
-  std::size_t kick(const RestrictionSubject& who, const std::string& reason);
 
   /// Notes that a player was refused something, for moderators.
   void note_refusal(const PublicKey& key, const std::string& what, TimeUs utc_us) {

@@ -9,7 +9,7 @@
 #include "common/core/channel_binding.hpp"
 #include "common/core/ids.hpp"
 #include "protocol/codec/message_table.hpp"
-#include "server/limits/followed_position.hpp"
+#include "server/limits/assumed_position.hpp"
 
 namespace runstone {
 
@@ -36,7 +36,7 @@ struct Session {
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
   Pose pose;
-  FollowedPosition position;  // the reach of edits is measured from there
+  AssumedPosition position;  // the reach of edits is measured from there
 
   bool is_open() const { return stage == SessionStage::open && !is_closed; }
   bool has(std::uint64_t feature) const { return (features & feature) != 0; }

@@ -64,10 +64,10 @@ TEST_CASE("every form of a chunk decodes to the encoded voxels", "[bench]") {
 
 TEST_CASE("a Luanti block on the wire is the game's row without the fields of the disk",
           "[bench]") {
-  auto map = LuantiMap::open(RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small/map.sqlite");
+  auto map = open_luanti_sqlite_map(RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small/map.sqlite");
   REQUIRE(map);
   std::size_t rows = 0, smaller = 0;
-  const auto read = map->each_row([&](const LuantiRow& row) {
+  const auto read = (*map)->each_row([&](const LuantiRow& row) {
     LuantiNodes nodes, back;
     REQUIRE(decode_luanti_row(row.data, nodes));
     Bytes wire;

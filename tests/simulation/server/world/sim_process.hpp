@@ -481,12 +481,12 @@ class SimProcess final : public SimServer {
     tell("leaves the owner: " + why);
     if (link_) link_->cut();
   }
-  void read_log(Sequence first) override {
+  void read_missed_log(Sequence first) override {
     ask([this, first] {
       if (role_ != Role::following) return;
-      auto read = read_missed_log(*store_, first, 1 + rng_.below(60));
+      auto read = runstone::read_missed_log(*store_, first, 1 + rng_.below(60));
       if (read) read = as_followed(*std::move(read));
-      world_->cluster().log_read(read, now());
+      world_->cluster().missed_log_read(read, now());
     });
   }
   void find_action(const OperationId& first_op) override {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "common/formats/colour_quantiser.hpp"
+#include "common/materials/colour_quantiser.hpp"
 #include "common/formats/look_material.hpp"
 #include "tests/support/formats/file_builds.hpp"
 

@@ -90,9 +90,9 @@ class FakeEnvironment : public WorldEnvironment {
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
   std::map<SessionId, std::size_t> charged;        // bytes beyond those of messages
   std::deque<EncodedMessage> to_owner;             // messages for the owner of the world
-  bool is_owner_full = false;            // the queue of the connection with the owner is full
-  std::vector<std::string> owners_left;  // why this server ended the connection with the owner
-  std::deque<Sequence> log_reads;        // the first record of each
+  bool is_owner_full = false;             // the queue of the connection with the owner is full
+  std::vector<std::string> owners_left;   // why this server ended the connection with the owner
+  std::deque<Sequence> missed_log_reads;  // the first record of each
   std::deque<OperationId> action_lookups;
   std::vector<SessionId> trusted;  // sessions of other servers
   bool is_owner = true;            // no other server may own the world
@@ -225,7 +225,7 @@ class FakeEnvironment : public WorldEnvironment {
   }
   bool owns_world() const override { return is_owner; }
   void leave_owner(const std::string& why) override { owners_left.push_back(why); }
-  void read_log(Sequence first) override { log_reads.push_back(first); }
+  void read_missed_log(Sequence first) override { missed_log_reads.push_back(first); }
   void find_action(const OperationId& first_op) override { action_lookups.push_back(first_op); }
   void trust(SessionId session) override { trusted.push_back(session); }
   void player_came(const PlayerVisit& visit) override { came.push_back(visit); }

@@ -397,11 +397,11 @@ struct ClusterBench {
     return has_answered;
   }
   bool answer_reads(std::size_t follower) {
-    auto& reads = environment(follower).log_reads;
+    auto& reads = environment(follower).missed_log_reads;
     if (reads.empty() || servers[follower].holds_reads) return false;
     const Sequence first = reads.front();
     reads.pop_front();
-    world(follower).cluster().log_read(database.read(first, read_records_max), now());
+    world(follower).cluster().missed_log_read(database.read(first, read_records_max), now());
     cut_if_left(follower);
     return true;
   }

@@ -27,7 +27,7 @@ TEST_CASE("a follower that connects late reads what it lacks, and holds the rest
   bench.servers[late].holds_reads = true;
   bench.connect(late);
   bench.pump();
-  REQUIRE(bench.environment(late).log_reads == std::deque<Sequence>{3});
+  REQUIRE(bench.environment(late).missed_log_reads == std::deque<Sequence>{3});
   CHECK_FALSE(bench.world(late).cluster().is_live());
   bench.edit(0, 1, 9, block(9));
   bench.run();

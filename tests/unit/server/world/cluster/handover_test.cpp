@@ -61,12 +61,12 @@ TEST_CASE("a server that took the world over while it read the log reads again a
   bench.servers[late].holds_reads = true;
   bench.connect(late);
   bench.pump();
-  REQUIRE(bench.environment(late).log_reads.size() == 1);
+  REQUIRE(bench.environment(late).missed_log_reads.size() == 1);
   bench.lose_owner();
   REQUIRE(bench.take_over(late));
   bench.servers[late].holds_reads = false;
   bench.run();  // the answer comes now
-  REQUIRE(bench.environment(late).log_reads.empty());
+  REQUIRE(bench.environment(late).missed_log_reads.empty());
   bench.connect(1);
   for (int i = 0; i < 3; ++i) bench.tick();
   begin_handover(bench, 1);

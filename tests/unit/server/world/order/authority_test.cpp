@@ -290,7 +290,7 @@ TEST_CASE("times fall at a record that corrects the time, and never elsewhere", 
   (void)follower.commit(kNow);
   std::vector<LogPartRecord> parts;
   for (const EditRecord& record : records) parts.push_back({record, 0});
-  (void)follower.follow(parts, kNow);
+  (void)follower.apply_ordered(parts, kNow);
   CHECK(follower.log_clock().time() == kNow.utc_us);
   for (const EditRecord& record : records) {
     if (!corrects_time(record)) continue;

@@ -159,7 +159,7 @@ TEST_CASE("restrictions end also at a server that took over from one whose clock
           "[world]") {
   ClockPair clocks;
   clocks.pass(kMinute);
-  clocks.log.follow(kStart + 2 * kYear);
+  clocks.log.note_ordered(kStart + 2 * kYear);
   const TimeUs begin_us = clocks.log.time();
   CHECK(begin_us == kStart + 2 * kYear);
   clocks.pass(5 * kSecond);
@@ -197,11 +197,11 @@ TEST_CASE("a server that follows takes a correction, also if its own clock is as
   clocks.wrong_us = GENERATE(TimeUs{0}, 2 * kYear);
   clocks.log = LogClock(0);
   clocks.log.advance(clocks.now());
-  clocks.log.follow(clocks.right() + 2 * kYear);
+  clocks.log.note_ordered(clocks.right() + 2 * kYear);
   CHECK(clocks.log.time() >= clocks.right() + 2 * kYear);
-  clocks.log.follow(clocks.right(), true);
+  clocks.log.note_ordered(clocks.right(), true);
   CHECK(clocks.log.time() == clocks.right());
-  clocks.log.follow(clocks.right() + kSecond);
+  clocks.log.note_ordered(clocks.right() + kSecond);
   clocks.pass(kMinute);
   CHECK(std::abs(clocks.log.time() - clocks.right()) <= kSecond);
 }
@@ -231,7 +231,7 @@ TEST_CASE("a server with a wrong clock goes on from the time of the former owner
   clocks.log.advance(clocks.now());
   clocks.pass(kMinute);
   SECTION("that it has heard") {
-    clocks.log.follow(clocks.right());
+    clocks.log.note_ordered(clocks.right());
     clocks.log.hear_owner(clocks.right(), clocks.now());
     clocks.pass(2 * kMinute);
     static_cast<void>(clocks.log.take_warning());
@@ -247,12 +247,12 @@ TEST_CASE("a server with a wrong clock goes on from the time of the former owner
     CHECK_FALSE(clocks.log.has_jumped());
   }
   SECTION("but not from records that it has read, which may be old") {
-    clocks.log.follow(clocks.right() - kYear);
+    clocks.log.note_ordered(clocks.right() - kYear);
     clocks.log.take_over(clocks.now());
     CHECK(clocks.log.stamp() == clocks.right() + 2 * kYear);
   }
   SECTION("and says so if it is behind") {
-    clocks.log.follow(clocks.right() + 3 * kYear);
+    clocks.log.note_ordered(clocks.right() + 3 * kYear);
     clocks.log.hear_owner(clocks.right() + 3 * kYear, clocks.now());
     clocks.log.take_over(clocks.now());
     CHECK(clocks.log.take_warning().value_or("").starts_with("the log ends at "));
@@ -267,9 +267,9 @@ TEST_CASE("records may have any time", "[world][clock]") {
   clocks.pass(kMinute);
   CHECK(clocks.log.stamp() == std::max(end_us, clocks.right()));
   CHECK(clocks.log.time() >= clocks.right());
-  clocks.log.follow(kLast);
+  clocks.log.note_ordered(kLast);
   clocks.log.hear_owner(kLast, clocks.now());
-  clocks.log.follow(kFirst, true);
+  clocks.log.note_ordered(kFirst, true);
   clocks.pass(kMinute);
   clocks.log.hear_owner(kFirst, clocks.now());
   clocks.log.take_over(clocks.now());

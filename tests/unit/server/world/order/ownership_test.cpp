@@ -16,7 +16,7 @@ void bring(Ownership& server, State state) {
     if (state == State::handover_failed) server.lose_log();
     return;
   }
-  server.follow();
+  server.begin_following();
   if (state == State::forked) server.find_fork();
   if (state != State::taking_over && state != State::takeover_failed) return;
   server.begin_takeover();
@@ -25,7 +25,7 @@ void bring(Ownership& server, State state) {
 
 TEST_CASE("a world goes from one server to another and back", "[world][servers]") {
   Ownership first, second;
-  second.follow();
+  second.begin_following();
   CHECK(first.is(State::owning));
   CHECK(second.is(State::following));
   first.begin_handover();

@@ -366,16 +366,5 @@ TEST_CASE("an invite is not used up while the log is full", "[world][rights]") {
   CHECK(bench.environment.messages<SessionAccepted>(2, kEdge).size() == 1);
 }
 
-TEST_CASE("kick closes the sessions of a key or of a range of addresses", "[world][rights]") {
-  RightsBench bench;
-  bench.join(1, 1, 1, kHome);
-  bench.join(2, 1, 2, kElsewhere);
-  bench.join(3, 2, 1, kHome);
-  CHECK(bench.server.people().kick(key_of(1), "go home") == 2);
-  CHECK(bench.environment.closed.back().text == "you were kicked: go home");
-  CHECK(bench.server.people().kick(AddressRange{kHome, 64}, "") == 1);
-  CHECK(bench.server.session_count() == 0);
-}
-
 }  // namespace
 }  // namespace runstone::test

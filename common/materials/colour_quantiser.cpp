@@ -1,4 +1,4 @@
-#include "common/formats/colour_quantiser.hpp"
+#include "common/materials/colour_quantiser.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -43,12 +43,12 @@ ColourBox colour_box(std::vector<std::size_t> bins, const std::vector<std::uint6
 
 }  // namespace
 
-void ColourQuantiser::add(Rgb colour) {
+void ColourQuantiser::add(Rgb colour, std::uint64_t times) {
   Bin& bin = bins_[bin_of(colour)];
-  ++bin.count;
-  for (std::size_t i = 0; i < 3; ++i) bin.sums[i] += colour[i];
+  bin.count += times;
+  for (std::size_t i = 0; i < 3; ++i) bin.sums[i] += times * colour[i];
   if (!is_exact_) return;
-  exact_.try_emplace(colour, std::uint8_t{0});
+  exact_.try_emplace(colour, std::uint16_t{0});
   if (exact_.size() > kQuantisedColoursMax) {
     is_exact_ = false;
     exact_.clear();
@@ -61,7 +61,7 @@ void ColourQuantiser::choose(std::size_t colours_max) {
   is_exact_ = is_exact_ && exact_.size() <= colours_max;
   if (is_exact_) {
     for (auto& [colour, index] : exact_) {
-      index = static_cast<std::uint8_t>(colours_.size());
+      index = static_cast<std::uint16_t>(colours_.size());
       colours_.push_back(colour);
     }
     return;
@@ -98,7 +98,7 @@ void ColourQuantiser::choose(std::size_t colours_max) {
   for (const ColourBox& box : boxes) {
     std::array<std::uint64_t, 3> sums{};
     for (const std::size_t bin : box.bins) {
-      bins_[bin].index = static_cast<std::uint8_t>(colours_.size());
+      bins_[bin].index = static_cast<std::uint16_t>(colours_.size());
       for (std::size_t i = 0; i < 3; ++i) sums[i] += bins_[bin].sums[i];
     }
     Rgb mean{};
@@ -108,7 +108,7 @@ void ColourQuantiser::choose(std::size_t colours_max) {
   }
 }
 
-std::uint8_t ColourQuantiser::index_of(Rgb colour) const {
+std::uint16_t ColourQuantiser::index_of(Rgb colour) const {
   if (is_exact_) return exact_.at(colour);
   return bins_[bin_of(colour)].index;
 }

@@ -1,6 +1,6 @@
-// FollowedPosition: the place of a player as far as the server believes it. Clients say where their
-// players are. This place follows what they say, with a bounded speed, so that a limit of the reach
-// holds for a client that jumps from place to place.
+// AssumedPosition: the place where the server takes a player to be. Clients claim places of their
+// players. This place moves towards the claimed one with a bounded speed, so that a limit of the
+// reach holds for a client that jumps from place to place.
 // Thread: one. Times are arguments (microseconds of one steady clock).
 #pragma once
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace runstone {
 
-class FollowedPosition {
+class AssumedPosition {
  public:
   /// Begins at a place where the player is known to be.
   void start(const WorldPos& at, TimeUs now_us) {
@@ -18,7 +18,7 @@ class FollowedPosition {
   }
   /// Moves on a straight line towards `claimed`, at most `speed` voxels for each second since the
   /// last call, and returns the new place. Speed 0: no limit.
-  const WorldPos& follow(const WorldPos& claimed, double speed, TimeUs now_us) {
+  const WorldPos& advance(const WorldPos& claimed, double speed, TimeUs now_us) {
     const double way = std::hypot(claimed.x - at_.x, claimed.y - at_.y, claimed.z - at_.z);
     const double step = speed * static_cast<double>(now_us - moved_us_) / 1e6;
     moved_us_ = now_us;

@@ -1,0 +1,101 @@
+#include "common/model_reader/folder_files.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kRefusedMax = 16;
+
+class FolderStream : public Assimp::IOStream {
+ public:
+  explicit FolderStream(OpenedFile file) : file_(std::move(file)) {}
+
+  std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+    if (size == 0 || count == 0 || count > std::numeric_limits<std::size_t>::max() / size)
+      return 0;
+    const std::size_t left = at_ < file_.bytes() ? static_cast<std::size_t>(file_.bytes() - at_) : 0;
+    // Like fread(): only whole elements count.
+    const std::size_t whole = std::min(count, left / size);
+    const std::size_t got = file_.read(to, whole * size, at_) / size;
+    at_ += got * size;
+    return got;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::uint64_t from = origin == aiOrigin_CUR   ? at_
+                               : origin == aiOrigin_END ? file_.bytes()
+                                                        : 0;
+    const std::uint64_t to = from + offset;  // a negative offset wraps, as it does for Assimp
+    if (to > file_.bytes()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return static_cast<std::size_t>(at_); }
+  std::size_t FileSize() const override { return static_cast<std::size_t>(file_.bytes()); }
+  void Flush() override {}
+
+ private:
+  OpenedFile file_;
+  std::uint64_t at_ = 0;
+};
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+}  // namespace
+
+std::string percent_decoded(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const int high = text[i] == '%' && i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
+    if (low < 0) {
+      out.push_back(text[i]);
+      continue;
+    }
+    out.push_back(static_cast<char>(16 * high + low));
+    i += 2;
+  }
+  return out;
+}
+
+Result<OpenedFile, ModelFolder::Refusal> FolderFiles::open(const std::string& path) const {
+  auto opened = folder_.open(path);
+  if (opened || opened.error() != ModelFolder::Refusal::missing) return opened;
+  const std::string decoded = percent_decoded(path);
+  return decoded == path ? std::move(opened) : folder_.open(decoded);
+}
+
+void FolderFiles::refuse(const std::string& path, ModelFolder::Refusal why) const {
+  const bool is_known = std::any_of(refused_.begin(), refused_.end(),
+                                    [&](const Refused& other) { return other.path == path; });
+  if (!is_known && refused_.size() < kRefusedMax) refused_.push_back({path, why});
+}
+
+bool FolderFiles::Exists(const char* path) const {
+  const auto opened = open(path);
+  if (!opened) refuse(path, opened.error());
+  return opened.has_value();
+}
+
+Assimp::IOStream* FolderFiles::Open(const char* path, const char* mode) {
+  if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
+  auto opened = open(path);
+  if (!opened) {
+    refuse(path, opened.error());
+    return nullptr;
+  }
+  return new FolderStream(*std::move(opened));  // Assimp owns it until Close()
+}
+
+void FolderFiles::Close(Assimp::IOStream* stream) { delete stream; }
+
+}  // namespace runstone

@@ -1,0 +1,44 @@
+// FolderFiles: gives Assimp the files of a ModelFolder, and remembers what it refused. Assimp writes no
+// file through it. Thread: one. Calls block on the disk.
+#pragma once
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <string>
+#include <vector>
+
+#include "common/model_reader/model_folder.hpp"
+
+namespace runstone {
+
+class FolderFiles : public Assimp::IOSystem {
+ public:
+  /// A file that Assimp wanted and did not get.
+  struct Refused {
+    std::string path;  // any bytes
+    ModelFolder::Refusal why;
+  };
+
+  /// `folder` must outlive this object.
+  explicit FolderFiles(const ModelFolder& folder) : folder_(folder) {}
+
+  bool Exists(const char* path) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+  /// Returns the first files that were refused, without repetition.
+  const std::vector<Refused>& refused() const { return refused_; }
+
+ private:
+  Result<OpenedFile, ModelFolder::Refusal> open(const std::string& path) const;
+  void refuse(const std::string& path, ModelFolder::Refusal why) const;
+
+  const ModelFolder& folder_;
+  mutable std::vector<Refused> refused_;
+};
+
+/// Returns the text with the bytes in place of each "%20" and the like, as addresses in .gltf have
+/// them.
+std::string percent_decoded(const std::string& text);
+
+}  // namespace runstone
