@@ -71,7 +71,7 @@ using PieceSink = std::function<Result<void>(ForeignPiece&&)>;
 using FormatSink = std::function<bool(ByteView)>;
 
 /// What a format of triangles has besides Format::write, which takes the default choices.
-struct ModelFormat {
+struct TriangleFormat {
   /// Writes a build with choices. Fails as Format::write does, and before anything is written with
   /// bad_value if the build shows no face.
   Result<void> (*write)(const FileBuild& build, const ModelWriting& writing,
@@ -102,7 +102,7 @@ struct Format {
   /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
   bool is_file = true;
   /// Not null: a format of triangles, which is only written.
-  const ModelFormat* model = nullptr;
+  const TriangleFormat* model = nullptr;
 };
 
 std::span<const Format> formats();

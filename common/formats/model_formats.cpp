@@ -39,10 +39,10 @@ Result<void> write_mtl(const FileBuild& build, const FormatSink& sink) {
 
 }  // namespace
 
-constexpr ModelFormat kGlbFormat{write_glb_with};
-constexpr ModelFormat kGltfFormat{write_gltf_with};
-constexpr ModelFormat kObjFormat{write_obj_with, ".mtl", write_mtl};
-constexpr ModelFormat kPlyFormat{write_ply_with};
+constexpr TriangleFormat kGlbFormat{write_glb_with};
+constexpr TriangleFormat kGltfFormat{write_gltf_with};
+constexpr TriangleFormat kObjFormat{write_obj_with, ".mtl", write_mtl};
+constexpr TriangleFormat kPlyFormat{write_ply_with};
 
 Result<void> write_glb(const FileBuild& build, const FormatSink& sink) {
   return write_glb_with(build, {}, sink);

@@ -15,6 +15,6 @@ Result<void> write_gltf(const FileBuild& build, const FormatSink& sink);
 Result<void> write_obj(const FileBuild& build, const FormatSink& sink);
 Result<void> write_ply(const FileBuild& build, const FormatSink& sink);
 
-extern const ModelFormat kGlbFormat, kGltfFormat, kObjFormat, kPlyFormat;
+extern const TriangleFormat kGlbFormat, kGltfFormat, kObjFormat, kPlyFormat;
 
 }  // namespace runstone

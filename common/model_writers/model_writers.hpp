@@ -3,8 +3,8 @@
 // two materials as in the client (mesh/visibility.hpp). Faces are joined to rectangles (common/mesh/rdm).
 // docs/models.md describes the files.
 //
-// Axes are those of a world in all formats: x east, y up, z south, right-handed. Triangles wind
-// counter-clockwise seen from outside. The lowest corner of the build is at 0, and its place in a world
+// Axes are those of a world: x east, y up, z south, right-handed; in a .ply x east, y north, z up, as
+// most of these files are read (usual_up()). Triangles wind counter-clockwise seen from outside. The lowest corner of the build is at 0, and its place in a world
 // stands beside the model. Equal builds with equal sections give equal bytes.
 //
 // Each writer requires a material for each palette entry of the build, and a side of a voxel that is

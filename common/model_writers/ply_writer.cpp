@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 
 #include "common/core/assert.hpp"
@@ -40,17 +39,18 @@ void write_ply_head(const WrittenBuild& source, const PlyCounts& counts, ModelOu
 
 void write_ply_vertices(const WrittenBuild& source, double scale, const RegionModel& region,
                         ModelOutput& out) {
-  const std::array<std::int32_t, 3> origin = {region.origin.x, region.origin.y, region.origin.z};
+  // The axis z of the file points up: x east, y north, z up.
+  const auto triple = [&](std::int32_t x, std::int32_t y, std::int32_t z, double factor) {
+    for (const std::int32_t v : {x, -z, y}) out.f32(static_cast<float>(v * factor));
+  };
+  const VoxelPos& origin = region.origin;
   for (const ModelPart& part : region.parts) {
     const MaterialColour& colour = source.materials[part.number - 1U].colour;
     for (const ModelVertex& vertex : region.vertices_of(part)) {
-      const std::array<std::uint8_t, 3> place = {vertex.x, vertex.y, vertex.z};
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        out.f32(static_cast<float>((origin[axis] + place[axis]) * scale));
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool is_along = axis == static_cast<std::size_t>(axis_of(vertex.direction));
-        out.f32(!is_along ? 0.0F : is_positive(vertex.direction) ? 1.0F : -1.0F);
-      }
+      triple(origin.x + vertex.x, origin.y + vertex.y, origin.z + vertex.z, scale);
+      const int sign = is_positive(vertex.direction) ? 1 : -1;
+      const Axis axis = axis_of(vertex.direction);
+      triple(axis == Axis::x ? sign : 0, axis == Axis::y ? sign : 0, axis == Axis::z ? sign : 0, 1);
       out.bytes(colour);
     }
   }

@@ -153,6 +153,8 @@ WrittenModel read_written_ply(const Bytes& file) {
   for (PlyVertex& vertex : list) {
     for (double& v : vertex.place) v = ply_value<float>(file, at);
     for (double& v : vertex.normal) v = ply_value<float>(file, at);
+    // The axis z of the file points up.
+    for (ModelPlace* v : {&vertex.place, &vertex.normal}) *v = {(*v)[0], (*v)[2], -(*v)[1]};
     for (int i = 0; i < 4; ++i)
       vertex.colour += (i == 0 ? "" : " ") + std::to_string(ply_value<std::uint8_t>(file, at));
   }
