@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "client/ui/text_field.hpp"
+#include "client/ui/ui_draw.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -62,13 +63,6 @@ void show_progress(const char* what, std::uint64_t done, std::uint64_t all) {
   const float share =
       all == 0 ? 0 : static_cast<float>(static_cast<double>(done) / static_cast<double>(all));
   ImGui::ProgressBar(share, {-1, 0}, text.c_str());
-}
-
-bool enabled_button(const char* label, bool is_enabled) {
-  ImGui::BeginDisabled(!is_enabled);
-  const bool is_pressed = ImGui::Button(label);
-  ImGui::EndDisabled();
-  return is_pressed;
 }
 
 }  // namespace

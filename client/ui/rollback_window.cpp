@@ -28,13 +28,6 @@ const char* phase_text(RollbackPhase phase) {
   return "";
 }
 
-bool button(const char* label, bool is_enabled) {
-  ImGui::BeginDisabled(!is_enabled);
-  const bool is_pressed = ImGui::Button(label);
-  ImGui::EndDisabled();
-  return is_pressed;
-}
-
 }  // namespace
 
 void RollbackWindow::build_choice(const RollbackState& state) {
@@ -85,13 +78,13 @@ std::optional<RollbackOrder> RollbackWindow::build_buttons(const RollbackState& 
   const RollbackPhase phase = state.phase;
   const bool is_busy = phase == RollbackPhase::previewing || phase == RollbackPhase::applying ||
                        phase == RollbackPhase::undoing;
-  if (button("preview", !is_busy)) out = PreviewRollback{choice_};
+  if (enabled_button("preview", !is_busy)) out = PreviewRollback{choice_};
   ImGui::SameLine();
-  if (button("apply", phase == RollbackPhase::previewed)) out = ApplyRollback{};
+  if (enabled_button("apply", phase == RollbackPhase::previewed)) out = ApplyRollback{};
   ImGui::SameLine();
-  if (button("undo rollback", phase == RollbackPhase::applied)) out = UndoRollback{};
+  if (enabled_button("undo rollback", phase == RollbackPhase::applied)) out = UndoRollback{};
   ImGui::SameLine();
-  if (button("forget", phase == RollbackPhase::previewed)) out = ForgetRollback{};
+  if (enabled_button("forget", phase == RollbackPhase::previewed)) out = ForgetRollback{};
   return out;
 }
 

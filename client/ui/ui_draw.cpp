@@ -36,4 +36,11 @@ ImU32 shaded_colour(const MaterialColour& colour, double factor) {
   return IM_COL32(channel(0), channel(1), channel(2), 255);
 }
 
+bool enabled_button(const char* label, bool is_enabled) {
+  ImGui::BeginDisabled(!is_enabled);
+  const bool is_pressed = ImGui::Button(label);
+  ImGui::EndDisabled();
+  return is_pressed;
+}
+
 }  // namespace runstone

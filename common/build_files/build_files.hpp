@@ -30,7 +30,8 @@ std::string file_refusal(const std::string& file, bool is_written);
 /// that begins with the name of the file. Fails if the file has more than `file_bytes_max` bytes (of a
 /// model the limits of ModelReading hold), and if it is a pipe or a device, because reading it may never
 /// end. Memory: the file and the build.
-Result<FileBuild, std::string> read_build_of_file(const std::string& file, BuildReading reading = {},
+Result<FileBuild, std::string> read_build_of_file(const std::string& file,
+                                                  BuildReading reading = {},
                                                   std::size_t file_bytes_max = kBuildFileBytesMax);
 
 /// Writes a build in the format of the file's ending, as open_output_file() does: an old file is

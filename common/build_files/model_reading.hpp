@@ -44,7 +44,8 @@ std::string model_endings();
 /// Reads a model in a child process, and makes a build of it, whose materials are its colours. The error
 /// is one line that begins with the name of the file. Blocks on the child. Memory: the model, and
 /// `bytes_max` of the build.
-Result<FileBuild, std::string> read_model_build(const std::string& file, const ModelReading& reading,
-                                                std::size_t bytes_max, const ReadNotice& notice);
+Result<FileBuild, std::string> read_model_build(const std::string& file,
+                                                const ModelReading& reading, std::size_t bytes_max,
+                                                const ReadNotice& notice);
 
 }  // namespace runstone

@@ -23,11 +23,15 @@ constexpr std::size_t kAssimpLineBytesMax = 200;
 bool is_parser_of(const aiImporterDesc& parser, ModelFormat format) {
   const std::string_view endings = parser.mFileExtensions;
   switch (format) {
-    case ModelFormat::obj: return endings == "obj";
-    case ModelFormat::stl: return endings == "stl";
-    case ModelFormat::ply: return endings == "ply";
+    case ModelFormat::obj:
+      return endings == "obj";
+    case ModelFormat::stl:
+      return endings == "stl";
+    case ModelFormat::ply:
+      return endings == "ply";
     case ModelFormat::gltf:
-    case ModelFormat::glb: break;
+    case ModelFormat::glb:
+      break;
   }
   // glTF 1 has a parser of its own.
   return std::string_view(parser.mName) == "glTF2 Importer";

@@ -63,8 +63,7 @@ SceneMaterials::SceneMaterials(const aiScene& scene, const SceneRules& rules,
 }
 
 Result<std::uint32_t, std::string> SceneMaterials::number_of(std::uint32_t scene_number) {
-  if (const auto known = numbers_.find(scene_number); known != numbers_.end())
-    return known->second;
+  if (const auto known = numbers_.find(scene_number); known != numbers_.end()) return known->second;
   if (scene_number >= scene_.mNumMaterials)
     return failure(std::string("a mesh names a material that does not exist"));
   if (model_.materials.size() >= kModelMaterialsMax)
@@ -106,7 +105,8 @@ Result<ModelMaterial, std::string> SceneMaterials::material_of(const aiMaterial&
   // Exporters of .obj write a colour beside a texture that is not meant to darken it.
   const bool is_plain = is_known && !material.texture && !rules_.lacks_materials &&
                         material.name != AI_DEFAULT_MATERIAL_NAME;
-  if (is_plain) material.colour = {unit_byte(colour.r), unit_byte(colour.g), unit_byte(colour.b), 255};
+  if (is_plain)
+    material.colour = {unit_byte(colour.r), unit_byte(colour.g), unit_byte(colour.b), 255};
   float opacity = 1;
   from.Get(AI_MATKEY_OPACITY, opacity);
   material.colour[3] = unit_byte(opacity);

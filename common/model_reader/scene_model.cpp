@@ -37,8 +37,7 @@ std::string with_count(std::size_t count, const char* one, const char* many) {
 
 class SceneCopy {
  public:
-  SceneCopy(aiScene& scene, const SceneRules& rules, const ModelFolder& folder,
-            NoticeList& notices)
+  SceneCopy(aiScene& scene, const SceneRules& rules, const ModelFolder& folder, NoticeList& notices)
       : scene_(scene),
         rules_(rules),
         notices_(notices),
@@ -53,8 +52,7 @@ class SceneCopy {
   Result<void, std::string> copy(const MeshUse& use);
   void copy_vertices(const aiMesh& mesh, const MeshUse& use);
   Result<void, std::string> copy_triangles(const aiMesh& mesh, std::uint32_t first,
-                                           std::optional<std::uint32_t> material,
-                                           bool is_mirrored);
+                                           std::optional<std::uint32_t> material, bool is_mirrored);
   void leave_out_cloud_points();
   void replace_not_finite();
   void note_what_is_lost();
@@ -66,8 +64,8 @@ class SceneCopy {
   Model model_;
   SceneMaterials materials_;
   std::vector<MeshUse> uses_;
-  std::vector<std::size_t> uses_of_;        // by mesh
-  std::vector<std::size_t> triangles_of_;   // by mesh
+  std::vector<std::size_t> uses_of_;       // by mesh
+  std::vector<std::size_t> triangles_of_;  // by mesh
   bool is_cloud_ = false;
   bool has_materials_ = false, has_places_ = false, has_colours_ = false;
   std::size_t not_finite_ = 0;
@@ -113,7 +111,8 @@ Result<void, std::string> SceneCopy::count() {
     if (own != 0) vertices += std::size_t{mesh.mNumVertices} * uses_of_[i];
   }
   is_cloud_ = triangles == 0;
-  if (is_cloud_ && points == 0) return failure(std::string("the file has no triangle and no point"));
+  if (is_cloud_ && points == 0)
+    return failure(std::string("the file has no triangle and no point"));
   if (triangles > rules_.triangles_max) {
     return failure("the file has " + std::to_string(triangles) + " triangles, and at most " +
                    std::to_string(rules_.triangles_max) + " are allowed");
@@ -251,11 +250,12 @@ void SceneCopy::replace_not_finite() {
 
 void SceneCopy::note_what_is_lost() {
   if (not_finite_ > 0) {
-    notices_.add(is_cloud_ ? with_count(not_finite_, " point whose place is no finite number is left out",
-                                        " points whose places are no finite numbers are left out")
-                           : with_count(not_finite_,
-                                        " triangle with a corner that is no finite number is left out",
-                                        " triangles with corners that are no finite numbers are left out"));
+    notices_.add(
+        is_cloud_ ? with_count(not_finite_, " point whose place is no finite number is left out",
+                               " points whose places are no finite numbers are left out")
+                  : with_count(not_finite_,
+                               " triangle with a corner that is no finite number is left out",
+                               " triangles with corners that are no finite numbers are left out"));
   }
   if (scene_.mNumAnimations > 0)
     notices_.add("animations are left out: the model stands as the file places it");

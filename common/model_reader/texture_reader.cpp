@@ -42,9 +42,7 @@ void apply(TextureReader::Alpha alpha, std::vector<std::uint8_t>& texels) {
   }
 }
 
-std::string last_name(const std::string& path) {
-  return path.substr(path.find_last_of("/\\") + 1);
-}
+std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 }  // namespace
 
@@ -76,8 +74,9 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::from_file(const
   return from_bytes(path, *bytes, alpha);
 }
 
-Result<std::optional<std::uint32_t>, std::string> TextureReader::from_bytes(
-    const std::string& name, ByteView bytes, Alpha alpha) {
+Result<std::optional<std::uint32_t>, std::string> TextureReader::from_bytes(const std::string& name,
+                                                                            ByteView bytes,
+                                                                            Alpha alpha) {
   const Key key{name, alpha.rule, alpha.cutoff};
   if (const auto known = known_.find(key); known != known_.end()) return known->second;
   auto number = decode(name, bytes, alpha);

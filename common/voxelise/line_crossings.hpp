@@ -24,8 +24,7 @@ struct Crossing {
   /// Returns the first voxel whose centre is at this point or behind it.
   std::int32_t first_centre() const {
     const auto n = static_cast<std::uint64_t>(num), d = static_cast<std::uint64_t>(den);
-    return static_cast<std::int32_t>((n + d * (kVoxelUnit / 2) - 1) /
-                                     (d * kVoxelUnit));
+    return static_cast<std::int32_t>((n + d * (kVoxelUnit / 2) - 1) / (d * kVoxelUnit));
   }
   /// Returns true if the point is the centre of a voxel.
   bool is_on_centre() const {

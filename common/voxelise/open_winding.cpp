@@ -60,7 +60,8 @@ OpenWinding::Answer OpenWinding::look_at(const VoxelBlock& block) const {
     if (radius > 0) {
       const std::array<double, 3> d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
       const double length2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      const double share = std::clamp(-(a[0] * d[0] + a[1] * d[1] + a[2] * d[2]) / length2, 0.0, 1.0);
+      const double share =
+          std::clamp(-(a[0] * d[0] + a[1] * d[1] + a[2] * d[2]) / length2, 0.0, 1.0);
       double distance2 = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const double v = a[i] + share * d[i];

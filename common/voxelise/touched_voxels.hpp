@@ -22,9 +22,8 @@ void for_each_touched(const UnitTriangle& t, const LineRanges& voxels, F&& f) {
   std::array<WholeRange, 3> box;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
-    box[axis] = {
-        std::max<std::int64_t>(((low + kVoxelUnit - 1) >> 8) - 1, voxels.low[axis]),
-        std::min<std::int64_t>(high >> 8, voxels.high[axis])};
+    box[axis] = {std::max<std::int64_t>(((low + kVoxelUnit - 1) >> 8) - 1, voxels.low[axis]),
+                 std::min<std::int64_t>(high >> 8, voxels.high[axis])};
     if (box[axis].empty()) return;
   }
   // A condition: by[0] x + by[1] y + by[2] z + at_zero >= 0, by number of a voxel.
@@ -54,8 +53,9 @@ void for_each_touched(const UnitTriangle& t, const LineRanges& voxels, F&& f) {
         const std::int64_t by_u = -sign * edge(i, to, v), by_v = sign * edge(i, to, u);
         c.by[u] = by_u * kVoxelUnit;
         c.by[v] = by_v * kVoxelUnit;
-        c.at_zero = -by_u * t[i][u] - by_v * t[i][v] +
-                    kVoxelUnit * (std::max<std::int64_t>(by_u, 0) + std::max<std::int64_t>(by_v, 0));
+        c.at_zero =
+            -by_u * t[i][u] - by_v * t[i][v] +
+            kVoxelUnit * (std::max<std::int64_t>(by_u, 0) + std::max<std::int64_t>(by_v, 0));
       }
     }
   }

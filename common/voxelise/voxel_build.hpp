@@ -13,7 +13,8 @@
 namespace runstone {
 
 struct VoxelBuild {
-  BuildPtr build;  // material i + 1 is that of materials[i], so its palette names them by these numbers
+  BuildPtr
+      build;  // material i + 1 is that of materials[i], so its palette names them by these numbers
   std::vector<MaterialRow> materials;
   Voxelised result;
 };

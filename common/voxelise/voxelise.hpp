@@ -85,7 +85,8 @@ struct Voxelised {
 
 using VoxelPieceSink = std::function<Result<void>(VoxelPiece&&)>;
 /// Calls f(0) .. f(count - 1), each once, in any order and on any threads, and returns when all are done.
-using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& f)>;
+using ParallelFor =
+    std::function<void(std::size_t count, const std::function<void(std::size_t)>& f)>;
 
 /// Gives the sections that are not empty to the sink, in the order of z, y and x.
 ///

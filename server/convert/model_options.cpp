@@ -5,10 +5,9 @@
 namespace runstone {
 
 void add_model_options(CLI::App& app, ModelReading& reading) {
-  const auto voxels =
-      app.add_option("--voxels", reading.voxels,
-                     "model: voxels of its longest side, 1..4096; default 128")
-          ->check(CLI::Range(1, int{kVoxeliseSideMax}));
+  const auto voxels = app.add_option("--voxels", reading.voxels,
+                                     "model: voxels of its longest side, 1..4096; default 128")
+                          ->check(CLI::Range(1, int{kVoxeliseSideMax}));
   app.add_option("--voxels-per-metre", reading.voxels_per_metre,
                  "model: voxels of a metre; without units in the file, a unit is a metre")
       ->check(CLI::Range(1e-6, 1e6))

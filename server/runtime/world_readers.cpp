@@ -102,38 +102,39 @@ void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
   });
 }
 
-void WorldReaders::read_log_marks(const LogMarksRequest& request,
-                                  std::function<void(FoundLogMarksResult)> then) {
-  asio::post(*history_readers_, [this, request, then = std::move(then)] {
-    FoundLogMarksResult found = failure("the log cannot be read now");
-    const auto read = chunks_.with_reader([&](WorldReader& reader) {
-      auto marks = runstone::read_log_marks(reader, request);
-      if (marks) {
-        found = *std::move(marks);
+template <class T>
+void WorldReaders::read_history(std::string refusal,
+                                std::function<StoreResult<T>(WorldReader&)> read,
+                                std::function<void(Result<T, std::string>)> then) {
+  asio::post(*history_readers_, [this, refusal = std::move(refusal), read = std::move(read),
+                                 then = std::move(then)]() mutable {
+    Result<T, std::string> found = failure(std::move(refusal));
+    const auto had_reader = chunks_.with_reader([&](WorldReader& reader) {
+      auto outcome = read(reader);
+      if (outcome) {
+        found = *std::move(outcome);
       } else {
-        logger("store").error("{}", marks.error().message());
+        logger("store").error("{}", outcome.error().message());
       }
     });
-    if (!read) logger("store").error("{}", read.error().message());
+    if (!had_reader) logger("store").error("{}", had_reader.error().message());
     strand_.post([then, found = std::move(found)]() mutable { then(std::move(found)); });
   });
 }
 
+void WorldReaders::read_log_marks(const LogMarksRequest& request,
+                                  std::function<void(FoundLogMarksResult)> then) {
+  read_history<FoundLogMarks>(
+      "the log cannot be read now",
+      [request](WorldReader& reader) { return runstone::read_log_marks(reader, request); },
+      std::move(then));
+}
+
 void WorldReaders::find_builds(const BuildsRequest& request,
                                std::function<void(FoundBuildsResult)> then) {
-  asio::post(*history_readers_, [this, request, then = std::move(then)] {
-    FoundBuildsResult found = failure(kNotReadNow);
-    const auto read = chunks_.with_reader([&](WorldReader& reader) {
-      auto builds = read_builds(reader, request);
-      if (builds) {
-        found = *std::move(builds);
-      } else {
-        logger("store").error("{}", builds.error().message());
-      }
-    });
-    if (!read) logger("store").error("{}", read.error().message());
-    strand_.post([then, found = std::move(found)]() mutable { then(std::move(found)); });
-  });
+  read_history<FoundBuilds>(
+      kNotReadNow, [request](WorldReader& reader) { return read_builds(reader, request); },
+      std::move(then));
 }
 
 void WorldReaders::read_build_piece(const BuildPieceRequest& request,

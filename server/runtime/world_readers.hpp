@@ -73,6 +73,12 @@ class WorldReaders {
   void stop();
 
  private:
+  /// Calls `read` on a history reader, and `then` on the world strand: with `refusal` if there is no
+  /// reader, or if `read` fails. The cause is logged.
+  template <class T>
+  void read_history(std::string refusal, std::function<StoreResult<T>(WorldReader&)> read,
+                    std::function<void(Result<T, std::string>)> then);
+
   static constexpr std::size_t kLogReaders = 2;
   static constexpr std::size_t kHistoryReaders = 2;
   static constexpr std::size_t kFileReaders = 1;
