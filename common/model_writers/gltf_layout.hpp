@@ -2,6 +2,7 @@
 // buffer has, region by region, the vertices of all parts and then their indices. A part is a primitive
 // with three accessors: positions, normals, indices.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string_view>
