@@ -1,5 +1,5 @@
-// Builds as files of any format, chosen by the ending of the file's name: .rsb, and the formats of the
-// table in format.cpp that are whole files.
+// Builds as files of any format, chosen by the ending of the file's name: .rsb, and the formats of
+// the table in format.cpp that are whole files.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -19,26 +19,26 @@ namespace runstone {
 Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
                                                const ForeignReading& reading);
 
-/// Writes a build in the format of the file's ending. `writing` counts for models of triangles; an .obj
-/// names companion_file(file), whatever `writing` names. The error is one line with the file and the
-/// reason; it is "cannot be written" if the sink returned false.
+/// Writes a build in the format of the file's ending. `writing` counts for models of triangles; an
+/// .obj names companion_file(file), whatever `writing` names. The error is one line with the file
+/// and the reason; it is "cannot be written" if the sink returned false.
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
                                            const FormatSink& sink, ModelWriting writing = {});
 
 /// Returns the path of the second file that belongs to a file of this name, such as castle.mtl to
-/// castle.obj, or an empty text. A caller of write_file_build() writes it with write_companion(), before
-/// the first file, because that names it.
+/// castle.obj, or an empty text. A caller of write_file_build() writes it with write_companion(),
+/// before the first file, because that names it.
 std::string companion_file(const std::string& file);
-/// Writes the second file. `file` is the name of the first one, and companion_file() is not empty. The
-/// error is one line with the second file and the reason.
+/// Writes the second file. `file` is the name of the first one, and companion_file() is not empty.
+/// The error is one line with the second file and the reason.
 Result<void, std::string> write_companion(const std::string& file, const FileBuild& build,
                                           const FormatSink& sink);
 
 /// Returns the number of cells whose material is not empty. Cost: O(sections + runs).
 std::uint64_t solid_cells(const FileBuild& build);
 
-/// Returns why a file of this name can be neither read (or written, with `is_written`), as a sentence
-/// with the endings that can be, or an empty text.
+/// Returns why a file of this name can be neither read (or written, with `is_written`), as a
+/// sentence with the endings that can be, or an empty text.
 std::string ending_refusal(std::string_view file, bool is_written);
 
 }  // namespace runstone

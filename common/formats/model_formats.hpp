@@ -1,5 +1,5 @@
-// Models of triangles: .glb, .gltf, .obj with .mtl, and .ply: out. The rows of the table of formats that
-// hand a build to common/model_writers.
+// Models of triangles: .glb, .gltf, .obj with .mtl, and .ply: out. The rows of the table of formats
+// that hand a build to common/model_writers.
 #pragma once
 #include "common/core/result.hpp"
 #include "common/formats/format.hpp"

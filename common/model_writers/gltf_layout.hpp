@@ -1,7 +1,8 @@
-// GltfLayout: the counts of a glTF model, from which its JSON and the places in its buffer follow. The
-// buffer has, region by region, the vertices of all parts and then their indices. A part is a primitive
-// with three accessors: positions, normals, indices.
+// GltfLayout: the counts of a glTF model, from which its JSON and the places in its buffer follow.
+// The buffer has, region by region, the vertices of all parts and then their indices. A part is a
+// primitive with three accessors: positions, normals, indices.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -41,7 +42,8 @@ struct GltfLayout {
   std::uint64_t buffer_bytes = 0;
 };
 
-/// Writes the JSON of a model up to the buffer: what follows are the members of its object, then "}]}".
+/// Writes the JSON of a model up to the buffer: what follows are the members of its object, then
+/// "}]}".
 void write_gltf_json(const WrittenBuild& source, const ModelWriting& writing,
                      const GltfLayout& layout, ModelOutput& out);
 

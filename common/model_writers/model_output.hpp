@@ -2,6 +2,7 @@
 #pragma once
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -37,7 +38,8 @@ class ModelOutput {
   void text(std::string_view v) {
     bytes({reinterpret_cast<const std::uint8_t*>(v.data()), v.size()});
   }
-  /// Writes a number as text: an integer, or the shortest text that reads back as the same fraction.
+  /// Writes a number as text: an integer, or the shortest text that reads back as the same
+  /// fraction.
   template <class T>
   void number(T v) {
     static_assert(std::is_arithmetic_v<T>);

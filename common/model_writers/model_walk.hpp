@@ -1,7 +1,7 @@
-// ModelWalk: gives the triangles of a build region by region, as often as a writer needs them: formats
-// that begin with the counts are written in two passes, so that no pass holds more than one region.
-// Thread: one at a time. Memory: the runs, quads and triangles of one region; if T-junctions are closed,
-// also 3 bytes for each corner of a quad in a plane between regions.
+// ModelWalk: gives the triangles of a build region by region, as often as a writer needs them:
+// formats that begin with the counts are written in two passes, so that no pass holds more than one
+// region. Thread: one at a time. Memory: the runs, quads and triangles of one region; if
+// T-junctions are closed, also 3 bytes for each corner of a quad in a plane between regions.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,7 +25,8 @@ class ModelWalk {
   ModelWalk(const WrittenBuild& source, const ModelWriting& writing);
 
   /// Gives each region with faces to the sink: x fastest, then y, then z. Each walk gives the same.
-  /// Returns false if the sink did. Cost: O(regions), and that of RegionMesher and RegionModelMaker.
+  /// Returns false if the sink did. Cost: O(regions), and that of RegionMesher and
+  /// RegionModelMaker.
   bool for_each_region(const RegionSink& sink);
 
  private:

@@ -1,18 +1,20 @@
-// Writers of triangles: a build as .glb, .gltf, .obj with .mtl, or .ply. What the build shows is written:
-// the faces of voxels towards empty and untouched cells, towards the outside of the build, and between
-// two materials as in the client (mesh/visibility.hpp). Faces are joined to rectangles (common/mesh/rdm).
-// docs/models.md describes the files.
+// Writers of triangles: a build as .glb, .gltf, .obj with .mtl, or .ply. What the build shows is
+// written: the faces of voxels towards empty and untouched cells, towards the outside of the build,
+// and between two materials as in the client (mesh/visibility.hpp). Faces are joined to rectangles
+// (common/mesh/rdm). docs/models.md describes the files.
 //
-// Axes are those of a world: x east, y up, z south, right-handed; in a .ply x east, y north, z up, as
-// most of these files are read (usual_up()). Triangles wind counter-clockwise seen from outside. The lowest corner of the build is at 0, and its place in a world
-// stands beside the model. Equal builds with equal sections give equal bytes.
+// Axes are those of a world: x east, y up, z south, right-handed; in a .ply x east, y north, z up,
+// as most of these files are read (usual_up()). Triangles wind counter-clockwise seen from outside.
+// The lowest corner of the build is at 0, and its place in a world stands beside the model. Equal
+// builds with equal sections give equal bytes.
 //
-// Each writer requires a material for each palette entry of the build, and a side of a voxel that is
-// finite and above 0. It fails, before anything is written, with:
+// Each writer requires a material for each palette entry of the build, and a side of a voxel that
+// is finite and above 0. It fails, before anything is written, with:
 //   - bad_value if the build shows no face;
 //   - limit_exceeded if the file becomes larger than the format allows.
 // It fails with io_failed if the sink returns false. Cost: a number of passes of ModelWalk: one for
-// .obj, two for .glb and .gltf, three for .ply. Memory: that of ModelWalk, and what is named below.
+// .obj, two for .glb and .gltf, three for .ply. Memory: that of ModelWalk, and
+// what is named below.
 // Thread: any.
 #pragma once
 #include <cstdint>
@@ -30,20 +32,20 @@ inline constexpr std::uint64_t kGltfBytesMax = 500'000'000;
 /// The vertices and the triangles of a .ply: other programs number them with 32 bits and a sign.
 inline constexpr std::uint64_t kPlyCountMax = 0x7fff'ffff;
 
-/// Writes binary glTF 2.0: a node for each region, with a primitive for each material in it. Memory: 32
-/// bytes for each primitive.
+/// Writes binary glTF 2.0: a node for each region, with a primitive for each material in it.
+/// Memory: 36 bytes for each primitive.
 Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the glTF 2.0 of write_glb_model() as JSON, which holds its buffer as base64.
 Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& writing,
                               const ModelSink& sink);
-/// Writes a Wavefront .obj. It names `writing.material_file`, which write_mtl_model() writes. Memory:
-/// 8.6 MB, and 40 bytes for each vertex between regions.
+/// Writes a Wavefront .obj. It names `writing.material_file`, which write_mtl_model() writes.
+/// Memory: 8.6 MB, and 40 bytes for each vertex between regions.
 Result<void> write_obj_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the materials of an .obj of the same source. Cost: O(materials).
 Result<void> write_mtl_model(const WrittenBuild& source, const ModelSink& sink);
-/// Writes a binary, little-endian .ply whose vertices have normals and colours. Memory: nothing more.
+/// Writes a binary, little-endian .ply whose vertices have normals and colours.
 Result<void> write_ply_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 

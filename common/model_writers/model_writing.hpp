@@ -1,5 +1,5 @@
-// WrittenBuild and ModelWriting: what a writer of triangles gets: a build, and the choices of how its
-// faces become triangles.
+// WrittenBuild and ModelWriting: what a writer of triangles gets: a build, and the choices of how
+// its faces become triangles.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -30,14 +30,15 @@ struct WrittenBuild {
 
 /// The choices of a writer.
 struct ModelWriting {
-  /// True: quads share a vertex of equal place and normal, within a material and a region. In an .obj
-  /// they share each equal place. False: every quad has vertices of its own.
+  /// True: quads share a vertex of equal place and normal, within a material and a region. In an
+  /// .obj they share each equal place. False: every quad has vertices of its own.
   bool is_welded = true;
-  /// True: each edge of a triangle ends where an edge of another one ends, so that no seam can show and
-  /// a solid build is a closed surface. It costs triangles and one more pass over the build. False: a
-  /// corner of a quad may lie within an edge of its neighbour.
+  /// True: each edge of a triangle ends where an edge of another one ends, so that no seam can show
+  /// and a solid build is a closed surface. It costs triangles and one more pass over the build.
+  /// False: a corner of a quad may lie within an edge of its neighbour.
   bool closes_t_junctions = false;
-  /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24. Readers need KHR_mesh_quantization.
+  /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24. Readers need
+  /// KHR_mesh_quantization.
   bool is_quantised = false;
   /// The side of a voxel. Finite and above 0.
   double metres_per_voxel = 1;

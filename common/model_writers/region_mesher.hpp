@@ -1,7 +1,7 @@
-// RegionMesher: the quads of one region of a build. Regions are cubes of kModelRegionEdge cells from the
-// lowest corner of the build on; the last one along an axis ends with the build. Faces between regions
-// are culled, and faces to untouched cells and to the outside of the build are kept.
-// Thread: one at a time. Memory: the runs and quads of one region.
+// RegionMesher: the quads of one region of a build. Regions are cubes of kModelRegionEdge cells
+// from the lowest corner of the build on; the last one along an axis ends with the build. Faces
+// between regions are culled, and faces to untouched cells and to the outside of the build are
+// kept. Thread: one at a time. Memory: the runs and quads of one region.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -33,10 +33,10 @@ class RegionMesher {
   /// Keeps a reference to the build. Requires a material for each palette entry.
   explicit RegionMesher(const WrittenBuild& source);
 
-  /// Returns the quads of a region, in coordinates from its lowest corner. The material of a quad is a
-  /// cell number of the build. The quads ascend: opaque ones first, then by material, direction and
-  /// layer. They are valid until the next call. Cost: that of cells_in() and mesh_rdm(), and
-  /// O(quads * log quads).
+  /// Returns the quads of a region, in coordinates from its lowest corner. The material of a quad
+  /// is a cell number of the build. The quads ascend: opaque ones first, then by material,
+  /// direction and layer. They are valid until the next call. Cost: that of cells_in() and
+  /// mesh_rdm(), and O(quads * log quads).
   const std::vector<Quad>& quads_of(ModelRegionPos at);
 
  private:

@@ -55,10 +55,10 @@ void RegionModelMaker::read_edge(const std::array<Corner, 4>& ring, std::size_t 
   out.push_back({ring_[to], length});
 }
 
-/// Fills a rectangle with triangles, so that each piece of an edge is the side of one triangle, and no
-/// triangle lies on a line. The left edge becomes a fan around the second point of the lower edge, and
-/// the right edge one around the last point but one of the upper edge. The rest lies between two
-/// parallel lines.
+/// Fills a rectangle with triangles, so that each piece of an edge is the side of one triangle, and
+/// no triangle lies on a line. The left edge becomes a fan around the second point of the lower
+/// edge, and the right edge one around the last point but one of the upper edge. The rest lies
+/// between two parallel lines.
 void RegionModelMaker::fill_edges() {
   const std::uint32_t low = lower_[1].vertex;
   for (std::size_t i = 0; i + 1 < left_.size(); ++i)

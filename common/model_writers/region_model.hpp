@@ -48,9 +48,9 @@ class RegionModelMaker {
  public:
   explicit RegionModelMaker(bool is_welded) : is_welded_(is_welded) {}
 
-  /// Makes the triangles of quads in the order of RegionMesher::quads_of(). If `corners` is not null,
-  /// edges are split at each point of the set that lies within them. The model is valid until the next
-  /// call. Cost: O(quads); with `corners`, O(lengths of the edges).
+  /// Makes the triangles of quads in the order of RegionMesher::quads_of(). If `corners` is not
+  /// null, edges are split at each point of the set that lies within them. The model is valid until
+  /// the next call. Cost: O(quads); with `corners`, O(lengths of the edges).
   const RegionModel& make(VoxelPos origin, std::span<const Quad> quads, const CornerGrid* corners);
 
  private:

@@ -1,6 +1,6 @@
-// WrittenModel: a plain reader of the models that Runstone writes. It is for tests and shares no code
-// with the writers. It checks each rule of the formats that it meets, and throws std::runtime_error with
-// the rule that is broken.
+// WrittenModel: a plain reader of the models that Runstone writes. It is for tests and shares no
+// code with the writers. It checks each rule of the formats that it meets, and throws
+// std::runtime_error with the rule that is broken.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -89,15 +89,16 @@ std::map<CellFace, std::string> exposed_cell_faces(const FileBuild& build) {
   return out;
 }
 
-/// Returns twice the area of a triangle whose normal lies along an axis, with the sign of its winding.
+/// Returns twice the area of a triangle whose normal lies along an axis, with the sign of its
+/// winding.
 double signed_area(const WrittenTriangle& t, std::size_t axis) {
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   return (t.places[1][u] - t.places[0][u]) * (t.places[2][v] - t.places[0][v]) -
          (t.places[1][v] - t.places[0][v]) * (t.places[2][u] - t.places[0][u]);
 }
 
-/// Checks that the triangles cover each exposed face exactly once, in its colour, and nothing else: by
-/// points of each face that lie on no edge, and by the sum of the areas.
+/// Checks that the triangles cover each exposed face exactly once, in its colour, and nothing else:
+/// by points of each face that lie on no edge, and by the sum of the areas.
 void check_faces(const FileBuild& build, const WrittenModel& model, double scale = 1) {
   const auto expected = exposed_cell_faces(build);
   std::map<CellFace, std::array<int, 4>> hits;
