@@ -19,6 +19,7 @@ find_package(OpenSSL 3.0 REQUIRED)
 find_package(zstd REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)  # reads height maps
+find_package(assimp 5.2 REQUIRED CONFIG)  # of runstone-read-model alone
 find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
