@@ -214,7 +214,7 @@ TEST_CASE("a .ply without faces is a cloud of points", "[model_files]") {
   CHECK(read.model.colours ==
         std::vector<ModelColour>{{255, 0, 0, 255}, {0, 0, 255, 255}});
   CHECK(read.notices ==
-        std::vector<std::string>{"1 point whose place is no finite number is left out"});
+        std::vector<std::string>{"points whose places are no finite numbers are left out: 1"});
 }
 
 TEST_CASE("a .gltf and a .glb have nodes, instances and metres", "[model_files]") {
