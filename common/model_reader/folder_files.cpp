@@ -16,9 +16,9 @@ class FolderStream : public Assimp::IOStream {
   explicit FolderStream(OpenedFile file) : file_(std::move(file)) {}
 
   std::size_t Read(void* to, std::size_t size, std::size_t count) override {
-    if (size == 0 || count == 0 || count > std::numeric_limits<std::size_t>::max() / size)
-      return 0;
-    const std::size_t left = at_ < file_.bytes() ? static_cast<std::size_t>(file_.bytes() - at_) : 0;
+    if (size == 0 || count == 0 || count > std::numeric_limits<std::size_t>::max() / size) return 0;
+    const std::size_t left =
+        at_ < file_.bytes() ? static_cast<std::size_t>(file_.bytes() - at_) : 0;
     // Like fread(): only whole elements count.
     const std::size_t whole = std::min(count, left / size);
     const std::size_t got = file_.read(to, whole * size, at_) / size;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "common/model_reader/folder_files.hpp"
+#include "common/model_reader/gltf_extensions.hpp"
 #include "common/model_reader/ply_reader.hpp"
 
 namespace runstone {
@@ -24,11 +25,15 @@ constexpr std::size_t kAssimpLineBytesMax = 200;
 bool is_parser_of(const aiImporterDesc& parser, ModelFormat format) {
   const std::string_view endings = parser.mFileExtensions;
   switch (format) {
-    case ModelFormat::obj: return endings == "obj";
-    case ModelFormat::stl: return endings == "stl";
-    case ModelFormat::ply: return false;  // read_ply()
+    case ModelFormat::obj:
+      return endings == "obj";
+    case ModelFormat::stl:
+      return endings == "stl";
+    case ModelFormat::ply:
+      return false;  // read_ply()
     case ModelFormat::gltf:
-    case ModelFormat::glb: break;
+    case ModelFormat::glb:
+      break;
   }
   // glTF 1 has a parser of its own.
   return std::string_view(parser.mName) == "glTF2 Importer";
@@ -77,6 +82,11 @@ Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const Sc
     auto model = read_ply(folder, rules, notices);
     if (!model) return failure(model.error());
     return ReadModel{*std::move(model), notices.take()};
+  }
+  if (rules.format == ModelFormat::gltf || rules.format == ModelFormat::glb) {
+    const auto file = folder.open(folder.name());
+    if (!file) return failure(std::string(ModelFolder::words(file.error())));
+    if (const auto checked = check_extensions(*file); !checked) return failure(checked.error());
   }
   Assimp::Importer importer;
   keep_parser_of(rules.format, importer);

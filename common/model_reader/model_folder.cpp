@@ -50,11 +50,14 @@ int open_beneath(int folder, const std::string& path, int flags) {
 ModelFolder::Refusal refusal_of(int reason) {
   switch (reason) {
     case EXDEV:
-    case ELOOP: return ModelFolder::Refusal::outside;
+    case ELOOP:
+      return ModelFolder::Refusal::outside;
     case ENOENT:
     case ENOTDIR:
-    case ENAMETOOLONG: return ModelFolder::Refusal::missing;
-    default: return ModelFolder::Refusal::unreadable;
+    case ENAMETOOLONG:
+      return ModelFolder::Refusal::missing;
+    default:
+      return ModelFolder::Refusal::unreadable;
   }
 }
 
@@ -130,8 +133,7 @@ ModelFolder::~ModelFolder() {
 }
 
 bool ModelFolder::confine_process() const {
-  const long version =
-      ::syscall(kCreateRulesetCall, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  const long version = ::syscall(kCreateRulesetCall, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return false;
   landlock_ruleset_attr rules{};
   rules.handled_access_fs =
@@ -162,13 +164,12 @@ Result<OpenedFile, ModelFolder::Refusal> ModelFolder::open(std::string_view path
   // The kind is known before the file is opened, because opening a device can have effects.
   const int place = open_beneath(descriptor_, within, O_PATH);
   if (place < 0) return failure(refusal_of(errno));
-  struct stat about {};
+  struct stat about{};
   const bool is_known = ::fstat(place, &about) == 0;
   ::close(place);
   if (!is_known) return failure(Refusal::unreadable);
   if (!S_ISREG(about.st_mode)) return failure(Refusal::not_a_file);
-  const int descriptor =
-      open_beneath(descriptor_, within, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+  const int descriptor = open_beneath(descriptor_, within, O_RDONLY | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) return failure(refusal_of(errno));
   const bool is_still_known = ::fstat(descriptor, &about) == 0;
   OpenedFile opened(descriptor, static_cast<std::uint64_t>(about.st_size));
@@ -179,10 +180,14 @@ Result<OpenedFile, ModelFolder::Refusal> ModelFolder::open(std::string_view path
 
 const char* ModelFolder::words(Refusal refusal) {
   switch (refusal) {
-    case Refusal::outside: return "which is outside its folder";
-    case Refusal::missing: return "which does not exist";
-    case Refusal::not_a_file: return "which is no regular file";
-    case Refusal::unreadable: break;
+    case Refusal::outside:
+      return "which is outside its folder";
+    case Refusal::missing:
+      return "which does not exist";
+    case Refusal::not_a_file:
+      return "which is no regular file";
+    case Refusal::unreadable:
+      break;
   }
   return "which cannot be read";
 }

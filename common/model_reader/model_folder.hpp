@@ -61,8 +61,7 @@ class ModelFolder {
   static const char* words(Refusal refusal);
 
  private:
-  ModelFolder(int descriptor, std::string name)
-      : descriptor_(descriptor), name_(std::move(name)) {}
+  ModelFolder(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
   int descriptor_;
   std::string name_;

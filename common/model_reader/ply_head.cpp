@@ -13,11 +13,21 @@ constexpr std::size_t kHeadLinesMax = 10'000, kElementsMax = 64, kPropertiesMax 
 
 std::optional<PlyType> ply_type(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{
-      {"char", PlyType::i8},     {"int8", PlyType::i8},      {"uchar", PlyType::u8},
-      {"uint8", PlyType::u8},    {"short", PlyType::i16},    {"int16", PlyType::i16},
-      {"ushort", PlyType::u16},  {"uint16", PlyType::u16},   {"int", PlyType::i32},
-      {"int32", PlyType::i32},   {"uint", PlyType::u32},     {"uint32", PlyType::u32},
-      {"float", PlyType::f32},   {"float32", PlyType::f32},  {"double", PlyType::f64},
+      {"char", PlyType::i8},
+      {"int8", PlyType::i8},
+      {"uchar", PlyType::u8},
+      {"uint8", PlyType::u8},
+      {"short", PlyType::i16},
+      {"int16", PlyType::i16},
+      {"ushort", PlyType::u16},
+      {"uint16", PlyType::u16},
+      {"int", PlyType::i32},
+      {"int32", PlyType::i32},
+      {"uint", PlyType::u32},
+      {"uint32", PlyType::u32},
+      {"float", PlyType::f32},
+      {"float32", PlyType::f32},
+      {"double", PlyType::f64},
       {"float64", PlyType::f64},
   }};
   for (const auto& [known, type] : kNames) {
@@ -58,13 +68,17 @@ std::optional<PlyProperty> ply_property(const std::vector<std::string>& words) {
 std::size_t ply_bytes(PlyType type) {
   switch (type) {
     case PlyType::i8:
-    case PlyType::u8: return 1;
+    case PlyType::u8:
+      return 1;
     case PlyType::i16:
-    case PlyType::u16: return 2;
+    case PlyType::u16:
+      return 2;
     case PlyType::i32:
     case PlyType::u32:
-    case PlyType::f32: return 4;
-    case PlyType::f64: break;
+    case PlyType::f32:
+      return 4;
+    case PlyType::f64:
+      break;
   }
   return 8;
 }
@@ -84,12 +98,15 @@ Result<PlyHead, std::string> read_ply_head(const std::function<bool(std::string&
         head.texture = line.substr(at + kTexture.size());
     } else if (words[0] == "format" && words.size() >= 2) {
       has_format = true;
-      if (words[1] == "ascii") head.body = PlyBody::text;
-      else if (words[1] == "binary_little_endian") head.body = PlyBody::little_endian;
-      else if (words[1] == "binary_big_endian") head.body = PlyBody::big_endian;
-      else return bad_line(line);
-    } else if (words[0] == "element" && words.size() == 3 &&
-               head.elements.size() < kElementsMax) {
+      if (words[1] == "ascii")
+        head.body = PlyBody::text;
+      else if (words[1] == "binary_little_endian")
+        head.body = PlyBody::little_endian;
+      else if (words[1] == "binary_big_endian")
+        head.body = PlyBody::big_endian;
+      else
+        return bad_line(line);
+    } else if (words[0] == "element" && words.size() == 3 && head.elements.size() < kElementsMax) {
       PlyElement element{words[1], 0, {}};
       const char* const end = words[2].data() + words[2].size();
       const auto [at, wrong] = std::from_chars(words[2].data(), end, element.count);

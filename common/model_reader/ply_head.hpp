@@ -19,8 +19,8 @@ std::size_t ply_bytes(PlyType type);
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::f32;        // of a value
-  bool is_list = false;               // a count, and so many values
+  PlyType type = PlyType::f32;  // of a value
+  bool is_list = false;         // a count, and so many values
   PlyType count_type = PlyType::u8;
 };
 

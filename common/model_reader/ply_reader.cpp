@@ -23,13 +23,27 @@ enum PlyRole : std::uint8_t { kX, kY, kZ, kRed, kGreen, kBlue, kAlpha, kU, kV, k
 
 PlyRole role_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, PlyRole>, 21> kNames = {{
-      {"x", kX},           {"y", kY},           {"z", kZ},
-      {"red", kRed},       {"green", kGreen},   {"blue", kBlue},
-      {"alpha", kAlpha},   {"r", kRed},         {"g", kGreen},
-      {"b", kBlue},        {"a", kAlpha},       {"diffuse_red", kRed},
-      {"diffuse_green", kGreen}, {"diffuse_blue", kBlue}, {"diffuse_alpha", kAlpha},
-      {"s", kU},           {"t", kV},           {"u", kU},
-      {"v", kV},           {"texture_u", kU},   {"texture_v", kV},
+      {"x", kX},
+      {"y", kY},
+      {"z", kZ},
+      {"red", kRed},
+      {"green", kGreen},
+      {"blue", kBlue},
+      {"alpha", kAlpha},
+      {"r", kRed},
+      {"g", kGreen},
+      {"b", kBlue},
+      {"a", kAlpha},
+      {"diffuse_red", kRed},
+      {"diffuse_green", kGreen},
+      {"diffuse_blue", kBlue},
+      {"diffuse_alpha", kAlpha},
+      {"s", kU},
+      {"t", kV},
+      {"u", kU},
+      {"v", kV},
+      {"texture_u", kU},
+      {"texture_v", kV},
   }};
   for (const auto& [known, role] : kNames) {
     if (known == name) return role;
@@ -41,10 +55,14 @@ PlyRole role_of(std::string_view name) {
 std::uint8_t colour_byte(double value, PlyType type) {
   switch (type) {
     case PlyType::f32:
-    case PlyType::f64: return unit_byte(static_cast<float>(value));
-    case PlyType::u16: return unit_byte(static_cast<float>(value / 65535));
-    case PlyType::u32: return unit_byte(static_cast<float>(value / 4294967295.0));
-    default: return unit_byte(static_cast<float>(value / 255));
+    case PlyType::f64:
+      return unit_byte(static_cast<float>(value));
+    case PlyType::u16:
+      return unit_byte(static_cast<float>(value / 65535));
+    case PlyType::u32:
+      return unit_byte(static_cast<float>(value / 4294967295.0));
+    default:
+      return unit_byte(static_cast<float>(value / 255));
   }
 }
 
@@ -232,8 +250,8 @@ Result<void, std::string> PlyReading::read_corners(const PlyProperty& property, 
     if (known >= 2) {
       // Every second triangle of a strip is turned.
       const bool is_turned = is_strip && known % 2 == 1;
-      const auto added = is_turned ? add_triangle(second, first, corner)
-                                   : add_triangle(first, second, corner);
+      const auto added =
+          is_turned ? add_triangle(second, first, corner) : add_triangle(first, second, corner);
       if (!added) return added;
     }
     if (known == 0) first = corner;

@@ -76,14 +76,30 @@ bool PlySource::number(PlyType type, double& to) {
   if (body_ == PlyBody::big_endian)
     std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
   switch (type) {
-    case PlyType::i8: to = number_of<std::int8_t>(bytes); break;
-    case PlyType::u8: to = number_of<std::uint8_t>(bytes); break;
-    case PlyType::i16: to = number_of<std::int16_t>(bytes); break;
-    case PlyType::u16: to = number_of<std::uint16_t>(bytes); break;
-    case PlyType::i32: to = number_of<std::int32_t>(bytes); break;
-    case PlyType::u32: to = number_of<std::uint32_t>(bytes); break;
-    case PlyType::f32: to = number_of<float>(bytes); break;
-    case PlyType::f64: to = number_of<double>(bytes); break;
+    case PlyType::i8:
+      to = number_of<std::int8_t>(bytes);
+      break;
+    case PlyType::u8:
+      to = number_of<std::uint8_t>(bytes);
+      break;
+    case PlyType::i16:
+      to = number_of<std::int16_t>(bytes);
+      break;
+    case PlyType::u16:
+      to = number_of<std::uint16_t>(bytes);
+      break;
+    case PlyType::i32:
+      to = number_of<std::int32_t>(bytes);
+      break;
+    case PlyType::u32:
+      to = number_of<std::uint32_t>(bytes);
+      break;
+    case PlyType::f32:
+      to = number_of<float>(bytes);
+      break;
+    case PlyType::f64:
+      to = number_of<double>(bytes);
+      break;
   }
   return true;
 }

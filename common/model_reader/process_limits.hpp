@@ -11,7 +11,7 @@ namespace runstone {
 
 struct ProcessLimits {
   std::uint64_t memory_bytes = 0;  // of its address space
-  std::uint32_t cpu_s = 0;         // of its processor time; then SIGXCPU, and SIGKILL a second later
+  std::uint32_t cpu_s = 0;  // of its processor time; then SIGXCPU, and SIGKILL a second later
 };
 
 /// Bounds memory, processor time and open files of this process. From then on it writes no regular file

@@ -72,9 +72,12 @@ Result<void, std::string> check_file(const ModelFolder& folder, std::uint64_t by
   if (opened && opened->bytes() > bytes_max) throw std::bad_alloc();
   if (opened) return {};
   switch (opened.error()) {
-    case ModelFolder::Refusal::missing: return failure(std::string("does not exist"));
-    case ModelFolder::Refusal::not_a_file: return failure(std::string("is no regular file"));
-    default: return failure(std::string("cannot be opened"));
+    case ModelFolder::Refusal::missing:
+      return failure(std::string("does not exist"));
+    case ModelFolder::Refusal::not_a_file:
+      return failure(std::string("is no regular file"));
+    default:
+      return failure(std::string("cannot be opened"));
   }
 }
 

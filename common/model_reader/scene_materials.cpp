@@ -50,7 +50,11 @@ std::uint8_t srgb_byte(float linear) {
 
 SceneMaterials::SceneMaterials(const aiScene& scene, const SceneRules& rules,
                                const ModelFolder& folder, Model& model, NoticeList& notices)
-    : scene_(scene), rules_(rules), model_(model), textures_(folder, model.textures, notices) {
+    : scene_(scene),
+      rules_(rules),
+      model_(model),
+      notices_(notices),
+      textures_(folder, model.textures, notices) {
   // STL and PLY have no colours of materials, so Assimp adds a grey one. An .obj without materials
   // gets one with the name for it.
   const bool has_own = rules.format == ModelFormat::obj || is_gltf_scene(rules);
@@ -63,8 +67,7 @@ SceneMaterials::SceneMaterials(const aiScene& scene, const SceneRules& rules,
 }
 
 Result<std::uint32_t, std::string> SceneMaterials::number_of(std::uint32_t scene_number) {
-  if (const auto known = numbers_.find(scene_number); known != numbers_.end())
-    return known->second;
+  if (const auto known = numbers_.find(scene_number); known != numbers_.end()) return known->second;
   if (scene_number >= scene_.mNumMaterials)
     return failure(std::string("a mesh names a material that does not exist"));
   if (model_.materials.size() >= kModelMaterialsMax)
@@ -106,7 +109,8 @@ Result<ModelMaterial, std::string> SceneMaterials::material_of(const aiMaterial&
   // Exporters of .obj write a colour beside a texture that is not meant to darken it.
   const bool is_plain = is_known && !material.texture && !rules_.lacks_materials &&
                         material.name != AI_DEFAULT_MATERIAL_NAME;
-  if (is_plain) material.colour = {unit_byte(colour.r), unit_byte(colour.g), unit_byte(colour.b), 255};
+  if (is_plain)
+    material.colour = {unit_byte(colour.r), unit_byte(colour.g), unit_byte(colour.b), 255};
   float opacity = 1;
   from.Get(AI_MATKEY_OPACITY, opacity);
   material.colour[3] = unit_byte(opacity);
@@ -118,6 +122,10 @@ Result<std::optional<std::uint32_t>, std::string> SceneMaterials::texture_of(
   using Number = std::optional<std::uint32_t>;
   const std::string path = texture_path(from);
   if (path.empty()) return Number();
+  aiUVTransform transform;
+  if (is_gltf_scene(rules_) &&
+      from.Get(AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0), transform) == aiReturn_SUCCESS)
+    notices_.add("transforms of texture places are left out");
   const aiTexture* const embedded = scene_.GetEmbeddedTexture(path.c_str());
   if (embedded == nullptr) return textures_.from_file(path, alpha);
   // A height of 0 means the bytes of an image file. The formats that are read have no other kind.

@@ -28,8 +28,7 @@ std::string with_count(std::size_t count, const char* one, const char* many) {
 
 class SceneCopy {
  public:
-  SceneCopy(aiScene& scene, const SceneRules& rules, const ModelFolder& folder,
-            NoticeList& notices)
+  SceneCopy(aiScene& scene, const SceneRules& rules, const ModelFolder& folder, NoticeList& notices)
       : scene_(scene),
         rules_(rules),
         notices_(notices),
@@ -44,8 +43,7 @@ class SceneCopy {
   Result<void, std::string> copy(const MeshUse& use);
   void copy_vertices(const aiMesh& mesh, const MeshUse& use);
   Result<void, std::string> copy_triangles(const aiMesh& mesh, std::uint32_t first,
-                                           std::optional<std::uint32_t> material,
-                                           bool is_mirrored);
+                                           std::optional<std::uint32_t> material, bool is_mirrored);
   void note_what_is_lost();
 
   aiScene& scene_;
@@ -54,8 +52,8 @@ class SceneCopy {
   Model model_;
   SceneMaterials materials_;
   std::vector<MeshUse> uses_;
-  std::vector<std::size_t> uses_of_;        // by mesh
-  std::vector<std::size_t> triangles_of_;   // by mesh
+  std::vector<std::size_t> uses_of_;       // by mesh
+  std::vector<std::size_t> triangles_of_;  // by mesh
   bool is_cloud_ = false;
   bool has_materials_ = false, has_places_ = false, has_colours_ = false;
 };
@@ -100,7 +98,8 @@ Result<void, std::string> SceneCopy::count() {
     if (own != 0) vertices += std::size_t{mesh.mNumVertices} * uses_of_[i];
   }
   is_cloud_ = triangles == 0;
-  if (is_cloud_ && points == 0) return failure(std::string("the file has no triangle and no point"));
+  if (is_cloud_ && points == 0)
+    return failure(std::string("the file has no triangle and no point"));
   if (triangles > rules_.triangles_max) {
     return failure("the file has " + std::to_string(triangles) + " triangles, and at most " +
                    std::to_string(rules_.triangles_max) + " are allowed");
@@ -148,8 +147,8 @@ void SceneCopy::copy_vertices(const aiMesh& mesh, const MeshUse& use) {
   const aiColor4D* const colours = mesh.HasVertexColors(0) ? mesh.mColors[0] : nullptr;
   // Assimp gives colours of three numbers the alpha 0.
   const bool has_alpha =
-      colours != nullptr && std::any_of(colours, colours + mesh.mNumVertices,
-                                        [](const aiColor4D& c) { return c.a > 0; });
+      colours != nullptr &&
+      std::any_of(colours, colours + mesh.mNumVertices, [](const aiColor4D& c) { return c.a > 0; });
   for (std::uint32_t v = 0; v < mesh.mNumVertices; ++v) {
     const aiVector3D at = use.to_world * mesh.mVertices[v];
     model_.positions.push_back(turned(at.x, at.y, at.z, rules_.up));
@@ -163,8 +162,7 @@ void SceneCopy::copy_vertices(const aiMesh& mesh, const MeshUse& use) {
       if (colours != nullptr) {
         const aiColor4D& c = colours[v];
         const auto byte = is_linear ? srgb_byte : unit_byte;
-        colour = {byte(c.r), byte(c.g), byte(c.b),
-                  has_alpha ? unit_byte(c.a) : std::uint8_t{255}};
+        colour = {byte(c.r), byte(c.g), byte(c.b), has_alpha ? unit_byte(c.a) : std::uint8_t{255}};
       }
       model_.colours.push_back(colour);
     }

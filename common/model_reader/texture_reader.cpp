@@ -57,9 +57,7 @@ void read_png_sides(ByteView bytes, int& width, int& height) {
   height = side(20);
 }
 
-std::string last_name(const std::string& path) {
-  return path.substr(path.find_last_of("/\\") + 1);
-}
+std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 }  // namespace
 
@@ -91,8 +89,9 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::from_file(const
   return from_bytes(path, *bytes, alpha);
 }
 
-Result<std::optional<std::uint32_t>, std::string> TextureReader::from_bytes(
-    const std::string& name, ByteView bytes, Alpha alpha) {
+Result<std::optional<std::uint32_t>, std::string> TextureReader::from_bytes(const std::string& name,
+                                                                            ByteView bytes,
+                                                                            Alpha alpha) {
   const Key key{name, alpha.rule, alpha.cutoff};
   if (const auto known = known_.find(key); known != known_.end()) return known->second;
   auto number = decode(name, bytes, alpha);
@@ -115,8 +114,8 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::decode(const st
   const bool is_known = stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) != 0;
   if (width > static_cast<int>(kModelTextureSideMax) ||
       height > static_cast<int>(kModelTextureSideMax)) {
-    return failure(quoted(name) + " has " + std::to_string(width) + " x " +
-                   std::to_string(height) + " texels, and at most 16,384 a side are read");
+    return failure(quoted(name) + " has " + std::to_string(width) + " x " + std::to_string(height) +
+                   " texels, and at most 16,384 a side are read");
   }
   if (!is_known || width < 1 || height < 1) return unreadable(stbi_failure_reason());
   const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);

@@ -27,8 +27,7 @@ enum class AlphaRule : std::uint8_t {
 class TextureReader {
  public:
   /// All must outlive this object. Textures are added to `textures`.
-  TextureReader(const ModelFolder& folder, std::vector<ModelTexture>& textures,
-                NoticeList& notices)
+  TextureReader(const ModelFolder& folder, std::vector<ModelTexture>& textures, NoticeList& notices)
       : folder_(folder), textures_(textures), notices_(notices) {}
 
   struct Alpha {

@@ -19,7 +19,7 @@ inline constexpr std::size_t kModelTrianglesMax = 100'000'000;
 inline constexpr std::size_t kModelVerticesMax = 100'000'000;
 inline constexpr std::size_t kModelMaterialsMax = 65'535;
 inline constexpr std::size_t kModelTexturesMax = 1'024;
-inline constexpr std::uint32_t kModelTextureSideMax = 16'384;  // texels
+inline constexpr std::uint32_t kModelTextureSideMax = 16'384;                 // texels
 inline constexpr std::size_t kModelTextureBytesMax = std::size_t{512} << 20;  // all together
 inline constexpr std::size_t kModelNameBytesMax = 64;
 

@@ -36,7 +36,8 @@ Result<Message> BodyReader::read(const wire::BuildsRequest& t) const {
   m.before = t.before();
   m.count = t.count();
   if (m.request == 0) return bad("requests about builds start at 1");
-  if (m.before == 0 || m.before > kSequenceMax) return bad("builds request: before is out of range");
+  if (m.before == 0 || m.before > kSequenceMax)
+    return bad("builds request: before is out of range");
   if (m.count == 0 || m.count > kListedBuildsMax)
     return bad("builds request: count is not 1 .. 50");
   if (!take_text(t.name(), 0, kBuildNameBytesMax, m.name) ||

@@ -82,8 +82,8 @@ TEST_CASE("a model comes through its bytes unchanged", "[models]") {
 TEST_CASE("the bytes of a model of one point are pinned", "[models]") {
   ReadModel read;
   read.model.positions = {{1, 2, -0.5F}};
-  const Bytes expected = {'R', 'S', 'M', 'B', 1, 0, 1, 0, 0, 0, 0, 0, 0, 0,    0,    0,
-                          0,   0,   0,   0,   0, 0, 0, 0, 0, 0, 0, 0, 0, 0,    0,    0,
+  const Bytes expected = {'R', 'S', 'M', 'B', 1,    0,    1, 0, 0, 0,    0, 0, 0, 0,   0, 0,
+                          0,   0,   0,   0,   0,    0,    0, 0, 0, 0,    0, 0, 0, 0,   0, 0,
                           0,   0,   0,   0,   0x80, 0x3f, 0, 0, 0, 0x40, 0, 0, 0, 0xbf};
   CHECK(encoded(read) == expected);
 }

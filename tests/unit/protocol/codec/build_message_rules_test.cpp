@@ -50,8 +50,7 @@ struct BuildsFields {
     for (const std::uint64_t number : numbers) {
       const auto info_at = vector_of(b, info);
       const auto name_at = b.CreateString(added_by_name);
-      rows.push_back(
-          wire::CreateListedBuild(b, number, info_at, touched, file_bytes, 7, name_at));
+      rows.push_back(wire::CreateListedBuild(b, number, info_at, touched, file_bytes, 7, name_at));
     }
     const auto rows_at = b.CreateVector(rows);
     return wire::CreateBuilds(b, request, rows_at, false, 2, b.CreateString(refused));
