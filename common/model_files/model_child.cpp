@@ -33,8 +33,8 @@ Result<ModelChild, std::string> ModelChild::start(const std::vector<std::string>
                                                   Clock::time_point deadline,
                                                   std::function<bool()> should_continue) {
   std::array<int, 2> output{-1, -1}, errors{-1, -1};
-  const bool has_pipes = ::pipe2(output.data(), O_CLOEXEC) == 0 &&
-                         ::pipe2(errors.data(), O_CLOEXEC) == 0;
+  const bool has_pipes =
+      ::pipe2(output.data(), O_CLOEXEC) == 0 && ::pipe2(errors.data(), O_CLOEXEC) == 0;
   int reason = errno;
   int pid = -1;
   if (has_pipes) {

@@ -32,11 +32,13 @@ std::vector<std::string> command_line(const std::string& program, const std::str
                                       const ModelFileOptions& options) {
   // The child's limit of processor time is above that of time, which so ends it first.
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(options.time_max).count() + 1;
-  std::vector<std::string> words = {
-      program,       "--memory",
-      std::to_string(options.memory_mib), "--seconds",
-      std::to_string(std::min<std::int64_t>(seconds, 86'400)), "--triangles",
-      std::to_string(options.triangles_max)};
+  std::vector<std::string> words = {program,
+                                    "--memory",
+                                    std::to_string(options.memory_mib),
+                                    "--seconds",
+                                    std::to_string(std::min<std::int64_t>(seconds, 86'400)),
+                                    "--triangles",
+                                    std::to_string(options.triangles_max)};
   if (options.up) {
     words.push_back("--up");
     words.push_back(*options.up == ModelUp::y ? "y" : "z");
@@ -71,8 +73,7 @@ std::string why_it_ended(ModelChild& child, const std::string& file,
     return reason.empty() ? "cannot be read" : reason;
   }
   if (WIFSIGNALED(status)) {
-    return "its reader " + how_it_ended(status) +
-           ": the file is damaged, or too deeply nested";
+    return "its reader " + how_it_ended(status) + ": the file is damaged, or too deeply nested";
   }
   return "its reader " + how_it_ended(status) + " without a model";
 }
@@ -105,9 +106,9 @@ Result<ReadModel, std::string> read_model_file(const std::string& file,
     return failure(printable_line(regular.error(), kLineBytesMax));
   const std::string program =
       sibling_program(options.program, "RUNSTONE_READ_MODEL", "runstone-read-model");
-  auto child = ModelChild::start(command_line(program, file, options),
-                                 ModelChild::Clock::now() + options.time_max,
-                                 options.should_continue);
+  auto child =
+      ModelChild::start(command_line(program, file, options),
+                        ModelChild::Clock::now() + options.time_max, options.should_continue);
   if (!child) {
     return failure(name + ": " + program + " cannot be started: " + child.error() +
                    "; models need this program (RUNSTONE_READ_MODEL says where it is)");

@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "common/model_reader/folder_files.hpp"
+#include "common/model_reader/gltf_extensions.hpp"
+#include "common/model_reader/ply_reader.hpp"
 
 namespace runstone {
 namespace {
@@ -28,7 +30,7 @@ bool is_parser_of(const aiImporterDesc& parser, ModelFormat format) {
     case ModelFormat::stl:
       return endings == "stl";
     case ModelFormat::ply:
-      return endings == "ply";
+      return false;  // read_ply()
     case ModelFormat::gltf:
     case ModelFormat::glb:
       break;
@@ -75,6 +77,17 @@ std::string error_line(const Assimp::Importer& importer, const FolderFiles& file
 }  // namespace
 
 Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const SceneRules& rules) {
+  NoticeList notices;
+  if (rules.format == ModelFormat::ply) {
+    auto model = read_ply(folder, rules, notices);
+    if (!model) return failure(model.error());
+    return ReadModel{*std::move(model), notices.take()};
+  }
+  if (rules.format == ModelFormat::gltf || rules.format == ModelFormat::glb) {
+    const auto file = folder.open(folder.name());
+    if (!file) return failure(std::string(ModelFolder::words(file.error())));
+    if (const auto checked = check_extensions(*file); !checked) return failure(checked.error());
+  }
   Assimp::Importer importer;
   keep_parser_of(rules.format, importer);
   auto owned = std::make_unique<FolderFiles>(folder);
@@ -84,7 +97,6 @@ Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const Sc
   const aiScene* const read =
       importer.ReadFile(folder.name(), aiProcess_Triangulate | aiProcess_FlipUVs);
   if (read == nullptr) return failure(error_line(importer, files, rules.format));
-  NoticeList notices;
   for (const FolderFiles::Refused& refused : files.refused())
     notices.add("the file " + refused_line(refused) + ": it is left out");
   SceneRules scene_rules = rules;

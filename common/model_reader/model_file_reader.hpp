@@ -1,4 +1,4 @@
-// Reads a model from a file of a ModelFolder with Assimp. Thread: one. Calls block on the disk.
+// Reads a model from a file of a ModelFolder: with Assimp, but for .ply (ply_reader.hpp). Thread: one. Calls block on the disk.
 #pragma once
 #include <string>
 

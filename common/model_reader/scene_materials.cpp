@@ -50,7 +50,11 @@ std::uint8_t srgb_byte(float linear) {
 
 SceneMaterials::SceneMaterials(const aiScene& scene, const SceneRules& rules,
                                const ModelFolder& folder, Model& model, NoticeList& notices)
-    : scene_(scene), rules_(rules), model_(model), textures_(folder, model.textures, notices) {
+    : scene_(scene),
+      rules_(rules),
+      model_(model),
+      notices_(notices),
+      textures_(folder, model.textures, notices) {
   // STL and PLY have no colours of materials, so Assimp adds a grey one. An .obj without materials
   // gets one with the name for it.
   const bool has_own = rules.format == ModelFormat::obj || is_gltf_scene(rules);
@@ -118,6 +122,10 @@ Result<std::optional<std::uint32_t>, std::string> SceneMaterials::texture_of(
   using Number = std::optional<std::uint32_t>;
   const std::string path = texture_path(from);
   if (path.empty()) return Number();
+  aiUVTransform transform;
+  if (is_gltf_scene(rules_) &&
+      from.Get(AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0), transform) == aiReturn_SUCCESS)
+    notices_.add("transforms of texture places are left out");
   const aiTexture* const embedded = scene_.GetEmbeddedTexture(path.c_str());
   if (embedded == nullptr) return textures_.from_file(path, alpha);
   // A height of 0 means the bytes of an image file. The formats that are read have no other kind.

@@ -46,6 +46,7 @@ class SceneMaterials {
   const aiScene& scene_;
   const SceneRules& rules_;
   Model& model_;
+  NoticeList& notices_;
   TextureReader textures_;
   std::map<std::uint32_t, std::uint32_t> numbers_;
   bool are_defaults_ = true;

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "common/model_reader/finite_model.hpp"
 #include "common/model_reader/scene_materials.hpp"
 
 namespace runstone {
@@ -21,15 +21,6 @@ struct MeshUse {
   std::uint32_t mesh = 0;
   aiMatrix4x4 to_world;
 };
-
-std::array<float, 3> turned(const aiVector3D& at, ModelUp up) {
-  if (up == ModelUp::y) return {at.x, at.y, at.z};
-  return {at.x, at.z, -at.y};
-}
-
-bool is_finite(const std::array<float, 3>& at) {
-  return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
-}
 
 std::string with_count(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + (count == 1 ? one : many);
@@ -53,10 +44,7 @@ class SceneCopy {
   void copy_vertices(const aiMesh& mesh, const MeshUse& use);
   Result<void, std::string> copy_triangles(const aiMesh& mesh, std::uint32_t first,
                                            std::optional<std::uint32_t> material, bool is_mirrored);
-  void leave_out_cloud_points();
-  void replace_not_finite();
   void note_what_is_lost();
-  bool is_finite_at(std::uint32_t vertex) const { return is_finite(model_.positions[vertex]); }
 
   aiScene& scene_;
   const SceneRules& rules_;
@@ -68,7 +56,6 @@ class SceneCopy {
   std::vector<std::size_t> triangles_of_;  // by mesh
   bool is_cloud_ = false;
   bool has_materials_ = false, has_places_ = false, has_colours_ = false;
-  std::size_t not_finite_ = 0;
 };
 
 Result<void, std::string> SceneCopy::find_uses() {
@@ -158,12 +145,16 @@ void SceneCopy::copy_vertices(const aiMesh& mesh, const MeshUse& use) {
   const aiVector3D* const places =
       has_places_ && mesh.HasTextureCoords(set) ? mesh.mTextureCoords[set] : nullptr;
   const aiColor4D* const colours = mesh.HasVertexColors(0) ? mesh.mColors[0] : nullptr;
+  // Assimp gives colours of three numbers the alpha 0.
+  const bool has_alpha =
+      colours != nullptr &&
+      std::any_of(colours, colours + mesh.mNumVertices, [](const aiColor4D& c) { return c.a > 0; });
   for (std::uint32_t v = 0; v < mesh.mNumVertices; ++v) {
-    model_.positions.push_back(turned(use.to_world * mesh.mVertices[v], rules_.up));
+    const aiVector3D at = use.to_world * mesh.mVertices[v];
+    model_.positions.push_back(turned(at.x, at.y, at.z, rules_.up));
     if (has_places_) {
       std::array<float, 2> place{0, 0};
       if (places != nullptr) place = {places[v].x, places[v].y};
-      if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {0, 0};
       model_.texture_places.push_back(place);
     }
     if (has_colours_) {
@@ -171,7 +162,7 @@ void SceneCopy::copy_vertices(const aiMesh& mesh, const MeshUse& use) {
       if (colours != nullptr) {
         const aiColor4D& c = colours[v];
         const auto byte = is_linear ? srgb_byte : unit_byte;
-        colour = {byte(c.r), byte(c.g), byte(c.b), unit_byte(c.a)};
+        colour = {byte(c.r), byte(c.g), byte(c.b), has_alpha ? unit_byte(c.a) : std::uint8_t{255}};
       }
       model_.colours.push_back(colour);
     }
@@ -191,10 +182,6 @@ Result<void, std::string> SceneCopy::copy_triangles(const aiMesh& mesh, std::uin
       corners[k] = first + face.mIndices[k];
     }
     if (is_mirrored) std::swap(corners[1], corners[2]);
-    if (!is_finite_at(corners[0]) || !is_finite_at(corners[1]) || !is_finite_at(corners[2])) {
-      ++not_finite_;
-      continue;
-    }
     model_.triangles.push_back(corners);
     if (material) model_.material_of.push_back(*material);
   }
@@ -225,38 +212,7 @@ Result<void, std::string> SceneCopy::copy(const MeshUse& use) {
   return {};
 }
 
-/// Removes the points of a cloud that are not finite.
-void SceneCopy::leave_out_cloud_points() {
-  std::size_t kept = 0;
-  for (std::size_t v = 0; v < model_.positions.size(); ++v) {
-    if (!is_finite(model_.positions[v])) continue;
-    model_.positions[kept] = model_.positions[v];
-    if (has_colours_) model_.colours[kept] = model_.colours[v];
-    ++kept;
-  }
-  not_finite_ += model_.positions.size() - kept;
-  model_.positions.resize(kept);
-  if (has_colours_) model_.colours.resize(kept);
-}
-
-/// No triangle has these vertices, and they must not enlarge the box around the model.
-void SceneCopy::replace_not_finite() {
-  if (model_.triangles.empty()) return;
-  const auto in_use = model_.positions[model_.triangles.front()[0]];
-  for (auto& at : model_.positions) {
-    if (!is_finite(at)) at = in_use;
-  }
-}
-
 void SceneCopy::note_what_is_lost() {
-  if (not_finite_ > 0) {
-    notices_.add(
-        is_cloud_ ? with_count(not_finite_, " point whose place is no finite number is left out",
-                               " points whose places are no finite numbers are left out")
-                  : with_count(not_finite_,
-                               " triangle with a corner that is no finite number is left out",
-                               " triangles with corners that are no finite numbers are left out"));
-  }
   if (scene_.mNumAnimations > 0)
     notices_.add("animations are left out: the model stands as the file places it");
 }
@@ -275,11 +231,9 @@ Result<Model, std::string> SceneCopy::run() {
   for (const MeshUse& use : uses_) {
     if (const auto copied = copy(use); !copied) return failure(copied.error());
   }
-  if (is_cloud_) leave_out_cloud_points();
   note_what_is_lost();
-  if (is_cloud_ ? model_.positions.empty() : model_.triangles.empty())
-    return failure(std::string("no corner in the file is a finite number"));
-  replace_not_finite();
+  if (!leave_out_not_finite(model_, notices_))
+    return failure(std::string("the places in the file are no finite numbers"));
   if (rules_.format == ModelFormat::gltf || rules_.format == ModelFormat::glb)
     model_.metres_per_unit = 1;
   if (const auto valid = validate(model_); !valid) return failure(std::string(valid.error().what));

@@ -1,8 +1,11 @@
 #include "common/model_reader/texture_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <climits>
 #include <memory>
+#include <new>
+#include <string_view>
 #include <utility>
 
 #include "common/model_reader/folder_files.hpp"
@@ -40,6 +43,18 @@ void apply(TextureReader::Alpha alpha, std::vector<std::uint8_t>& texels) {
     const bool is_opaque = alpha.rule == AlphaRule::opaque || texels[i] >= alpha.cutoff;
     texels[i] = is_opaque ? 255 : 0;
   }
+}
+
+/// Sets the sides that the head of a PNG names, which stb does not tell if they are too large.
+void read_png_sides(ByteView bytes, int& width, int& height) {
+  constexpr std::array<std::uint8_t, 8> kMark = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  if (bytes.size() < 24 || !std::equal(kMark.begin(), kMark.end(), bytes.begin())) return;
+  const auto side = [&bytes](std::size_t at) {
+    // Larger sides are no PNG.
+    return (bytes[at] & 0x7f) << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3];
+  };
+  width = side(16);
+  height = side(20);
 }
 
 std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
@@ -88,26 +103,22 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::decode(const st
                                                                         ByteView bytes,
                                                                         Alpha alpha) {
   const auto unreadable = [&](const char* why) {
-    notices_.add(quoted(name) + " is left out, because it is no PNG, JPEG, BMP or TGA (" + why +
-                 "): its material is plain");
+    notices_.add(quoted(name) + " is left out, because it is no PNG, JPEG, BMP or TGA (" +
+                 (why != nullptr ? why : "unknown") + "): its material is plain");
     return Number();
   };
   int width = 0, height = 0, channels = 0;
   if (bytes.size() > INT_MAX) return unreadable("too long");
   const auto size = static_cast<int>(bytes.size());
-  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0 || width < 1 ||
-      height < 1) {
-    const char* why = stbi_failure_reason();
-    // stb refuses sides above 2^24 before it tells them.
-    if (why != nullptr && std::string(why) == "too large")
-      return failure(quoted(name) + " has more than 16,384 texels a side");
-    return unreadable(why != nullptr ? why : "unknown");
-  }
-  const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
-  if (w > kModelTextureSideMax || h > kModelTextureSideMax) {
-    return failure(quoted(name) + " has " + std::to_string(w) + " x " + std::to_string(h) +
+  read_png_sides(bytes, width, height);
+  const bool is_known = stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) != 0;
+  if (width > static_cast<int>(kModelTextureSideMax) ||
+      height > static_cast<int>(kModelTextureSideMax)) {
+    return failure(quoted(name) + " has " + std::to_string(width) + " x " + std::to_string(height) +
                    " texels, and at most 16,384 a side are read");
   }
+  if (!is_known || width < 1 || height < 1) return unreadable(stbi_failure_reason());
+  const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
   const std::size_t texel_bytes = std::size_t{4} * w * h;
   if (textures_.size() >= kModelTexturesMax)
     return failure(std::string("the file has more than 1,024 textures"));
@@ -117,7 +128,8 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::decode(const st
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), &stbi_image_free);
   if (!texels) {
     const char* why = stbi_failure_reason();
-    return unreadable(why != nullptr ? why : "unknown");
+    if (why != nullptr && std::string_view(why) == "outofmem") throw std::bad_alloc();
+    return unreadable(why);
   }
   if (static_cast<std::uint32_t>(width) != w || static_cast<std::uint32_t>(height) != h)
     return unreadable("two sizes");

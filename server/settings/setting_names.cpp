@@ -13,9 +13,10 @@ namespace runstone {
 namespace {
 
 // Programs that another one starts, and variables of tests and scripts.
-constexpr std::array<std::string_view, 8> kForeignVariables = {
-    "RUNSTONE_BENCH",  "RUNSTONE_BIN",      "RUNSTONE_BOT",    "RUNSTONE_CLIENT",
-    "RUNSTONE_LEVELS", "RUNSTONE_PICTURES", "RUNSTONE_SERVER", "RUNSTONE_WEB"};
+constexpr std::array<std::string_view, 9> kForeignVariables = {
+    "RUNSTONE_BENCH",      "RUNSTONE_BIN",    "RUNSTONE_BOT",
+    "RUNSTONE_CLIENT",     "RUNSTONE_LEVELS", "RUNSTONE_PICTURES",
+    "RUNSTONE_READ_MODEL", "RUNSTONE_SERVER", "RUNSTONE_WEB"};
 constexpr std::string_view kTestPrefix = "RUNSTONE_TEST_";
 
 /// Returns true for the variables that Kubernetes and Docker set for a service, such as

@@ -110,8 +110,8 @@ TEST_CASE("corners that are no finite numbers are left out", "[model_files]") {
   ModelFolderOfTest folder;
   std::string stl(80, ' ');
   append_number(stl, std::uint32_t{3});
-  for (const float value : {1.0F, std::numeric_limits<float>::quiet_NaN(),
-                            std::numeric_limits<float>::infinity()}) {
+  for (const float value :
+       {1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     stl += bytes_of<float>({0, 0, 0, 0, 0, 0, value, 0, 0, 0, 1, 0});
     append_number(stl, std::uint16_t{0});
   }
@@ -120,7 +120,7 @@ TEST_CASE("corners that are no finite numbers are left out", "[model_files]") {
   CHECK(read.model.triangles.size() == 1);
   CHECK(validate(read.model).has_value());
   CHECK(read.notices == std::vector<std::string>{
-                            "2 triangles with corners that are no finite numbers are left out"});
+                            "triangles with corners that are no finite numbers are left out: 2"});
   folder.write("b.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto b = folder.read("b.obj");
   if (b) CHECK(validate(b->model).has_value());
@@ -175,14 +175,13 @@ TEST_CASE("huge counts end with a line", "[model_files]") {
 #ifndef RUNSTONE_SANITIZED
 TEST_CASE("a file that needs more memory than allowed is refused", "[model_files]") {
   ModelFolderOfTest folder;
-  std::string stl(80, ' ');
-  append_number(stl, std::uint32_t{200'000});
-  stl.resize(84 + 50 * 200'000, '\0');
-  folder.write("a.stl", stl);
+  std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 400'000; ++i) obj += "f 1 2 3\n";
+  folder.write("a.obj", obj);
   ModelFileOptions options;
   options.memory_mib = 96;
-  CHECK(folder.error("a.stl", options) == "a.stl: needs more than 96 MiB of memory");
-  CHECK(folder.read("a.stl").has_value());
+  CHECK(folder.error("a.obj", options) == "a.obj: needs more than 96 MiB of memory");
+  CHECK(folder.read("a.obj").has_value());
 }
 #endif
 
@@ -208,6 +207,7 @@ TEST_CASE("nodes that contain themselves, and towers of nodes, end with a line",
   options.memory_mib = 512;
   options.time_max = std::chrono::seconds(20);
   SECTION("a circle") { gltf.nodes = R"({"mesh":0,"children":[0]})"; }
+#ifndef RUNSTONE_SANITIZED  // memory has no limit then
   SECTION("2^40 instances of few nodes") {
     gltf.nodes = R"({"children":[1,1]})";
     for (int i = 2; i <= 40; ++i) {
@@ -216,6 +216,7 @@ TEST_CASE("nodes that contain themselves, and towers of nodes, end with a line",
     }
     gltf.nodes += R"(,{"mesh":0})";
   }
+#endif
   folder.write("a.gltf", gltf.text());
   const auto read = folder.read("a.gltf", options);
   REQUIRE_FALSE(read.has_value());
@@ -263,8 +264,9 @@ TEST_CASE("cut files of each format end with a model or a line", "[model_files]"
 TEST_CASE("names and texts of a file control no terminal", "[model_files]") {
   ModelFolderOfTest folder;
   folder.write("a.mtl", "newmtl a\x1b[31m\xff\nmap_Kd \x1b[31m.png\n");
-  folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\x1b[31m\xff\n"
-                        "f 1/1 2/1 3/1\n");
+  folder.write("a.obj",
+               "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\x1b[31m\xff\n"
+               "f 1/1 2/1 3/1\n");
   const ReadModel read = folder.model("a.obj");
   CHECK(validate(read.model).has_value());
   for (const std::string& notice : read.notices) CHECK_FALSE(contains(notice, "\x1b"));

@@ -170,8 +170,8 @@ TEST_CASE("an .stl is read as text and as bytes, with z up", "[model_files]") {
 TEST_CASE("a .ply is read as text and as bytes of both orders", "[model_files]") {
   ModelFolderOfTest folder;
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  folder.write("text.ply", kPlyHead + faces +
-                               "0 0 5 255 0 0\n1 0 5 0 128 0\n0 2 5 0 0 1\n3 0 1 2\n");
+  folder.write("text.ply",
+               kPlyHead + faces + "0 0 5 255 0 0\n1 0 5 0 128 0\n0 2 5 0 0 1\n3 0 1 2\n");
   for (const bool is_little : {true, false}) {
     std::string head = kPlyHead + faces;
     head.replace(head.find("ascii"), 5, is_little ? "binary_little_endian" : "binary_big_endian");
@@ -211,19 +211,17 @@ TEST_CASE("a .ply without faces is a cloud of points", "[model_files]") {
   const ReadModel read = folder.model("cloud.ply");
   CHECK(read.model.is_cloud());
   CHECK(read.model.positions == std::vector<Corner>{{0, 5, 0}, {1, 3, -2}});
-  CHECK(read.model.colours ==
-        std::vector<ModelColour>{{255, 0, 0, 255}, {0, 0, 255, 255}});
+  CHECK(read.model.colours == std::vector<ModelColour>{{255, 0, 0, 255}, {0, 0, 255, 255}});
   CHECK(read.notices ==
-        std::vector<std::string>{"1 point whose place is no finite number is left out"});
+        std::vector<std::string>{"points whose places are no finite numbers are left out: 1"});
 }
 
 TEST_CASE("a .gltf and a .glb have nodes, instances and metres", "[model_files]") {
   ModelFolderOfTest folder;
   GltfText gltf;
   // Two instances: one moved, and one mirrored along x, below a node that doubles.
-  gltf.nodes =
-      R"({"children":[1,2],"scale":[2,2,2]},{"mesh":0,"translation":[10,0,0]},)"
-      R"({"mesh":0,"scale":[-1,1,1]})";
+  gltf.nodes = R"({"children":[1,2],"scale":[2,2,2]},{"mesh":0,"translation":[10,0,0]},)"
+               R"({"mesh":0,"scale":[-1,1,1]})";
   folder.write("a.gltf", gltf.text());
   folder.write("a.glb", gltf.glb());
   gltf.buffer_uri = "a%20b.bin";
@@ -271,9 +269,9 @@ TEST_CASE("textures of a .gltf come from files, addresses and buffers", "[model_
   gltf.accessors = R"(,{"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"})";
   gltf.attributes = R"(,"TEXCOORD_0":2)";
   gltf.primitive = R"(,"material":0)";
-  const std::string image = GENERATE(
-      as<std::string>(), R"({"bufferView":3,"mimeType":"image/png"})", R"({"uri":"a%20b.png"})",
-      R"({"uri":"DATA"})");
+  const std::string image =
+      GENERATE(as<std::string>(), R"({"bufferView":3,"mimeType":"image/png"})",
+               R"({"uri":"a%20b.png"})", R"({"uri":"DATA"})");
   const std::string mode = GENERATE(as<std::string>(), "OPAQUE", "BLEND", "MASK");
   CAPTURE(image, mode);
   std::string images = image;
@@ -289,8 +287,7 @@ TEST_CASE("textures of a .gltf come from files, addresses and buffers", "[model_
   CHECK(read.notices.empty());
   REQUIRE(model.textures.size() == 1);
   CHECK(material_of(model, 0).texture == 0U);
-  CHECK(model.texture_places ==
-        std::vector<std::array<float, 2>>{{0, 0}, {1, 0}, {0, 0.25F}});
+  CHECK(model.texture_places == std::vector<std::array<float, 2>>{{0, 0}, {1, 0}, {0, 0.25F}});
   const int alpha = mode == "OPAQUE" ? 255 : mode == "MASK" ? 0 : 100;
   CHECK(model.textures[0].texels ==
         std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, static_cast<std::uint8_t>(alpha)});
@@ -300,7 +297,8 @@ TEST_CASE("what is left out of a .gltf is said", "[model_files]") {
   ModelFolderOfTest folder;
   GltfText gltf;
   gltf.extra_bytes = bytes_of<float>({0, 1, 0, 0, 0, 1, 0, 0});
-  gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":8},{"buffer":0,"byteOffset":52,"byteLength":24})";
+  gltf.views =
+      R"(,{"buffer":0,"byteOffset":44,"byteLength":8},{"buffer":0,"byteOffset":52,"byteLength":24})";
   gltf.accessors =
       R"(,{"bufferView":2,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]},)"
       R"({"bufferView":3,"componentType":5126,"count":2,"type":"VEC3"})";
@@ -312,6 +310,22 @@ TEST_CASE("what is left out of a .gltf is said", "[model_files]") {
   CHECK(read.model.triangles.size() == 1);
   CHECK(read.notices == std::vector<std::string>{
                             "animations are left out: the model stands as the file places it"});
+}
+
+TEST_CASE("a .gltf that requires an unknown extension is refused", "[model_files]") {
+  ModelFolderOfTest folder;
+  GltfText gltf;
+  gltf.more = R"(,"extensionsRequired":["KHR_materials_unlit"])";
+  folder.write("a.gltf", gltf.text());
+  CHECK(folder.model("a.gltf").model.triangles.size() == 1);
+  gltf.more = R"(,"extensionsRequired" : [ "KHR_materials_unlit","EXT_meshopt_compression" ])";
+  folder.write("a.gltf", gltf.text());
+  folder.write("a.glb", gltf.glb());
+  for (const std::string name : {"a.gltf", "a.glb"}) {
+    CHECK(folder.error(name) == name +
+                                    ": requires the extension \"EXT_meshopt_compression\" of "
+                                    "glTF, which is not read");
+  }
 }
 
 TEST_CASE("a symbolic link to a model is followed", "[model_files]") {
@@ -330,8 +344,9 @@ TEST_CASE("files named by the model may lie in folders below", "[model_files]") 
   std::filesystem::create_directory(folder / "parts");
   folder.write("parts/a.mtl", "newmtl a\nmap_Kd parts\\sub\\..\\wood.png\n");
   folder.write("parts/wood.png", small_png());
-  folder.write("a.obj",
-               "mtllib ./parts/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
+  folder.write(
+      "a.obj",
+      "mtllib ./parts/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
   const ReadModel read = folder.model("a.obj");
   CHECK(read.notices.empty());
   CHECK(read.model.textures.size() == 1);

@@ -112,7 +112,7 @@ TEST_CASE("the environment sets fields and its errors name the variable", "[admi
   // They are for other programs.
   for (const char* other :
        {"RUNSTONE_WEB_TITLE", "RUNSTONE_WEB_TITEL", "RUNSTONE_SERVER", "RUNSTONE_CLIENT",
-        "RUNSTONE_BOT", "RUNSTONE_WEB", "RUNSTONE_TEST_POSTGRES"})
+        "RUNSTONE_BOT", "RUNSTONE_WEB", "RUNSTONE_READ_MODEL", "RUNSTONE_TEST_POSTGRES"})
     environment[other] = "x";
   ServerConfig config;
   REQUIRE(read_config_environment(config, environment).has_value());
