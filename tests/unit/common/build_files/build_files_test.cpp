@@ -41,8 +41,8 @@ TEST_CASE("a build that is written to a file is read from it, in every format", 
     CHECK(solid_cells(*read) == 54);
   }
   CHECK(read_build_of_file(folder / "tower.npy")->info.name == "tower");
-  ForeignReading reading;
-  reading.name = "mill";
+  BuildReading reading;
+  reading.foreign.name = "mill";
   CHECK(read_build_of_file(folder / "tower.npy", reading)->info.name == "mill");
 }
 
