@@ -175,7 +175,7 @@ Result<OpenedFile, ModelFolder::Refusal> ModelFolder::open(std::string_view path
   OpenedFile opened(descriptor, static_cast<std::uint64_t>(about.st_size));
   if (!is_still_known) return failure(Refusal::unreadable);
   if (!S_ISREG(about.st_mode)) return failure(Refusal::not_a_file);
-  return std::move(opened);
+  return opened;
 }
 
 const char* ModelFolder::words(Refusal refusal) {

@@ -12,7 +12,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 #include "common/model_reader/model_folder.hpp"
-#include "common/model_reader/notice_list.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/models/model.hpp"
 
 namespace runstone {
@@ -27,7 +27,8 @@ enum class AlphaRule : std::uint8_t {
 class TextureReader {
  public:
   /// All must outlive this object. Textures are added to `textures`.
-  TextureReader(const ModelFolder& folder, std::vector<ModelTexture>& textures, NoticeList& notices)
+  TextureReader(const ModelFolder& folder, std::vector<ModelTexture>& textures,
+                ReaderNotices& notices)
       : folder_(folder), textures_(textures), notices_(notices) {}
 
   struct Alpha {
@@ -53,7 +54,7 @@ class TextureReader {
 
   const ModelFolder& folder_;
   std::vector<ModelTexture>& textures_;
-  NoticeList& notices_;
+  ReaderNotices& notices_;
   std::map<Key, Number> known_;
   std::size_t bytes_ = 0;  // of all textures
 };
