@@ -53,7 +53,7 @@ std::size_t leave_out_triangles(Model& model) {
 
 }  // namespace
 
-bool leave_out_not_finite(Model& model, ReadNotices& notices) {
+bool leave_out_not_finite(Model& model, ReaderNotices& notices) {
   for (auto& place : model.texture_places) {
     if (!std::isfinite(place[0]) || !std::isfinite(place[1])) place = {0, 0};
   }

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "common/model_reader/read_notices.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/models/model.hpp"
 #include "common/models/model_format.hpp"
 
@@ -18,6 +18,6 @@ inline std::array<float, 3> turned(float x, float y, float z, ModelUp up) {
 /// with a notice. Returns false if nothing is left. Vertices of no triangle that are not finite get the
 /// place of another vertex, so that they do not enlarge the box around the model. Requires that triangles
 /// name vertices that exist. Cost: O(bytes).
-bool leave_out_not_finite(Model& model, ReadNotices& notices);
+bool leave_out_not_finite(Model& model, ReaderNotices& notices);
 
 }  // namespace runstone

@@ -77,7 +77,7 @@ std::string error_line(const Assimp::Importer& importer, const FolderFiles& file
 }  // namespace
 
 Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const SceneRules& rules) {
-  ReadNotices notices;
+  ReaderNotices notices;
   if (rules.format == ModelFormat::ply) {
     auto model = read_ply(folder, rules, notices);
     if (!model) return failure(model.error());

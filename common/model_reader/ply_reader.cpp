@@ -68,7 +68,7 @@ std::uint8_t colour_byte(double value, PlyType type) {
 
 class PlyReading {
  public:
-  PlyReading(const OpenedFile& file, const SceneRules& rules, ReadNotices& notices)
+  PlyReading(const OpenedFile& file, const SceneRules& rules, ReaderNotices& notices)
       : source_(file), rules_(rules), notices_(notices) {}
 
   Result<void, std::string> run();
@@ -86,7 +86,7 @@ class PlyReading {
 
   PlySource source_;
   const SceneRules& rules_;
-  ReadNotices& notices_;
+  ReaderNotices& notices_;
   PlyHead head_;
   Model model_;
   std::uint64_t vertices_ = 0;  // of the head
@@ -265,7 +265,7 @@ Result<void, std::string> PlyReading::read_corners(const PlyProperty& property, 
 }  // namespace
 
 Result<Model, std::string> read_ply(const ModelFolder& folder, const SceneRules& rules,
-                                    ReadNotices& notices) {
+                                    ReaderNotices& notices) {
   const auto file = folder.open(folder.name());
   if (!file) return failure(std::string(ModelFolder::words(file.error())));
   PlyReading reading(*file, rules, notices);

@@ -5,7 +5,7 @@
 
 #include "common/core/result.hpp"
 #include "common/model_reader/model_folder.hpp"
-#include "common/model_reader/read_notices.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/model_reader/scene_model.hpp"
 #include "common/models/model.hpp"
 
@@ -16,6 +16,6 @@ namespace runstone {
 /// points. Fails with one line that does not name the file if it is damaged, or has more than rules
 /// allow. Memory: the model.
 Result<Model, std::string> read_ply(const ModelFolder& folder, const SceneRules& rules,
-                                    ReadNotices& notices);
+                                    ReaderNotices& notices);
 
 }  // namespace runstone

@@ -49,7 +49,7 @@ std::uint8_t srgb_byte(float linear) {
 }
 
 SceneMaterials::SceneMaterials(const aiScene& scene, const SceneRules& rules,
-                               const ModelFolder& folder, Model& model, ReadNotices& notices)
+                               const ModelFolder& folder, Model& model, ReaderNotices& notices)
     : scene_(scene),
       rules_(rules),
       model_(model),

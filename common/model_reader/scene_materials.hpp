@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "common/model_reader/read_notices.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/model_reader/scene_model.hpp"
 #include "common/model_reader/texture_reader.hpp"
 #include "common/models/model.hpp"
@@ -27,7 +27,7 @@ class SceneMaterials {
  public:
   /// All must outlive this object.
   SceneMaterials(const aiScene& scene, const SceneRules& rules, const ModelFolder& folder,
-                 Model& model, ReadNotices& notices);
+                 Model& model, ReaderNotices& notices);
 
   /// Returns the number in the model of a material of the scene. Fails as TextureReader does, or if
   /// there are too many.
@@ -46,7 +46,7 @@ class SceneMaterials {
   const aiScene& scene_;
   const SceneRules& rules_;
   Model& model_;
-  ReadNotices& notices_;
+  ReaderNotices& notices_;
   TextureReader textures_;
   std::map<std::uint32_t, std::uint32_t> numbers_;
   bool are_defaults_ = true;

@@ -29,7 +29,7 @@ std::string with_count(std::size_t count, const char* one, const char* many) {
 class SceneCopy {
  public:
   SceneCopy(aiScene& scene, const SceneRules& rules, const ModelFolder& folder,
-            ReadNotices& notices)
+            ReaderNotices& notices)
       : scene_(scene),
         rules_(rules),
         notices_(notices),
@@ -49,7 +49,7 @@ class SceneCopy {
 
   aiScene& scene_;
   const SceneRules& rules_;
-  ReadNotices& notices_;
+  ReaderNotices& notices_;
   Model model_;
   SceneMaterials materials_;
   std::vector<MeshUse> uses_;
@@ -244,7 +244,7 @@ Result<Model, std::string> SceneCopy::run() {
 }  // namespace
 
 Result<Model, std::string> model_of_scene(aiScene& scene, const SceneRules& rules,
-                                          const ModelFolder& folder, ReadNotices& notices) {
+                                          const ModelFolder& folder, ReaderNotices& notices) {
   return SceneCopy(scene, rules, folder, notices).run();
 }
 

@@ -6,7 +6,7 @@
 
 #include "common/core/result.hpp"
 #include "common/model_reader/model_folder.hpp"
-#include "common/model_reader/read_notices.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/models/model.hpp"
 #include "common/models/model_format.hpp"
 
@@ -31,6 +31,6 @@ struct SceneRules {
 /// - Points and lines beside triangles, animations, bones and morph targets are left out, with a
 ///   notice.
 Result<Model, std::string> model_of_scene(aiScene& scene, const SceneRules& rules,
-                                          const ModelFolder& folder, ReadNotices& notices);
+                                          const ModelFolder& folder, ReaderNotices& notices);
 
 }  // namespace runstone

@@ -12,7 +12,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 #include "common/model_reader/model_folder.hpp"
-#include "common/model_reader/read_notices.hpp"
+#include "common/model_reader/reader_notices.hpp"
 #include "common/models/model.hpp"
 
 namespace runstone {
@@ -28,7 +28,7 @@ class TextureReader {
  public:
   /// All must outlive this object. Textures are added to `textures`.
   TextureReader(const ModelFolder& folder, std::vector<ModelTexture>& textures,
-                ReadNotices& notices)
+                ReaderNotices& notices)
       : folder_(folder), textures_(textures), notices_(notices) {}
 
   struct Alpha {
@@ -54,7 +54,7 @@ class TextureReader {
 
   const ModelFolder& folder_;
   std::vector<ModelTexture>& textures_;
-  ReadNotices& notices_;
+  ReaderNotices& notices_;
   std::map<Key, Number> known_;
   std::size_t bytes_ = 0;  // of all textures
 };

@@ -28,7 +28,9 @@ std::uint32_t bits_of(Word word) {
 
 class ModelEncoder {
  public:
-  explicit ModelEncoder(const ModelSink& sink) : sink_(sink) { piece_.reserve(kModelPieceBytes); }
+  explicit ModelEncoder(const ModelByteSink& sink) : sink_(sink) {
+    piece_.reserve(kModelPieceBytes);
+  }
 
   void bytes(ByteView bytes) {
     while (!bytes.empty() && !failed_) {
@@ -64,7 +66,7 @@ class ModelEncoder {
     piece_.clear();
   }
 
-  const ModelSink& sink_;
+  const ModelByteSink& sink_;
   Bytes piece_;
   bool failed_ = false;
 };
@@ -72,7 +74,7 @@ class ModelEncoder {
 /// Reads from a source and counts. After the first failure every read returns zeros.
 class ModelDecoder {
  public:
-  ModelDecoder(const ModelSource& source, std::size_t bytes_max)
+  ModelDecoder(const ModelByteSource& source, std::size_t bytes_max)
       : source_(source), left_(bytes_max), piece_(kModelPieceBytes) {}
 
   bool ok() const { return ok_; }
@@ -144,7 +146,7 @@ class ModelDecoder {
   }
 
  private:
-  const ModelSource& source_;
+  const ModelByteSource& source_;
   std::size_t left_;
   std::uint64_t offset_ = 0;
   Bytes piece_;
@@ -235,7 +237,7 @@ std::string read_notice(ModelDecoder& in) {
 
 }  // namespace
 
-bool encode_model(const ReadModel& read, const ModelSink& sink) {
+bool encode_model(const ReadModel& read, const ModelByteSink& sink) {
   const Model& m = read.model;
   ModelEncoder out(sink);
   Bytes head(kModelMark.begin(), kModelMark.end());
@@ -276,7 +278,7 @@ bool encode_model(const ReadModel& read, const ModelSink& sink) {
   return out.finish();
 }
 
-Result<ReadModel> decode_model(const ModelSource& source, std::size_t bytes_max) {
+Result<ReadModel> decode_model(const ModelByteSource& source, std::size_t bytes_max) {
   ModelDecoder in(source, bytes_max);
   ReadModel read;
   Model& m = read.model;

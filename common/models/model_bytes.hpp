@@ -35,13 +35,13 @@ struct ReadModel {
 };
 
 /// Takes the next bytes. Returns false if they cannot be written.
-using ModelSink = std::function<bool(ByteView)>;
+using ModelByteSink = std::function<bool(ByteView)>;
 /// Fills the whole span with the next bytes. Returns false if there are not so many.
-using ModelSource = std::function<bool(std::span<std::uint8_t>)>;
+using ModelByteSource = std::function<bool(std::span<std::uint8_t>)>;
 
 /// Gives the bytes of a model to the sink, at most 64 KiB at a time. Returns false if the sink does.
 /// Requires a valid model and notices within their limits. Cost: O(bytes).
-bool encode_model(const ReadModel& read, const ModelSink& sink);
+bool encode_model(const ReadModel& read, const ModelByteSink& sink);
 
 /// Decodes a model and validates it. Takes bytes from the source only as far as the model goes. Fails
 /// if
@@ -49,6 +49,6 @@ bool encode_model(const ReadModel& read, const ModelSink& sink);
 ///   - the model takes more than `bytes_max` bytes, before memory is taken for it;
 ///   - validate() rejects the model, or a notice is no printable line within the limits.
 /// Memory: the model, and 64 KiB. Cost: O(bytes).
-Result<ReadModel> decode_model(const ModelSource& source, std::size_t bytes_max);
+Result<ReadModel> decode_model(const ModelByteSource& source, std::size_t bytes_max);
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// ReadNotices: what a reader could not read of a model, as lines for the user, a bounded number of them.
+// ReaderNotices: what a reader could not read of a model, as lines for the user, a bounded number of them.
 // Thread: one.
 #pragma once
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace runstone {
 
-class ReadNotices {
+class ReaderNotices {
  public:
   /// Adds a line unless it is there. The bytes of files in it are made printable.
   void add(const std::string& text) {
