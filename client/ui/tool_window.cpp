@@ -340,7 +340,7 @@ void ToolWindow::build_file(const HudState& state, std::vector<ToolCommand>& out
   if (!state.file_state.empty()) return ImGui::TextUnformatted(state.file_state.c_str());
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##file", "path, such as ~/castle.schem", &file_);
-  if (ImGui::IsItemHovered()) {
+  if (file_.empty() && ImGui::IsItemHovered()) {
     ImGui::SetTooltip(
         "The ending names the format: .schem, .litematic, .vox, .mts, .rsb and others; .obj, "
         ".stl, .ply, .gltf and .glb are models, which become voxels.\n"

@@ -24,11 +24,11 @@ FileBuild sample_house() {
     if (is_room || is_door) return 0;
     return is_roof ? 2 : 1;
   };
-  return file_build(kHouseSides,
-                    {file_material("air", "", {0, 0, 0, 0}),
-                     file_material("stone", "", {90, 100, 110, 255}),
-                     file_material("tiles", "", {200, 60, 40, 255})},
-                    [cell](VoxelPos at) { return static_cast<std::uint16_t>(cell(at) + 1); });
+  return file_build(
+      kHouseSides,
+      {file_material("air", "", {0, 0, 0, 0}), file_material("stone", "", {90, 100, 110, 255}),
+       file_material("tiles", "", {200, 60, 40, 255})},
+      [cell](VoxelPos at) { return static_cast<std::uint16_t>(cell(at) + 1); });
 }
 
 /// Returns the colour of a voxel, or nullopt where nothing is.
@@ -83,7 +83,8 @@ TEST_CASE("a build that is written as a model is read as the same voxels", "[bui
 TEST_CASE("a model is refused with what is wrong, and says what was done", "[build_files]") {
   const TempFolder folder;
   const std::string file = folder / "open.obj";
-  std::ofstream(file) << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 4\nf 1 2 3 4\nf 1 2 5\nf 2 3 5\n";
+  std::ofstream(file)
+      << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 4\nf 1 2 3 4\nf 1 2 5\nf 2 3 5\n";
   std::vector<std::string> notices;
   BuildReading reading = model_reading();
   reading.notice = [&](const std::string& line) { notices.push_back(line); };
