@@ -12,8 +12,8 @@
 namespace runstone {
 namespace {
 
-/// The solid angles that an open mesh may cost: some minutes.
-constexpr std::uint64_t kWindingWorkMax = std::uint64_t{1} << 33;
+/// The solid angles that an open mesh may cost: about a minute of a core.
+constexpr std::uint64_t kWindingWorkMax = std::uint64_t{1} << 32;
 
 Result<void> check_options(const VoxeliseOptions& options) {
   if (!options.turn.valid()) return fail(ErrorCode::bad_value, "turn: is not one of the 48");
