@@ -21,9 +21,9 @@ struct FreeBytes {
 struct ByteGrid {
   explicit ByteGrid(VoxelPos sides_)
       : sides(sides_),
-        bytes(static_cast<std::uint8_t*>(std::calloc(static_cast<std::size_t>(sides.x) *
-                                                         static_cast<std::size_t>(sides.y),
-                                                     static_cast<std::size_t>(sides.z)))) {}
+        bytes(static_cast<std::uint8_t*>(
+            std::calloc(static_cast<std::size_t>(sides.x) * static_cast<std::size_t>(sides.y),
+                        static_cast<std::size_t>(sides.z)))) {}
   std::uint8_t* row(std::int32_t y, std::int32_t z) const {
     return bytes.get() + static_cast<std::size_t>(sides.x) *
                              (static_cast<std::size_t>(y) +
@@ -38,7 +38,8 @@ std::uint64_t fill_row(std::uint8_t* row, std::size_t count) {
   std::uint64_t set = 0;
   std::uint8_t* const end = row + count;
   for (std::uint8_t* at = row; at < end;) {
-    auto* first = static_cast<std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
+    auto* first =
+        static_cast<std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
     if (first == nullptr) break;
     auto* last = static_cast<std::uint8_t*>(
         std::memchr(first + 1, 1, static_cast<std::size_t>(end - first - 1)));
@@ -55,8 +56,8 @@ std::uint64_t fill_row(std::uint8_t* row, std::size_t count) {
 void append_row(RunBuilder& runs, const std::uint8_t* row, std::size_t count) {
   for (std::size_t at = 0; at < count;) {
     const std::uint8_t material = row[at];
-    const auto* next = static_cast<const std::uint8_t*>(
-        std::memchr(row + at, material == 0 ? 1 : 0, count - at));
+    const auto* next =
+        static_cast<const std::uint8_t*>(std::memchr(row + at, material == 0 ? 1 : 0, count - at));
     const std::size_t end = next == nullptr ? count : static_cast<std::size_t>(next - row);
     runs.append(static_cast<std::uint32_t>(end - at), material);
     at = end;

@@ -1,5 +1,6 @@
-// The baseline of the voxeliser: a grid of one byte a voxel. It finds the same crossings, marks them
-// in the grid, fills the rows between the marks, and makes the runs of each section of the filled grid.
+// The baseline of the voxeliser: a grid of one byte a voxel. It finds the same crossings, marks
+// them in the grid, fills the rows between the marks, and makes the runs of each section of the
+// filled grid.
 #pragma once
 #include <cstdint>
 

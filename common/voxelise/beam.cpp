@@ -26,7 +26,8 @@ struct RowSpan {
            static_cast<std::uint64_t>(end);
   }
   static RowSpan of(std::uint64_t packed) {
-    return {static_cast<std::uint32_t>(packed >> 32), static_cast<std::int32_t>(packed >> 16 & 0xffff),
+    return {static_cast<std::uint32_t>(packed >> 32),
+            static_cast<std::int32_t>(packed >> 16 & 0xffff),
             static_cast<std::int32_t>(packed & 0xffff)};
   }
 };
@@ -45,8 +46,8 @@ struct RowCrossing {
   }
 };
 
-/// A voxel that may have the colour of a part. It sorts by row and place. `only_inside`: it counts only if
-/// the voxel is inside.
+/// A voxel that may have the colour of a part. It sorts by row and place. `only_inside`: it counts
+/// only if the voxel is inside.
 struct ColourCandidate {
   std::uint32_t row = 0;
   std::int32_t voxel = 0;
@@ -58,8 +59,9 @@ struct ColourCandidate {
            std::uint64_t{only_inside} << 31 | part;
   }
   static ColourCandidate of(std::uint64_t packed) {
-    return {static_cast<std::uint32_t>(packed >> 44), static_cast<std::int32_t>(packed >> 32 & 0xfff),
-            (packed >> 31 & 1) != 0, static_cast<std::uint32_t>(packed & 0x7fff'ffff)};
+    return {static_cast<std::uint32_t>(packed >> 44),
+            static_cast<std::int32_t>(packed >> 32 & 0xfff), (packed >> 31 & 1) != 0,
+            static_cast<std::uint32_t>(packed & 0x7fff'ffff)};
   }
 };
 
@@ -178,9 +180,10 @@ class BeamMaker {
       case SurfaceMode::none:
         break;
       case SurfaceMode::conservative:
-        for_each_touched(t, voxels_,
-                         [&](std::int32_t y, std::int32_t z, std::int32_t first,
-                             std::int32_t last) { add_surface(y, z, first, last, part); });
+        for_each_touched(
+            t, voxels_, [&](std::int32_t y, std::int32_t z, std::int32_t first, std::int32_t last) {
+              add_surface(y, z, first, last, part);
+            });
         break;
       case SurfaceMode::separating_26:
         add_thick(t, part);
@@ -223,7 +226,8 @@ class BeamMaker {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const unsigned u = (axis + 1) % 3, v = (axis + 2) % 3;
       for_each_crossing<false>(
-          t, axis, 0, lines, [&](const std::array<std::int32_t, 3>& line, const Crossing& crossing) {
+          t, axis, 0, lines,
+          [&](const std::array<std::int32_t, 3>& line, const Crossing& crossing) {
             const std::int32_t voxel = crossing.voxel();
             std::array<std::int32_t, 3> at{};
             for (at[axis] = crossing.is_on_plane() ? voxel - 1 : voxel; at[axis] <= voxel;
@@ -238,9 +242,10 @@ class BeamMaker {
 
   void add_ball(std::uint32_t part) {
     const UnitPoint p = plan_.placement->at(plan_.model->positions[part]);
-    const std::array<std::int32_t, 3> own{std::min(p[0] / kVoxelUnit, side_ - 1),
-                                          std::min(p[1] / kVoxelUnit, plan_.placement->side(1) - 1),
-                                          std::min(p[2] / kVoxelUnit, plan_.placement->side(2) - 1)};
+    const std::array<std::int32_t, 3> own{
+        std::min(p[0] / kVoxelUnit, side_ - 1),
+        std::min(p[1] / kVoxelUnit, plan_.placement->side(1) - 1),
+        std::min(p[2] / kVoxelUnit, plan_.placement->side(2) - 1)};
     add_surface_voxel(own, part);
     std::array<WholeRange, 3> box;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -262,7 +267,8 @@ class BeamMaker {
         while (reach * reach > rest) --reach;
         while ((reach + 1) * (reach + 1) <= rest) ++reach;
         const auto first = std::max(quotient_up(p[0] - reach - kHalfUnit, kVoxelUnit), box[0].low);
-        const auto last = std::min(quotient_down(p[0] + reach - kHalfUnit, kVoxelUnit), box[0].high);
+        const auto last =
+            std::min(quotient_down(p[0] + reach - kHalfUnit, kVoxelUnit), box[0].high);
         if (first <= last)
           add_surface(static_cast<std::int32_t>(y), static_cast<std::int32_t>(z),
                       static_cast<std::int32_t>(first), static_cast<std::int32_t>(last), part);
@@ -334,8 +340,7 @@ class BeamMaker {
       counts.push_back((is_first ? 0 : counts.back()) + at.direction);
     }
     for (std::size_t row = 0; row < kBeamRows; ++row) begins[row + 1] += begins[row];
-    const VoxelBlock whole{{0, y_, z_},
-                           {side_, voxels_.high[1] + 1, voxels_.high[2] + 1}};
+    const VoxelBlock whole{{0, y_, z_}, {side_, voxels_.high[1] + 1, voxels_.high[2] + 1}};
     const auto take = [&](const VoxelBlock& block, double offset) {
       for (std::int32_t z = block.low[2]; z < block.high[2]; ++z) {
         for (std::int32_t y = block.low[1]; y < block.high[1]; ++y) {

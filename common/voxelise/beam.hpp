@@ -1,6 +1,6 @@
-// Beam: the voxels of 64 x 64 rows along x, made from the triangles that meet them. It is the unit of
-// work of the voxeliser. Rows are lists of crossings and of voxels on the surface, sorted; there is no
-// grid. Internal to this room.
+// Beam: the voxels of 64 x 64 rows along x, made from the triangles that meet them. It is the unit
+// of work of the voxeliser. Rows are lists of crossings and of voxels on the surface, sorted; there
+// is no grid. Internal to this room.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -40,8 +40,9 @@ struct BeamResult {
   bool is_too_much = false;  // of work; then the rest is not complete
 };
 
-/// Makes the beam with the lowest row (y, z), multiples of kVoxelSection. `parts` are the triangles, or
-/// the points of a cloud, that meet it; others may be among them. Thread: any. Deterministic.
+/// Makes the beam with the lowest row (y, z), multiples of kVoxelSection. `parts` are the
+/// triangles, or the points of a cloud, that meet it; others may be among them. Thread: any.
+/// Deterministic.
 BeamResult make_beam(const BeamPlan& plan, std::int32_t y, std::int32_t z,
                      std::span<const std::uint32_t> parts);
 

@@ -94,7 +94,8 @@ class EdgeCount {
     static_assert(kModelVerticesMax < std::size_t{1} << 31);
     std::vector<std::uint32_t> ends(held);  // the higher vertex and the direction
     std::vector<std::uint32_t> next(std::size_t{last} - first + 1);
-    for (std::uint32_t v = first; v < last; ++v) next[v - first + 1] = next[v - first] + begins_[v + 1];
+    for (std::uint32_t v = first; v < last; ++v)
+      next[v - first + 1] = next[v - first] + begins_[v + 1];
     for_each_edge([&](std::uint32_t low, std::uint32_t high, std::uint32_t backward) {
       if (low >= first && low < last) ends[next[low - first]++] = high << 1 | backward;
     });
@@ -119,8 +120,8 @@ class EdgeCount {
         if (out.open.size() == kOpenEdgesMax)
           return fail(ErrorCode::limit_exceeded,
                       "the mesh has more than 1,000,000 open edges: voxelise its surface only");
-        out.open.push_back({placement_.at(model_.positions[v]), placement_.at(model_.positions[high]),
-                            forward - backward});
+        out.open.push_back({placement_.at(model_.positions[v]),
+                            placement_.at(model_.positions[high]), forward - backward});
       }
     }
     return {};

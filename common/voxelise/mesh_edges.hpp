@@ -33,11 +33,11 @@ struct MeshEdges {
   std::vector<Open> open;
 };
 
-/// Counts the triangles of each edge. Vertices with equal snapped positions are one vertex, as in a file
-/// in which each triangle has vertices of its own. Triangles with two equal vertices do not count. Fails
-/// with limit_exceeded if more than kOpenEdgesMax edges are open. Cost: O(triangles + vertices). Memory:
-/// 12 bytes a vertex and 64 MiB (or 4 bytes for each edge of one vertex), and 6 to 12 bytes a vertex while
-/// it joins them.
+/// Counts the triangles of each edge. Vertices with equal snapped positions are one vertex, as in a
+/// file in which each triangle has vertices of its own. Triangles with two equal vertices do not
+/// count. Fails with limit_exceeded if more than kOpenEdgesMax edges are open. Cost: O(triangles +
+/// vertices). Memory: 12 bytes a vertex and 64 MiB (or 4 bytes for each edge of one vertex), and 6
+/// to 12 bytes a vertex while it joins them.
 Result<MeshEdges> mesh_edges(const Model& model, const Placement& placement);
 
 }  // namespace runstone

@@ -18,10 +18,11 @@ class ModelColours {
   /// Both must outlive the object. Requires a model that validate() accepts. Cost: O(triangles).
   ModelColours(const Model& model, const Placement& placement);
 
-  /// Returns the one colour that the model has, or nullopt if it may have several, or parts without a
-  /// surface.
+  /// Returns the one colour that the model has, or nullopt if it may have several, or parts without
+  /// a surface.
   const std::optional<Rgb>& only() const { return only_; }
-  /// Returns the colour of a voxel on which nothing is known: that of the first triangle's material.
+  /// Returns the colour of a voxel on which nothing is known: that of the first triangle's
+  /// material.
   Rgb fallback() const;
 
   /// A point of a triangle as shares of its corners, and the square of its distance in units.
@@ -32,8 +33,9 @@ class ModelColours {
   /// Returns the point of a triangle that is nearest to the centre of a voxel. Source: Ericson,
   /// "Real-Time Collision Detection" (2005), 5.1.5.
   Nearest nearest(std::uint32_t triangle, VoxelPos voxel) const;
-  /// Returns the colour of the material, times that of the texture, times that between the vertices;
-  /// nullopt if the texel has alpha below 128, which is no surface. Other values of alpha are ignored.
+  /// Returns the colour of the material, times that of the texture, times that between the
+  /// vertices; nullopt if the texel has alpha below 128, which is no surface. Other values of alpha
+  /// are ignored.
   std::optional<Rgb> at(std::uint32_t triangle, const Nearest& nearest) const;
   /// Returns true if a triangle has one colour everywhere.
   bool is_plain(std::uint32_t triangle) const;

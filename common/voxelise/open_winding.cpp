@@ -7,11 +7,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Returns half the solid angle of the strip from a to b and along x to infinity; a and b are seen from
-/// the point. Source: van Oosterom and Strackee 1983, with the third corner at infinity.
+/// Returns half the solid angle of the strip from a to b and along x to infinity; a and b are seen
+/// from the point. Source: van Oosterom and Strackee 1983, with the third corner at infinity.
 double half_angle(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  // The point moves by an infinitesimal along y, and by an infinitely smaller one along z. If it is on the
-  // side of the strip that begins at a, a is seen in the direction of -y there, and the strip is a lune.
+  // The point moves by an infinitesimal along y, and by an infinitely smaller one along z. If it is
+  // on the side of the strip that begins at a, a is seen in the direction of -y there, and the
+  // strip is a lune.
   const auto is_behind = [](const std::array<double, 3>& corner) {
     return corner[1] == 0 && corner[2] == 0 && corner[0] < 0;
   };
@@ -60,7 +61,8 @@ OpenWinding::Answer OpenWinding::look_at(const VoxelBlock& block) const {
     if (radius > 0) {
       const std::array<double, 3> d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
       const double length2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      const double share = std::clamp(-(a[0] * d[0] + a[1] * d[1] + a[2] * d[2]) / length2, 0.0, 1.0);
+      const double share =
+          std::clamp(-(a[0] * d[0] + a[1] * d[1] + a[2] * d[2]) / length2, 0.0, 1.0);
       double distance2 = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const double v = a[i] + share * d[i];

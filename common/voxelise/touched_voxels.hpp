@@ -1,8 +1,7 @@
-// The voxels whose closed cubes a triangle touches, as rows along x. Exact, also for triangles without
-// area. Internal to this room.
-// Source: the tests of Schwarz and Seidel, "Fast parallel surface and solid voxelization on GPUs" (2010):
-// bounding box, plane, and the projections along the three axes. Each is linear in x, so that the voxels
-// of a row are an interval.
+// The voxels whose closed cubes a triangle touches, as rows along x. Exact, also for triangles
+// without area. Internal to this room. Source: the tests of Schwarz and Seidel, "Fast parallel
+// surface and solid voxelization on GPUs" (2010): bounding box, plane, and the projections along
+// the three axes. Each is linear in x, so that the voxels of a row are an interval.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,16 +14,15 @@
 
 namespace runstone {
 
-/// Calls f(y, z, first x, last x) for each row in which voxels are touched. `voxels` bounds x, y and z,
-/// both ends included. Cost: O(rows of the bounding box).
+/// Calls f(y, z, first x, last x) for each row in which voxels are touched. `voxels` bounds x, y
+/// and z, both ends included. Cost: O(rows of the bounding box).
 template <class F>
 void for_each_touched(const UnitTriangle& t, const LineRanges& voxels, F&& f) {
   std::array<WholeRange, 3> box;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
-    box[axis] = {
-        std::max<std::int64_t>(((low + kVoxelUnit - 1) >> 8) - 1, voxels.low[axis]),
-        std::min<std::int64_t>(high >> 8, voxels.high[axis])};
+    box[axis] = {std::max<std::int64_t>(((low + kVoxelUnit - 1) >> 8) - 1, voxels.low[axis]),
+                 std::min<std::int64_t>(high >> 8, voxels.high[axis])};
     if (box[axis].empty()) return;
   }
   // A condition: by[0] x + by[1] y + by[2] z + at_zero >= 0, by number of a voxel.
@@ -54,8 +52,9 @@ void for_each_touched(const UnitTriangle& t, const LineRanges& voxels, F&& f) {
         const std::int64_t by_u = -sign * edge(i, to, v), by_v = sign * edge(i, to, u);
         c.by[u] = by_u * kVoxelUnit;
         c.by[v] = by_v * kVoxelUnit;
-        c.at_zero = -by_u * t[i][u] - by_v * t[i][v] +
-                    kVoxelUnit * (std::max<std::int64_t>(by_u, 0) + std::max<std::int64_t>(by_v, 0));
+        c.at_zero =
+            -by_u * t[i][u] - by_v * t[i][v] +
+            kVoxelUnit * (std::max<std::int64_t>(by_u, 0) + std::max<std::int64_t>(by_v, 0));
       }
     }
   }

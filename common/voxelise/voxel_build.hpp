@@ -13,13 +13,14 @@
 namespace runstone {
 
 struct VoxelBuild {
-  BuildPtr build;  // material i + 1 is that of materials[i], so its palette names them by these numbers
+  BuildPtr
+      build;  // material i + 1 is that of materials[i], so its palette names them by these numbers
   std::vector<MaterialRow> materials;
   Voxelised result;
 };
 
-/// Returns the name of the material of a colour, "colour #rrggbb", as files of colours without names
-/// give it (.vox, height maps).
+/// Returns the name of the material of a colour, "colour #rrggbb", as files of colours without
+/// names give it (.vox, height maps).
 std::string colour_material_name(const std::array<std::uint8_t, 3>& colour);
 
 /// Voxelises a model into a build, cut at multiples of 64. Voxels outside the result are untouched.

@@ -35,20 +35,17 @@ class BeamWalk {
         count_(plan.model->is_cloud() ? plan.model->positions.size()
                                       : plan.model->triangles.size()),
         layers_(bands(2)),
-        slabs_(count_, layers_, [&](std::size_t part) {
-          return range_of(static_cast<std::uint32_t>(part), 2);
-        }) {}
+        slabs_(count_, layers_,
+               [&](std::size_t part) { return range_of(static_cast<std::uint32_t>(part), 2); }) {}
 
   /// Calls take(BeamResult&&) for each beam, in order, until it fails. Once.
   template <class F>
   Result<void> walk(F&& take) {
     for (std::int32_t slab = 0; slab < layers_; ++slab) {
-      const auto parts =
-          slabs_.at(slab, [&](std::uint32_t part) { return range_of(part, 2); });
+      const auto parts = slabs_.at(slab, [&](std::uint32_t part) { return range_of(part, 2); });
       if (parts.empty() && !needs_all()) continue;
       const std::int32_t rows = bands(1);
-      PartsByPlace by_row(parts.size(), rows,
-                          [&](std::size_t i) { return range_of(parts[i], 1); });
+      PartsByPlace by_row(parts.size(), rows, [&](std::size_t i) { return range_of(parts[i], 1); });
       const auto row_range = [&](std::uint32_t i) { return range_of(parts[i], 1); };
       std::vector<std::vector<std::uint32_t>> of_rows(static_cast<std::size_t>(rows));
       const auto make = [&](std::size_t row) {
@@ -98,8 +95,7 @@ class BeamWalk {
       const auto along = [&](std::uint32_t vertex) {
         return placement.along(axis, plan_.model->positions[vertex]);
       };
-      std::tie(low, high) =
-          std::minmax({along(corners[0]), along(corners[1]), along(corners[2])});
+      std::tie(low, high) = std::minmax({along(corners[0]), along(corners[1]), along(corners[2])});
     }
     // A voxel is touched from its lower side, too.
     constexpr std::int32_t kBandUnits = kVoxelSection * kVoxelUnit;
@@ -116,9 +112,10 @@ class BeamWalk {
 
 Result<void> check_work(const BeamResult& result) {
   if (!result.is_too_much) return {};
-  return fail(ErrorCode::limit_exceeded,
-              "the mesh has too many open edges for its size: choose a smaller scale, or voxelise its "
-              "surface only");
+  return fail(
+      ErrorCode::limit_exceeded,
+      "the mesh has too many open edges for its size: choose a smaller scale, or voxelise its "
+      "surface only");
 }
 
 /// Returns the colours of the surface of a model that has several.

@@ -34,17 +34,17 @@ Model icosphere(Place centre, float radius, int cuts) {
                                            {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                                            {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
   std::vector<std::array<std::uint32_t, 3>> faces = {
-      {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
       {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int cut = 0; cut < cuts; ++cut) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [found, is_new] =
-          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(at.size()));
+      const auto [found, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)},
+                                                       static_cast<std::uint32_t>(at.size()));
       if (is_new)
-        at.push_back({(at[a][0] + at[b][0]) / 2, (at[a][1] + at[b][1]) / 2,
-                      (at[a][2] + at[b][2]) / 2});
+        at.push_back(
+            {(at[a][0] + at[b][0]) / 2, (at[a][1] + at[b][1]) / 2, (at[a][2] + at[b][2]) / 2});
       return found->second;
     };
     std::vector<std::array<std::uint32_t, 3>> next;
@@ -149,9 +149,10 @@ Model rotated(Model mesh, SplitMix64& rng) {
   const double s = 2 / length2;
   const auto [w, x, y, z] = q;
   for (Place& p : mesh.positions) {
-    p = place_of((1 - s * (y * y + z * z)) * p[0] + s * (x * y - w * z) * p[1] + s * (x * z + w * y) * p[2],
-                 s * (x * y + w * z) * p[0] + (1 - s * (x * x + z * z)) * p[1] + s * (y * z - w * x) * p[2],
-                 s * (x * z - w * y) * p[0] + s * (y * z + w * x) * p[1] + (1 - s * (x * x + y * y)) * p[2]);
+    p = place_of(
+        (1 - s * (y * y + z * z)) * p[0] + s * (x * y - w * z) * p[1] + s * (x * z + w * y) * p[2],
+        s * (x * y + w * z) * p[0] + (1 - s * (x * x + z * z)) * p[1] + s * (y * z - w * x) * p[2],
+        s * (x * z - w * y) * p[0] + s * (y * z + w * x) * p[1] + (1 - s * (x * x + y * y)) * p[2]);
   }
   return mesh;
 }

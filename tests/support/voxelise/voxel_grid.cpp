@@ -19,17 +19,17 @@ Result<VoxelGrid> voxel_grid(const Model& model, const VoxeliseOptions& options,
   if (!done) return failure(done.error());
   out.result = *std::move(done);
   const VoxelPos s = out.result.sides;
-  out.cells.assign(static_cast<std::size_t>(s.x) * static_cast<std::size_t>(s.y) *
-                       static_cast<std::size_t>(s.z),
-                   kEmpty);
+  out.cells.assign(
+      static_cast<std::size_t>(s.x) * static_cast<std::size_t>(s.y) * static_cast<std::size_t>(s.z),
+      kEmpty);
   std::uint64_t count = 0;
   const VoxelPiece* last = nullptr;
   for (const VoxelPiece& piece : pieces) {
     const VoxelPos o = piece.origin;
     if (!validate_runs(piece.voxels)) return fail(ErrorCode::broken_invariant, "runs of a piece");
     if (is_empty(piece.voxels)) return fail(ErrorCode::broken_invariant, "an empty piece");
-    if (last != nullptr && std::tuple(last->origin.z, last->origin.y, last->origin.x) >=
-                               std::tuple(o.z, o.y, o.x))
+    if (last != nullptr &&
+        std::tuple(last->origin.z, last->origin.y, last->origin.x) >= std::tuple(o.z, o.y, o.x))
       return fail(ErrorCode::broken_invariant, "the order of the pieces");
     last = &piece;
     const Extent e = piece.voxels.extent;
@@ -49,8 +49,7 @@ Result<VoxelGrid> voxel_grid(const Model& model, const VoxeliseOptions& options,
       }
     }
   }
-  if (count != out.result.voxels)
-    return fail(ErrorCode::broken_invariant, "the number of voxels");
+  if (count != out.result.voxels) return fail(ErrorCode::broken_invariant, "the number of voxels");
   return out;
 }
 

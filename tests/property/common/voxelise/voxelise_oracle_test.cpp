@@ -43,8 +43,8 @@ std::string first_leak(const VoxelGrid& solid, const VoxelGrid& surface) {
   const VoxelPos s = solid.result.sides;
   surface.for_each([&](VoxelPos p, Material material) {
     if (material != kEmpty) return;
-    for (const VoxelPos q : {VoxelPos{p.x + 1, p.y, p.z}, VoxelPos{p.x, p.y + 1, p.z},
-                             VoxelPos{p.x, p.y, p.z + 1}}) {
+    for (const VoxelPos q :
+         {VoxelPos{p.x + 1, p.y, p.z}, VoxelPos{p.x, p.y + 1, p.z}, VoxelPos{p.x, p.y, p.z + 1}}) {
       if (q.x < s.x && q.y < s.y && q.z < s.z && surface.at(q) == kEmpty &&
           solid.at(q) != solid.at(p) && out.empty())
         out = std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
@@ -74,7 +74,8 @@ void compare_closed(const Model& mesh) {
     CAPTURE(static_cast<int>(mode));
     const auto surface = voxel_grid(mesh, options_of(false, mode));
     REQUIRE(surface.has_value());
-    REQUIRE(first_difference(*surface, [&](VoxelPos p) { return oracle.is_surface(p, mode); }) == "");
+    REQUIRE(first_difference(*surface, [&](VoxelPos p) { return oracle.is_surface(p, mode); }) ==
+            "");
     const auto both = voxel_grid(mesh, options_of(true, mode));
     REQUIRE(both.has_value());
     REQUIRE(first_difference(*both, [&](VoxelPos p) {
@@ -103,9 +104,9 @@ void compare_open(const Model& mesh) {
 Model with_holes(Model mesh, SplitMix64& rng) {
   const std::uint32_t kind = rng.below(3);
   if (kind == 0) {
-    mesh.triangles.erase(mesh.triangles.begin(),
-                         mesh.triangles.begin() +
-                             static_cast<std::ptrdiff_t>(1 + mesh.triangles.size() / 3));
+    mesh.triangles.erase(
+        mesh.triangles.begin(),
+        mesh.triangles.begin() + static_cast<std::ptrdiff_t>(1 + mesh.triangles.size() / 3));
   } else if (kind == 1) {
     for (int i = 0; i < 3; ++i)
       mesh.triangles.erase(mesh.triangles.begin() +

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "common/materials/colour_quantiser.hpp"
 #include "common/formats/look_material.hpp"
+#include "common/materials/colour_quantiser.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
 namespace runstone::test {

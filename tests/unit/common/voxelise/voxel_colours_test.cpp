@@ -238,8 +238,8 @@ TEST_CASE("a build of a model has materials named by colour", "[voxelise]") {
   REQUIRE(at);
   CHECK(made->materials[*at - 1U].name == "colour #2864c8");
   CHECK_FALSE(voxel_build(box, colour_options(true, SurfaceMode::none), 1'000).has_value());
-  const auto none = voxel_build(box_mesh({0, 0, 0}, {9, 0.1F, 9}),
-                                colour_options(true, SurfaceMode::none));
+  const auto none =
+      voxel_build(box_mesh({0, 0, 0}, {9, 0.1F, 9}), colour_options(true, SurfaceMode::none));
   REQUIRE_FALSE(none.has_value());
   CHECK(none.error().code == ErrorCode::bad_value);
 }

@@ -44,7 +44,8 @@ bool equals_oracle(const Model& mesh) {
   return equal;
 }
 
-/// A box cut into pyramids from a point inside, so that edges and a vertex lie where the caller wants.
+/// A box cut into pyramids from a point inside, so that edges and a vertex lie where the caller
+/// wants.
 Model fan_box(Place low, Place high, Place apex) {
   Model out = box_mesh(low, high);
   // The top is a fan around the apex.
@@ -68,7 +69,8 @@ Model material_mesh(Model mesh, ModelColour colour) {
 TEST_CASE("a box is solid where the centres of voxels are inside", "[voxelise]") {
   CHECK(voxels_of(box_mesh({3, 4, 5}, {13, 9, 8}), solid_options()) == 10 * 5 * 3);
   // Faces on centres: the lower ones count, the upper ones do not.
-  Model on_centres = joined({box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({2.5, 2.5, 2.5}, {5.5, 5.5, 5.5})});
+  Model on_centres =
+      joined({box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({2.5, 2.5, 2.5}, {5.5, 5.5, 5.5})});
   CHECK(voxels_of(on_centres, solid_options()) == 1 + 3 * 3 * 3);
   CHECK(equals_oracle(on_centres));
 }
@@ -91,7 +93,8 @@ TEST_CASE("slivers, faces in the plane of the rows and triangles without area ar
   VoxeliseOptions both = solid_options();
   both.surface = SurfaceMode::conservative;
   CHECK(voxels_of(sliver, both) == 30 * 20);
-  CHECK(equals_oracle(joined({box_mesh({0, 0, 0}, {12, 12, 12}), box_mesh({3, 0.5F, 3}, {9, 4.5F, 9})})));
+  CHECK(equals_oracle(
+      joined({box_mesh({0, 0, 0}, {12, 12, 12}), box_mesh({3, 0.5F, 3}, {9, 4.5F, 9})})));
   Model flat = box_mesh({0, 0, 0}, {8, 8, 8});
   flat.triangles.push_back({0, 0, 1});
   CHECK(voxels_of(flat, solid_options()) == 512);
@@ -177,8 +180,8 @@ TEST_CASE("a T-junction closes the solid although the mesh is open", "[voxelise]
 TEST_CASE("surfaces are as thick as their mode says", "[voxelise]") {
   const Model box = box_mesh({0, 0, 0}, {10, 10, 10});
   const std::uint64_t shell = 1000 - 512;
-  for (const SurfaceMode mode : {SurfaceMode::conservative, SurfaceMode::separating_26,
-                                 SurfaceMode::separating_6}) {
+  for (const SurfaceMode mode :
+       {SurfaceMode::conservative, SurfaceMode::separating_26, SurfaceMode::separating_6}) {
     CAPTURE(static_cast<int>(mode));
     CHECK(voxels_of(box, surface_options(mode)) == shell);
   }
@@ -335,7 +338,8 @@ TEST_CASE("extreme coordinates and models without a length are voxels, too", "[v
 TEST_CASE("the longest box has the largest coordinates", "[voxelise]") {
   VoxeliseOptions options;
   options.scale.longest_side = 4096;
-  // Long and thin, so that the grid of the test stays small. The numbers are as large as they become.
+  // Long and thin, so that the grid of the test stays small. The numbers are as large as they
+  // become.
   Model tetrahedron;
   tetrahedron.positions = {{0, 0, 0}, {4096, 3, 1}, {4095, 0, 5}, {1, 5, 4}};
   tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
