@@ -69,7 +69,7 @@ void append_row(RunBuilder& runs, const std::uint8_t* row, std::size_t count) {
 Result<Voxelised> dense_voxelise(const Model& model, const VoxeliseOptions& options,
                                  const VoxelPieceSink& sink) {
   if (auto valid = validate(model); !valid) return failure(valid.error());
-  const auto placement = Placement::of(model, options.turn, options.scale);
+  const auto placement = ModelPlacement::of(model, options.turn, options.scale);
   if (!placement) return failure(placement.error());
   const auto edges = mesh_edges(model, *placement);
   if (!edges) return failure(edges.error());

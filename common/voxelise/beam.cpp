@@ -69,7 +69,7 @@ struct ColourCandidate {
 struct ShellVoxel {
   std::uint32_t row = 0;
   std::int32_t voxel = 0;
-  Rgb colour{};
+  VoxelRgb colour{};
 };
 
 /// Sorts stretches, and joins those that touch or overlap.
@@ -398,7 +398,7 @@ class BeamMaker {
   }
 
   /// Returns the colour of the nearest part, or nullopt if the voxel is not on a surface.
-  std::optional<Rgb> colour_of(std::size_t begin, std::size_t end, bool is_inside) {
+  std::optional<VoxelRgb> colour_of(std::size_t begin, std::size_t end, bool is_inside) {
     nearest_.clear();
     const ColourCandidate first = ColourCandidate::of(candidates_[begin]);
     const VoxelPos voxel{first.voxel, y_of(first.row), z_of(first.row)};
@@ -423,7 +423,7 @@ class BeamMaker {
     return std::nullopt;
   }
 
-  std::optional<Rgb> nearest_point(VoxelPos voxel) {
+  std::optional<VoxelRgb> nearest_point(VoxelPos voxel) {
     const std::array<std::int32_t, 3> at{voxel.x, voxel.y, voxel.z};
     for (Near& near : nearest_) {
       const UnitPoint p = plan_.placement->at(plan_.model->positions[near.part]);
@@ -440,18 +440,18 @@ class BeamMaker {
   }
 
   void count_colours() {
-    std::vector<Rgb> all;
+    std::vector<VoxelRgb> all;
     all.reserve(shell_.size());
     for (const ShellVoxel& voxel : shell_) all.push_back(voxel.colour);
     std::sort(all.begin(), all.end());
-    for (const Rgb& colour : all) {
+    for (const VoxelRgb& colour : all) {
       if (result_.colours.empty() || result_.colours.back().first != colour)
         result_.colours.emplace_back(colour, 0);
       ++result_.colours.back().second;
     }
   }
 
-  Material material_of(const Rgb& colour) {
+  Material material_of(const VoxelRgb& colour) {
     if (!last_colour_ || *last_colour_ != colour) {
       last_colour_ = colour;
       last_material_ = static_cast<Material>(plan_.quantiser->index_of(colour) + 1);
@@ -538,7 +538,7 @@ class BeamMaker {
   std::vector<std::uint64_t> candidates_;
   std::vector<ShellVoxel> shell_;  // in order
   std::vector<Near> nearest_;
-  std::optional<Rgb> last_colour_;
+  std::optional<VoxelRgb> last_colour_;
   Material last_material_ = 1;
   std::vector<std::optional<RunBuilder>> sections_;
   std::uint32_t rows_y_;  // of a layer

@@ -11,8 +11,8 @@
 #include "common/core/coords.hpp"
 #include "common/materials/colour_quantiser.hpp"
 #include "common/voxelise/model_colours.hpp"
+#include "common/voxelise/model_placement.hpp"
 #include "common/voxelise/open_winding.hpp"
-#include "common/voxelise/placement.hpp"
 #include "common/voxelise/voxelise.hpp"
 
 namespace runstone {
@@ -23,7 +23,7 @@ inline constexpr std::int32_t kVoxelSection = 64;
 /// What all beams of a model share.
 struct BeamPlan {
   const Model* model = nullptr;
-  const Placement* placement = nullptr;
+  const ModelPlacement* placement = nullptr;
   const ModelColours* colours = nullptr;
   const OpenWinding* winding = nullptr;  // null: by parity
   bool is_solid = false;
@@ -35,7 +35,7 @@ struct BeamPlan {
 
 struct BeamResult {
   std::vector<VoxelPiece> pieces;  // along x; none in the walk that counts colours
-  std::vector<std::pair<Rgb, std::uint64_t>> colours;  // only in that walk; ascending
+  std::vector<std::pair<VoxelRgb, std::uint64_t>> colours;  // only in that walk; ascending
   std::uint64_t voxels = 0;
   bool is_too_much = false;  // of work; then the rest is not complete
 };

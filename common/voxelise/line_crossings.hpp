@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "common/voxelise/exact_math.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 

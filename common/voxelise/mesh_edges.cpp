@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kEdgesAtOnce = std::size_t{1} << 24;
 
 /// Returns for each vertex the first one with the same snapped position. Open addressing.
-std::vector<std::uint32_t> joined_vertices(const Model& model, const Placement& placement) {
+std::vector<std::uint32_t> joined_vertices(const Model& model, const ModelPlacement& placement) {
   std::vector<std::uint32_t> out(model.positions.size());
   const std::size_t places = std::bit_ceil(model.positions.size() + model.positions.size() / 2 + 1);
   std::vector<std::uint32_t> table(places, UINT32_MAX);
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> joined_vertices(const Model& model, const Placement& 
 /// Counts the edges between joined vertices.
 class EdgeCount {
  public:
-  EdgeCount(const Model& model, const Placement& placement)
+  EdgeCount(const Model& model, const ModelPlacement& placement)
       : model_(model), placement_(placement), joined_(joined_vertices(model, placement)) {}
 
   Result<MeshEdges> count() {
@@ -128,14 +128,14 @@ class EdgeCount {
   }
 
   const Model& model_;
-  const Placement& placement_;
+  const ModelPlacement& placement_;
   const std::vector<std::uint32_t> joined_;
   std::vector<std::uint32_t> begins_;  // [v + 1]: the edges whose lower vertex is v
 };
 
 }  // namespace
 
-Result<MeshEdges> mesh_edges(const Model& model, const Placement& placement) {
+Result<MeshEdges> mesh_edges(const Model& model, const ModelPlacement& placement) {
   return EdgeCount(model, placement).count();
 }
 

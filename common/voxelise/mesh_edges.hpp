@@ -5,7 +5,7 @@
 
 #include "common/core/result.hpp"
 #include "common/models/model.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 
@@ -38,6 +38,6 @@ struct MeshEdges {
 /// count. Fails with limit_exceeded if more than kOpenEdgesMax edges are open. Cost: O(triangles +
 /// vertices). Memory: 12 bytes a vertex and 64 MiB (or 4 bytes for each edge of one vertex), and 6
 /// to 12 bytes a vertex while it joins them.
-Result<MeshEdges> mesh_edges(const Model& model, const Placement& placement);
+Result<MeshEdges> mesh_edges(const Model& model, const ModelPlacement& placement);
 
 }  // namespace runstone

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "common/voxelise/mesh_edges.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 

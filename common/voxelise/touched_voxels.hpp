@@ -10,7 +10,7 @@
 
 #include "common/voxelise/exact_math.hpp"
 #include "common/voxelise/line_crossings.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 

@@ -17,7 +17,7 @@
 #include "common/models/model.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "common/voxelise/mesh_edges.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 

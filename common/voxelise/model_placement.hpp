@@ -1,5 +1,5 @@
-// Placement: where a model lies in a box of voxels. It turns and scales the model, and snaps its
-// vertices to integers, so that everything behind it is exact.
+// ModelPlacement: where a model lies in a box of voxels. It turns and scales the model, and snaps
+// its vertices to integers, so that everything behind it is exact.
 //
 // A voxel has kVoxelUnit units a side. Coordinates are 0 .. 2^20 (4,096 voxels), so differences
 // have 20 bits and a sign, the normal of a triangle (twice its area in a projection) is at most
@@ -31,14 +31,15 @@ struct VoxelScale {
   double voxels_per_unit = 0;      // of the positions of the model; above 0
 };
 
-class Placement {
+class ModelPlacement {
  public:
   /// Places the bounding box of the triangles (of the points, if the model is a cloud) with its
   /// lowest corner at 0. A side is the length in voxels, rounded up, and at least 1. A model
   /// without any length becomes one voxel. Fails with bad_value if not exactly one scale is given
   /// or it is outside its range, and with limit_exceeded if a side is longer than kVoxeliseSideMax.
   /// Requires a model that validate() accepts. Cost: O(triangles).
-  static Result<Placement> of(const Model& model, const Orientation& turn, const VoxelScale& scale);
+  static Result<ModelPlacement> of(const Model& model, const Orientation& turn,
+                                   const VoxelScale& scale);
 
   VoxelPos sides() const { return {sides_[0], sides_[1], sides_[2]}; }
   /// Returns the side along an axis, 0 .. 2.
