@@ -25,6 +25,7 @@
 #include "bench/thesis/scenario_bench.hpp"
 #include "bench/tiles/tiles_bench.hpp"
 #include "bench/view/view_bench.hpp"
+#include "bench/voxelise/voxelise_bench.hpp"
 #include "bench/wire/bytes_bench.hpp"
 #include "bench/wire/bytes_to_quads.hpp"
 #include "common/os/output_file.hpp"
@@ -159,6 +160,13 @@ int map(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int voxelise(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_voxelise_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
 int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -238,6 +246,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return bytes_to_quads(options.bench, out, err);
     case Command::tiles:
       return tiles(options.bench, out, err);
+    case Command::voxelise:
+      return voxelise(options.bench, out, err);
     case Command::map:
       return map(options.bench, out, err);
     case Command::log:

@@ -11,6 +11,7 @@
 #include "bench/storage/storage_options.hpp"
 #include "bench/thesis/scenario_bench.hpp"
 #include "bench/tiles/tiles_options.hpp"
+#include "bench/voxelise/voxelise_options.hpp"
 #include "bench/wire/bytes_options.hpp"
 #include "common/core/version.hpp"
 
@@ -32,7 +33,7 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 17> kSubcommands = {
+constexpr std::array<Subcommand, 18> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
@@ -44,6 +45,7 @@ constexpr std::array<Subcommand, 17> kSubcommands = {
      {Command::bytes_to_quads, add_bytes_to_quads_command},
      {Command::storage, add_storage_command},
      {Command::tiles, add_tiles_command},
+     {Command::voxelise, add_voxelise_command},
      {Command::map, add_map_command},
      {Command::mesh_once, add_mesh_once_command},
      {Command::edit_to_mesh, add_edit_to_mesh_command},

@@ -25,6 +25,7 @@ enum class Command {
   bytes_to_quads,
   storage,
   tiles,
+  voxelise,
   map,
   net,
   frames,

@@ -18,8 +18,8 @@ class ColourQuantiser {
   ColourQuantiser() : bins_(std::size_t{1} << 15) {}
   /// Counts a colour `times` times. Cost: O(log colours_max).
   void add(Rgb colour, std::uint64_t times = 1);
-  /// Chooses `colours_max` colours at most. Requires 1 .. kQuantisedColoursMax. Deterministic. Cost:
-  /// O(bins * colours).
+  /// Chooses `colours_max` colours at most. Requires 1 .. kQuantisedColoursMax. Deterministic.
+  /// Cost: O(bins * colours).
   void choose(std::size_t colours_max);
   /// Returns the chosen colours, and the index of the one for a colour that was added. Requires
   /// choose() before.

@@ -46,8 +46,8 @@ struct RowCrossing {
   }
 };
 
-/// A voxel that may have the colour of a part. It sorts by row and place. `only_inside`: it counts only if
-/// the voxel is inside.
+/// A voxel that may have the colour of a part. It sorts by row and place. `only_inside`: it counts
+/// only if the voxel is inside.
 struct ColourCandidate {
   std::uint32_t row = 0;
   std::int32_t voxel = 0;
@@ -69,7 +69,7 @@ struct ColourCandidate {
 struct ShellVoxel {
   std::uint32_t row = 0;
   std::int32_t voxel = 0;
-  Rgb colour{};
+  VoxelRgb colour{};
 };
 
 /// Sorts stretches, and joins those that touch or overlap.
@@ -102,7 +102,8 @@ class BeamMaker {
         voxels_{{0, y, z},
                 {side_ - 1, std::min(y + kVoxelSection, plan.placement->side(1)) - 1,
                  std::min(z + kVoxelSection, plan.placement->side(2)) - 1}},
-        sections_(static_cast<std::size_t>((side_ + kVoxelSection - 1) / kVoxelSection)) {}
+        sections_(static_cast<std::size_t>((side_ + kVoxelSection - 1) / kVoxelSection)),
+        rows_y_(static_cast<std::uint32_t>(voxels_.high[1] + 1 - y)) {}
 
   BeamResult make(std::span<const std::uint32_t> parts) {
     for (const std::uint32_t part : parts) {
@@ -275,9 +276,24 @@ class BeamMaker {
     }
   }
 
+  /// Sorts the crossings: into rows first, each of which has few.
+  void sort_crossings() {
+    std::vector<std::uint32_t> ends(kBeamRows + 1);
+    for (const std::uint32_t packed : crossings_) ++ends[RowCrossing::of(packed).row + 1];
+    for (std::size_t row = 0; row < kBeamRows; ++row) ends[row + 1] += ends[row];
+    std::vector<std::uint32_t> sorted(crossings_.size());
+    for (const std::uint32_t packed : crossings_)
+      sorted[ends[RowCrossing::of(packed).row]++] = packed;
+    // ends[row] is the end of the row now.
+    std::uint32_t begin = 0;
+    for (std::size_t row = 0; row < kBeamRows; begin = ends[row++])
+      std::sort(sorted.begin() + begin, sorted.begin() + ends[row]);
+    crossings_ = std::move(sorted);
+  }
+
   /// Finds the stretches of voxels that are inside, from the crossings.
   void find_inside() {
-    std::sort(crossings_.begin(), crossings_.end());
+    sort_crossings();
     if (plan_.winding != nullptr && !plan_.winding->is_zero()) {
       find_inside_open();
       return;
@@ -382,7 +398,7 @@ class BeamMaker {
   }
 
   /// Returns the colour of the nearest part, or nullopt if the voxel is not on a surface.
-  std::optional<Rgb> colour_of(std::size_t begin, std::size_t end, bool is_inside) {
+  std::optional<VoxelRgb> colour_of(std::size_t begin, std::size_t end, bool is_inside) {
     nearest_.clear();
     const ColourCandidate first = ColourCandidate::of(candidates_[begin]);
     const VoxelPos voxel{first.voxel, y_of(first.row), z_of(first.row)};
@@ -407,7 +423,7 @@ class BeamMaker {
     return std::nullopt;
   }
 
-  std::optional<Rgb> nearest_point(VoxelPos voxel) {
+  std::optional<VoxelRgb> nearest_point(VoxelPos voxel) {
     const std::array<std::int32_t, 3> at{voxel.x, voxel.y, voxel.z};
     for (Near& near : nearest_) {
       const UnitPoint p = plan_.placement->at(plan_.model->positions[near.part]);
@@ -424,18 +440,18 @@ class BeamMaker {
   }
 
   void count_colours() {
-    std::vector<Rgb> all;
+    std::vector<VoxelRgb> all;
     all.reserve(shell_.size());
     for (const ShellVoxel& voxel : shell_) all.push_back(voxel.colour);
     std::sort(all.begin(), all.end());
-    for (const Rgb& colour : all) {
+    for (const VoxelRgb& colour : all) {
       if (result_.colours.empty() || result_.colours.back().first != colour)
         result_.colours.emplace_back(colour, 0);
       ++result_.colours.back().second;
     }
   }
 
-  Material material_of(const Rgb& colour) {
+  Material material_of(const VoxelRgb& colour) {
     if (!last_colour_ || *last_colour_ != colour) {
       last_colour_ = colour;
       last_material_ = static_cast<Material>(plan_.quantiser->index_of(colour) + 1);
@@ -480,16 +496,16 @@ class BeamMaker {
   /// Appends voxels to the sections. Requires stretches in the order of rows and places.
   void put(const RowSpan& span, Material material) {
     result_.voxels += static_cast<std::uint64_t>(span.end - span.begin);
-    for (std::int32_t x = span.begin; x < span.end;) {
-      const auto section = static_cast<std::size_t>(x / kVoxelSection);
-      const Extent extent = extent_of(section);
-      const std::int32_t low = x / kVoxelSection * kVoxelSection;
+    const std::uint32_t line = span.row / kVoxelSection * rows_y_ + span.row % kVoxelSection;
+    std::int32_t x = span.begin;
+    for (std::int32_t low = x / kVoxelSection * kVoxelSection; x < span.end; low += kVoxelSection) {
+      const auto section = static_cast<std::size_t>(low / kVoxelSection);
       const std::int32_t end = std::min(span.end, low + kVoxelSection);
-      if (!sections_[section]) sections_[section].emplace(extent, AxisOrder::xyz);
+      const auto width = static_cast<std::uint32_t>(std::min(kVoxelSection, side_ - low));
+      if (!sections_[section]) sections_[section].emplace(extent_of(section), AxisOrder::xyz);
       RunBuilder& runs = *sections_[section];
-      const std::uint32_t line = span.row / kVoxelSection * extent.y + span.row % kVoxelSection;
-      runs.append_to(line * extent.x + static_cast<std::uint32_t>(x - low), kEmpty);
-      runs.append(static_cast<std::uint32_t>(end - x), material);
+      runs.append_to(line * width + static_cast<std::uint32_t>(x - low), kEmpty);
+      runs.append_to(line * width + static_cast<std::uint32_t>(end - low), material);
       x = end;
     }
   }
@@ -522,9 +538,10 @@ class BeamMaker {
   std::vector<std::uint64_t> candidates_;
   std::vector<ShellVoxel> shell_;  // in order
   std::vector<Near> nearest_;
-  std::optional<Rgb> last_colour_;
+  std::optional<VoxelRgb> last_colour_;
   Material last_material_ = 1;
   std::vector<std::optional<RunBuilder>> sections_;
+  std::uint32_t rows_y_;  // of a layer
   BeamResult result_;
 };
 

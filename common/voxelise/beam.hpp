@@ -1,6 +1,6 @@
-// Beam: the voxels of 64 x 64 rows along x, made from the triangles that meet them. It is the unit of
-// work of the voxeliser. Rows are lists of crossings and of voxels on the surface, sorted; there is no
-// grid. Internal to this room.
+// Beam: the voxels of 64 x 64 rows along x, made from the triangles that meet them. It is the unit
+// of work of the voxeliser. Rows are lists of crossings and of voxels on the surface, sorted; there
+// is no grid. Internal to this room.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include "common/core/coords.hpp"
 #include "common/materials/colour_quantiser.hpp"
 #include "common/voxelise/model_colours.hpp"
+#include "common/voxelise/model_placement.hpp"
 #include "common/voxelise/open_winding.hpp"
-#include "common/voxelise/placement.hpp"
 #include "common/voxelise/voxelise.hpp"
 
 namespace runstone {
@@ -23,7 +23,7 @@ inline constexpr std::int32_t kVoxelSection = 64;
 /// What all beams of a model share.
 struct BeamPlan {
   const Model* model = nullptr;
-  const Placement* placement = nullptr;
+  const ModelPlacement* placement = nullptr;
   const ModelColours* colours = nullptr;
   const OpenWinding* winding = nullptr;  // null: by parity
   bool is_solid = false;
@@ -35,13 +35,14 @@ struct BeamPlan {
 
 struct BeamResult {
   std::vector<VoxelPiece> pieces;  // along x; none in the walk that counts colours
-  std::vector<std::pair<Rgb, std::uint64_t>> colours;  // only in that walk; ascending
+  std::vector<std::pair<VoxelRgb, std::uint64_t>> colours;  // only in that walk; ascending
   std::uint64_t voxels = 0;
   bool is_too_much = false;  // of work; then the rest is not complete
 };
 
-/// Makes the beam with the lowest row (y, z), multiples of kVoxelSection. `parts` are the triangles, or
-/// the points of a cloud, that meet it; others may be among them. Thread: any. Deterministic.
+/// Makes the beam with the lowest row (y, z), multiples of kVoxelSection. `parts` are the
+/// triangles, or the points of a cloud, that meet it; others may be among them. Thread: any.
+/// Deterministic.
 BeamResult make_beam(const BeamPlan& plan, std::int32_t y, std::int32_t z,
                      std::span<const std::uint32_t> parts);
 

@@ -1,18 +1,19 @@
 // Where a triangle crosses lines that are parallel to an axis. Everything is exact.
-// Internal to this room.
+// Internal to this room and to its benchmark.
 //
 // The rule for points on an edge: *closed* counts the edges and vertices of a triangle. *Half-open*
-// moves the lines by an infinitesimal along x, by an infinitely smaller one along y, and again along z,
-// so that no line meets an edge: a line through an edge that two triangles share crosses exactly one of
-// them if they lie on either side of it, and both or none if they lie on one side. This is the top-left
-// rule of rasterisers, as simulation of simplicity (Edelsbrunner, Muecke 1990).
+// moves the lines by an infinitesimal along x, by an infinitely smaller one along y, and again
+// along z, so that no line meets an edge: a line through an edge that two triangles share crosses
+// exactly one of them if they lie on either side of it, and both or none if they lie on one side.
+// This is the top-left rule of rasterisers, as simulation of simplicity (Edelsbrunner, Muecke
+// 1990).
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "common/voxelise/exact_math.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 
@@ -36,15 +37,16 @@ struct Crossing {
   bool is_on_plane() const { return num % (den * kVoxelUnit) == 0; }
 };
 
-/// Lines by number along each axis, both ends included. The range along the axis of the lines is unused.
+/// Lines by number along each axis, both ends included. The range along the axis of the lines is
+/// unused.
 struct LineRanges {
   std::array<std::int32_t, 3> low{}, high{};
 };
 
-/// Calls f(numbers along x, y, z of the line, with 0 along `axis`; Crossing) for each line parallel to
-/// `axis` that the triangle crosses in one point. Line i lies at i * kVoxelUnit + offset. Triangles
-/// parallel to the axis cross no line. Cost: O(1), and O(1) for each row of the lines in the bounding
-/// box, and for each crossing.
+/// Calls f(numbers along x, y, z of the line, with 0 along `axis`; Crossing) for each line parallel
+/// to `axis` that the triangle crosses in one point. Line i lies at i * kVoxelUnit + offset.
+/// Triangles parallel to the axis cross no line. Cost: O(1), and O(1) for each row of the lines in
+/// the bounding box, and for each crossing.
 template <bool kHalfOpen, class F>
 void for_each_crossing(const UnitTriangle& t, unsigned axis, std::int32_t offset,
                        const LineRanges& lines, F&& f) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kEdgesAtOnce = std::size_t{1} << 24;
 
 /// Returns for each vertex the first one with the same snapped position. Open addressing.
-std::vector<std::uint32_t> joined_vertices(const Model& model, const Placement& placement) {
+std::vector<std::uint32_t> joined_vertices(const Model& model, const ModelPlacement& placement) {
   std::vector<std::uint32_t> out(model.positions.size());
   const std::size_t places = std::bit_ceil(model.positions.size() + model.positions.size() / 2 + 1);
   std::vector<std::uint32_t> table(places, UINT32_MAX);
@@ -43,13 +43,11 @@ std::vector<std::uint32_t> joined_vertices(const Model& model, const Placement& 
   return out;
 }
 
-/// Counts the edges between vertices, which `number_of` numbers. Stops at the first edge that does not
-/// close if `needs_closed`.
+/// Counts the edges between joined vertices.
 class EdgeCount {
  public:
-  EdgeCount(const Model& model, const Placement& placement,
-            const std::vector<std::uint32_t>* joined, bool needs_closed)
-      : model_(model), placement_(placement), joined_(joined), needs_closed_(needs_closed) {}
+  EdgeCount(const Model& model, const ModelPlacement& placement)
+      : model_(model), placement_(placement), joined_(joined_vertices(model, placement)) {}
 
   Result<MeshEdges> count() {
     begins_.assign(model_.positions.size() + 1, 0);
@@ -65,7 +63,6 @@ class EdgeCount {
       if (held != 0) {
         if (auto counted = count_range(first, last, held, out); !counted)
           return failure(counted.error());
-        if (needs_closed_ && out.closure != MeshClosure::closed) return out;
       }
       first = last;
     }
@@ -77,8 +74,8 @@ class EdgeCount {
   template <class F>
   void for_each_edge(F&& f) const {
     for (const auto& triangle : model_.triangles) {
-      std::array<std::uint32_t, 3> v = triangle;
-      if (joined_ != nullptr) v = {(*joined_)[v[0]], (*joined_)[v[1]], (*joined_)[v[2]]};
+      const std::array<std::uint32_t, 3> v{joined_[triangle[0]], joined_[triangle[1]],
+                                           joined_[triangle[2]]};
       if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t from = v[i], to = v[(i + 1) % 3];
@@ -119,7 +116,6 @@ class EdgeCount {
         } else if (out.closure == MeshClosure::closed) {
           out.closure = MeshClosure::inverted;
         }
-        if (needs_closed_) return {};
         if (forward == backward) continue;
         if (out.open.size() == kOpenEdgesMax)
           return fail(ErrorCode::limit_exceeded,
@@ -132,19 +128,15 @@ class EdgeCount {
   }
 
   const Model& model_;
-  const Placement& placement_;
-  const std::vector<std::uint32_t>* joined_;
-  bool needs_closed_;
+  const ModelPlacement& placement_;
+  const std::vector<std::uint32_t> joined_;
   std::vector<std::uint32_t> begins_;  // [v + 1]: the edges whose lower vertex is v
 };
 
 }  // namespace
 
-Result<MeshEdges> mesh_edges(const Model& model, const Placement& placement) {
-  auto by_number = EdgeCount(model, placement, nullptr, true).count();
-  if (!by_number || by_number->closure == MeshClosure::closed) return by_number;
-  const auto joined = joined_vertices(model, placement);
-  return EdgeCount(model, placement, &joined, false).count();
+Result<MeshEdges> mesh_edges(const Model& model, const ModelPlacement& placement) {
+  return EdgeCount(model, placement).count();
 }
 
 }  // namespace runstone

@@ -5,7 +5,7 @@
 
 #include "common/core/result.hpp"
 #include "common/models/model.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 
@@ -33,11 +33,11 @@ struct MeshEdges {
   std::vector<Open> open;
 };
 
-/// Counts the triangles of each edge: by the numbers of the vertices, and if they are not closed so,
-/// by the snapped positions, so that a file in which each triangle has vertices of its own is closed,
-/// too. Triangles with two equal vertices do not count. Fails with limit_exceeded if more than
-/// kOpenEdgesMax edges are open. Cost: O(triangles + vertices). Memory: 4 bytes a vertex and 64 MiB, or 4
-/// bytes for each edge of one vertex; by position 16 bytes a vertex more.
-Result<MeshEdges> mesh_edges(const Model& model, const Placement& placement);
+/// Counts the triangles of each edge. Vertices with equal snapped positions are one vertex, as in a
+/// file in which each triangle has vertices of its own. Triangles with two equal vertices do not
+/// count. Fails with limit_exceeded if more than kOpenEdgesMax edges are open. Cost: O(triangles +
+/// vertices). Memory: 12 bytes a vertex and 64 MiB (or 4 bytes for each edge of one vertex), and 6
+/// to 12 bytes a vertex while it joins them.
+Result<MeshEdges> mesh_edges(const Model& model, const ModelPlacement& placement);
 
 }  // namespace runstone

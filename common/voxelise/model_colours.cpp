@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::uint8_t kSurfaceAlphaMin = 128;
 
-Rgb rgb_of(const ModelColour& colour) { return {colour[0], colour[1], colour[2]}; }
+VoxelRgb rgb_of(const ModelColour& colour) { return {colour[0], colour[1], colour[2]}; }
 
-Rgb product(const Rgb& a, const std::array<double, 3>& b) {
-  Rgb out{};
+VoxelRgb product(const VoxelRgb& a, const std::array<double, 3>& b) {
+  VoxelRgb out{};
   for (std::size_t i = 0; i < 3; ++i)
     out[i] = static_cast<std::uint8_t>(std::clamp(a[i] * b[i] / 255 + 0.5, 0.0, 255.0));
   return out;
@@ -29,24 +29,24 @@ double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2]
 
 }  // namespace
 
-ModelColours::ModelColours(const Model& model, const Placement& placement)
+ModelColours::ModelColours(const Model& model, const ModelPlacement& placement)
     : model_(&model), placement_(&placement) {
   if (!model.colours.empty()) return;
-  std::optional<Rgb> one;
+  std::optional<VoxelRgb> one;
   for (std::uint32_t triangle = 0; triangle < model.triangles.size(); ++triangle) {
     const ModelMaterial* material = material_of(triangle);
     if (material == nullptr) break;
     if (material->texture) return;
-    const Rgb colour = rgb_of(material->colour);
+    const VoxelRgb colour = rgb_of(material->colour);
     if (one && *one != colour) return;
     one = colour;
   }
-  only_ = one.value_or(Rgb{255, 255, 255});
+  only_ = one.value_or(VoxelRgb{255, 255, 255});
 }
 
-Rgb ModelColours::fallback() const {
+VoxelRgb ModelColours::fallback() const {
   const ModelMaterial* material = model_->is_cloud() ? nullptr : material_of(0);
-  return material == nullptr ? Rgb{255, 255, 255} : rgb_of(material->colour);
+  return material == nullptr ? VoxelRgb{255, 255, 255} : rgb_of(material->colour);
 }
 
 ModelColours::Nearest ModelColours::nearest(std::uint32_t triangle, VoxelPos voxel) const {
@@ -94,9 +94,9 @@ ModelColours::Nearest ModelColours::nearest(std::uint32_t triangle, VoxelPos vox
   return at({1 - vb / sum - vc / sum, vb / sum, vc / sum});
 }
 
-std::optional<Rgb> ModelColours::at(std::uint32_t triangle, const Nearest& nearest) const {
+std::optional<VoxelRgb> ModelColours::at(std::uint32_t triangle, const Nearest& nearest) const {
   const ModelMaterial* material = material_of(triangle);
-  Rgb out{255, 255, 255};
+  VoxelRgb out{255, 255, 255};
   if (material != nullptr) out = rgb_of(material->colour);
   const auto& corners = model_->triangles[triangle];
   if (material != nullptr && material->texture && !model_->texture_places.empty()) {
@@ -128,8 +128,8 @@ bool ModelColours::is_plain(std::uint32_t triangle) const {
   return model_->colours.empty() && (material == nullptr || !material->texture);
 }
 
-Rgb ModelColours::of_point(std::uint32_t point) const {
-  return model_->colours.empty() ? Rgb{255, 255, 255} : rgb_of(model_->colours[point]);
+VoxelRgb ModelColours::of_point(std::uint32_t point) const {
+  return model_->colours.empty() ? VoxelRgb{255, 255, 255} : rgb_of(model_->colours[point]);
 }
 
 }  // namespace runstone

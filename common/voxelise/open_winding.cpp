@@ -7,11 +7,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Returns half the solid angle of the strip from a to b and along x to infinity; a and b are seen from
-/// the point. Source: van Oosterom and Strackee 1983, with the third corner at infinity.
+/// Returns half the solid angle of the strip from a to b and along x to infinity; a and b are seen
+/// from the point. Source: van Oosterom and Strackee 1983, with the third corner at infinity.
 double half_angle(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  // The point moves by an infinitesimal along y, and by an infinitely smaller one along z. If it is on the
-  // side of the strip that begins at a, a is seen in the direction of -y there, and the strip is a lune.
+  // The point moves by an infinitesimal along y, and by an infinitely smaller one along z. If it is
+  // on the side of the strip that begins at a, a is seen in the direction of -y there, and the
+  // strip is a lune.
   const auto is_behind = [](const std::array<double, 3>& corner) {
     return corner[1] == 0 && corner[2] == 0 && corner[0] < 0;
   };

@@ -1,15 +1,16 @@
-// OpenWinding: what the open edges of a mesh add to the generalised winding number. Internal to this room.
+// OpenWinding: what the open edges of a mesh add to the generalised winding number. Internal to
+// this room.
 //
 // The winding number of a point is the solid angle of the mesh seen from it, by 4 pi (Jacobson,
 // Kavan, Sorkine-Hornung 2013). Strips from the open edges along the x axis close the mesh at
-// infinity. The closed surface has a whole winding number: the signed crossings of a ray from the point
-// against the x axis, which no strip crosses. So the winding number of the mesh is this count, plus the
-// solid angles of the strips, and its cost depends on the open edges only, not on the triangles. (The
-// same idea: Martens and Bessmeltsev 2025, one-shot winding numbers.)
+// infinity. The closed surface has a whole winding number: the signed crossings of a ray from the
+// point against the x axis, which no strip crosses. So the winding number of the mesh is this
+// count, plus the solid angles of the strips, and its cost depends on the open edges only, not on
+// the triangles. (The same idea: Martens and Bessmeltsev 2025, one-shot winding numbers.)
 //
-// Far from the open edges the fraction of the sum changes little: its gradient is at most the sum of
-// length / distance^2 of the edges, by 4 pi (law of Biot and Savart). So one value decides for a block of
-// voxels, unless a half is within this bound; then the block is cut in two.
+// Far from the open edges the fraction of the sum changes little: its gradient is at most the sum
+// of length / distance^2 of the edges, by 4 pi (law of Biot and Savart). So one value decides for a
+// block of voxels, unless a half is within this bound; then the block is cut in two.
 #pragma once
 #include <array>
 #include <atomic>
@@ -20,7 +21,7 @@
 #include <vector>
 
 #include "common/voxelise/mesh_edges.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 
@@ -37,10 +38,11 @@ class OpenWinding {
 
   bool is_zero() const { return edges_.empty(); }
 
-  /// Calls f(block, offset) for blocks that fill the given one. The winding number of the centre of a
-  /// voxel is the signed crossings before it plus a number that is on the same side of each half as
-  /// `offset`. A centre on a strip lies beside it, as half-open lines do (line_crossings.hpp). Returns
-  /// false, perhaps after some calls, if the work is too much; then so does each later call. Thread: any.
+  /// Calls f(block, offset) for blocks that fill the given one. The winding number of the centre of
+  /// a voxel is the signed crossings before it plus a number that is on the same side of each half
+  /// as `offset`. A centre on a strip lies beside it, as half-open lines do (line_crossings.hpp).
+  /// Returns false, perhaps after some calls, if the work is too much; then so does each later
+  /// call. Thread: any.
   template <class F>
   bool decide(const VoxelBlock& block, F&& f) const {
     if (work_.fetch_add(edges_.size(), std::memory_order_relaxed) > work_max_) return false;

@@ -1,5 +1,5 @@
-// PartsByPlace: gives the triangles (or points) of a model that meet a band, band after band. Each part
-// has a range of bands. It holds two numbers a part, not one for each band that a part meets.
+// PartsByPlace: gives the triangles (or points) of a model that meet a band, band after band. Each
+// part has a range of bands. It holds two numbers a part, not one for each band that a part meets.
 // Internal to this room.
 #pragma once
 #include <algorithm>
@@ -17,8 +17,8 @@ struct BandRange {
 
 class PartsByPlace {
  public:
-  /// Parts are numbered 0 .. count - 1; `bands_of(i)` is the range of part i, inside 0 .. bands - 1, and
-  /// must stay valid. Cost: O(parts + bands).
+  /// Parts are numbered 0 .. count - 1; `bands_of(i)` is the range of part i, inside 0 .. bands -
+  /// 1, and must stay valid. Cost: O(parts + bands).
   template <class F>
   PartsByPlace(std::size_t count, std::int32_t bands, F&& bands_of)
       : begins_(static_cast<std::size_t>(bands) + 1), parts_(count) {
@@ -29,9 +29,9 @@ class PartsByPlace {
       parts_[next[place(bands_of(i).first)]++] = static_cast<std::uint32_t>(i);
   }
 
-  /// Returns the parts that meet a band, the numbers of which the caller gave to bands_of(). Requires
-  /// bands in order, from 0 on, each once. The view is invalid after the next call. Cost: O(parts that
-  /// meet this band or the one before).
+  /// Returns the parts that meet a band, the numbers of which the caller gave to bands_of().
+  /// Requires bands in order, from 0 on, each once. The view is invalid after the next call. Cost:
+  /// O(parts that meet this band or the one before).
   template <class F>
   std::span<const std::uint32_t> at(std::int32_t band, F&& bands_of) {
     std::erase_if(active_, [&](std::uint32_t part) { return bands_of(part).last < band; });

@@ -1,8 +1,7 @@
-// The voxels whose closed cubes a triangle touches, as rows along x. Exact, also for triangles without
-// area. Internal to this room.
-// Source: the tests of Schwarz and Seidel, "Fast parallel surface and solid voxelization on GPUs" (2010):
-// bounding box, plane, and the projections along the three axes. Each is linear in x, so that the voxels
-// of a row are an interval.
+// The voxels whose closed cubes a triangle touches, as rows along x. Exact, also for triangles
+// without area. Internal to this room. Source: the tests of Schwarz and Seidel, "Fast parallel
+// surface and solid voxelization on GPUs" (2010): bounding box, plane, and the projections along
+// the three axes. Each is linear in x, so that the voxels of a row are an interval.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,12 +10,12 @@
 
 #include "common/voxelise/exact_math.hpp"
 #include "common/voxelise/line_crossings.hpp"
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 namespace runstone {
 
-/// Calls f(y, z, first x, last x) for each row in which voxels are touched. `voxels` bounds x, y and z,
-/// both ends included. Cost: O(rows of the bounding box).
+/// Calls f(y, z, first x, last x) for each row in which voxels are touched. `voxels` bounds x, y
+/// and z, both ends included. Cost: O(rows of the bounding box).
 template <class F>
 void for_each_touched(const UnitTriangle& t, const LineRanges& voxels, F&& f) {
   std::array<WholeRange, 3> box;

@@ -25,7 +25,7 @@ Result<VoxelBuild> voxel_build(const Model& model, const VoxeliseOptions& option
   // voxelise() checks the model again, which costs little.
   if (auto valid = validate(model); !valid) return failure(valid.error());
   if (!options.turn.valid()) return fail(ErrorCode::bad_value, "turn: is not one of the 48");
-  const auto placement = Placement::of(model, options.turn, options.scale);
+  const auto placement = ModelPlacement::of(model, options.turn, options.scale);
   if (!placement) return failure(placement.error());
   BuildCuts cuts;
   for (unsigned axis = 0; axis < 3; ++axis)

@@ -19,8 +19,8 @@ struct VoxelBuild {
   Voxelised result;
 };
 
-/// Returns the name of the material of a colour, "colour #rrggbb", as files of colours without names
-/// give it (.vox, height maps).
+/// Returns the name of the material of a colour, "colour #rrggbb", as files of colours without
+/// names give it (.vox, height maps).
 std::string colour_material_name(const std::array<std::uint8_t, 3>& colour);
 
 /// Voxelises a model into a build, cut at multiples of 64. Voxels outside the result are untouched.

@@ -12,8 +12,8 @@
 namespace runstone {
 namespace {
 
-/// The solid angles that an open mesh may cost: some minutes.
-constexpr std::uint64_t kWindingWorkMax = std::uint64_t{1} << 33;
+/// The solid angles that an open mesh may cost: about a minute of a core.
+constexpr std::uint64_t kWindingWorkMax = std::uint64_t{1} << 32;
 
 Result<void> check_options(const VoxeliseOptions& options) {
   if (!options.turn.valid()) return fail(ErrorCode::bad_value, "turn: is not one of the 48");
@@ -84,7 +84,7 @@ class BeamWalk {
 
   /// Returns the bands of an axis in which a part may set voxels, or change what is inside.
   BandRange range_of(std::uint32_t part, unsigned axis) const {
-    const Placement& placement = *plan_.placement;
+    const ModelPlacement& placement = *plan_.placement;
     std::int32_t low = 0, high = 0;
     if (plan_.model->is_cloud()) {
       const std::int32_t at = placement.along(axis, plan_.model->positions[part]);
@@ -140,7 +140,7 @@ Result<Voxelised> voxelise(const Model& model, const VoxeliseOptions& options,
                            const VoxelPieceSink& sink, const ParallelFor& parallel_for) {
   if (auto checked = check_options(options); !checked) return failure(checked.error());
   if (auto valid = validate(model); !valid) return failure(valid.error());
-  const auto placement = Placement::of(model, options.turn, options.scale);
+  const auto placement = ModelPlacement::of(model, options.turn, options.scale);
   if (!placement) return failure(placement.error());
   const ModelColours colours(model, *placement);
   Voxelised out;

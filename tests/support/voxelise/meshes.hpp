@@ -18,8 +18,8 @@ Model box_mesh(Place low, Place high);
 Model icosphere(Place centre, float radius, int cuts);
 /// A closed torus around the y axis.
 Model torus_mesh(Place centre, float radius, float tube, int around, int along);
-/// A closed surface of 2 * around * (rings - 1) triangles around the origin. `radius(direction)` is its
-/// distance; the direction has length 1.
+/// A closed surface of 2 * around * (rings - 1) triangles around the origin. `radius(direction)` is
+/// its distance; the direction has length 1.
 Model star_mesh(int around, int rings,
                 const std::function<double(const std::array<double, 3>&)>& radius);
 /// A star mesh with bumps, as a statue has them, of about this many triangles.

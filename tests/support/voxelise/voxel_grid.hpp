@@ -28,8 +28,8 @@ struct VoxelGrid {
   }
 };
 
-/// Voxelises a model, and expands it. Fails as voxelise(), and with broken_invariant if a piece is not
-/// canonical, is empty, or comes out of order, or if the count of voxels is wrong.
+/// Voxelises a model, and expands it. Fails as voxelise(), and with broken_invariant if a piece is
+/// not canonical, is empty, or comes out of order, or if the count of voxels is wrong.
 Result<VoxelGrid> voxel_grid(const Model& model, const VoxeliseOptions& options,
                              const ParallelFor& parallel_for = {});
 

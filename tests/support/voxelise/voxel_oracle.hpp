@@ -1,6 +1,7 @@
-// VoxelOracle: the voxels of a mesh, each found on its own from all triangles, in exact arithmetic of
-// 128 bits. It shares no code with the voxeliser, and uses other tests: rays along z instead of rows
-// along x, edges and corners of cubes instead of separating axes, and the solid angle of each triangle.
+// VoxelOracle: the voxels of a mesh, each found on its own from all triangles, in exact arithmetic
+// of 128 bits. It shares no code with the voxeliser, and uses other tests: rays along z instead of
+// rows along x, edges and corners of cubes instead of separating axes, and the solid angle of each
+// triangle.
 #pragma once
 #include <array>
 #include <cstdint>

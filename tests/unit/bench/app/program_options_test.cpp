@@ -53,6 +53,11 @@ TEST_CASE("each subcommand of runstone-bench has defaults of its own", "[options
   CHECK(log.command == Command::log);
   CHECK(log.bench.edits == 1'000'000);
 
+  const ProgramOptions voxelise = options_of({"voxelise"});
+  CHECK(voxelise.command == Command::voxelise);
+  CHECK(voxelise.bench.edges == Edges{128, 256, 512, 1024});
+  CHECK(voxelise.bench.repetitions == 5);
+
   const ProgramOptions bytes = options_of({"bytes"});
   CHECK(bytes.command == Command::bytes);
   CHECK(bytes.bench.repetitions == 9);

@@ -1,4 +1,4 @@
-#include "common/voxelise/placement.hpp"
+#include "common/voxelise/model_placement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,8 @@ ModelBounds bounds_of(const Model& model) {
 
 }  // namespace
 
-Result<Placement> Placement::of(const Model& model, const Orientation& turn,
-                                const VoxelScale& scale) {
+Result<ModelPlacement> ModelPlacement::of(const Model& model, const Orientation& turn,
+                                          const VoxelScale& scale) {
   if ((scale.longest_side != 0) == (scale.voxels_per_unit != 0))
     return fail(ErrorCode::bad_value,
                 "scale: give either the voxels of the longest side or the voxels per unit");
@@ -51,7 +51,7 @@ Result<Placement> Placement::of(const Model& model, const Orientation& turn,
   if (!(longest * units <= (kVoxeliseSideMax + 0.001) * kVoxelUnit))
     return fail(ErrorCode::limit_exceeded,
                 "the model becomes longer than 4,096 voxels: choose a smaller scale");
-  Placement out;
+  ModelPlacement out;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const auto source = static_cast<unsigned>(turn.along(static_cast<Axis>(axis)));
     const bool reversed = turn.flipped(static_cast<Axis>(axis));
