@@ -23,7 +23,8 @@ VoxeliseOptions voxelise_options(const ModelReading& reading, const Model& model
     options.scale.longest_side = reading.voxels;
   }
   options.is_solid = reading.is_solid;
-  options.surface = reading.surface;
+  options.surface =
+      reading.surface.value_or(reading.is_solid ? SurfaceMode::none : SurfaceMode::separating_6);
   options.fills_overlaps = reading.fills_overlaps;
   options.colours_max = kModelColoursMax;
   return options;
@@ -53,7 +54,7 @@ std::string model_endings() { return ".obj, .stl, .ply, .gltf, .glb"; }
 Result<FileBuild, std::string> read_model_build(const std::string& file,
                                                 const ModelReading& reading, std::size_t bytes_max,
                                                 const ReadNotice& notice) {
-  if (!reading.is_solid && reading.surface == SurfaceMode::none)
+  if (!reading.is_solid && reading.surface.value_or(SurfaceMode::separating_6) == SurfaceMode::none)
     return failure(file + ": neither its inside nor its surface is wanted");
   const auto read = read_model_file(file, reading.file);
   if (!read) return failure(read.error());
@@ -61,9 +62,17 @@ Result<FileBuild, std::string> read_model_build(const std::string& file,
     if (notice) notice(file + ": " + line);
   };
   for (const std::string& line : read->notices) say(line);
-  auto voxels = voxel_build(read->model, voxelise_options(reading, read->model), bytes_max);
+  VoxeliseOptions options = voxelise_options(reading, read->model);
+  auto voxels = voxel_build(read->model, options, bytes_max);
+  if (!voxels && voxels.error().code == ErrorCode::bad_value && !reading.surface &&
+      reading.is_solid) {
+    options.is_solid = false;
+    options.surface = SurfaceMode::separating_6;
+    voxels = voxel_build(read->model, options, bytes_max);
+    if (voxels) say("nothing lies inside: its surface alone was taken");
+  }
   if (!voxels) return failure(file + ": " + voxels.error().what);
-  notice_result(voxels->result, read->model, reading.is_solid, say);
+  notice_result(voxels->result, read->model, options.is_solid, say);
   FileBuild out;
   for (const Material number : voxels->build->palette())
     out.materials.push_back({voxels->materials[number - 1U], {}});

@@ -23,8 +23,10 @@ struct ModelReading {
   std::optional<double> voxels_per_metre = std::nullopt;
   /// The inside is filled. A model that is no closed surface is filled by its winding number.
   bool is_solid = true;
-  /// What else is set. Thin: walls without the centre of a voxel stay.
-  SurfaceMode surface = SurfaceMode::separating_6;
+  /// What else is set. Unset: nothing, but if the model is hollow, or nothing lies inside it, a thin
+  /// surface. A solid with a surface is up to a voxel thicker, and keeps walls without the centre of
+  /// a voxel.
+  std::optional<SurfaceMode> surface = std::nullopt;
   /// Where closed parts overlap, the inside is filled, too.
   bool fills_overlaps = false;
   ModelFileOptions file;

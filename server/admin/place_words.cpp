@@ -110,7 +110,7 @@ bool take_model_word(WordReader& reader, ModelReading& model) {
   } else if (reader.take_word("surface")) {
     const auto mode = surface_of_word(reader.take("surface", "none, thin, thick or all"));
     if (!mode) reader.wrong("surface: none, thin, thick or all");
-    model.surface = mode.value_or(model.surface);
+    model.surface = mode;
   } else if (reader.take_word("hollow")) {
     model.is_solid = false;
   } else if (reader.take_word("up")) {

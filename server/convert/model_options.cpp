@@ -14,11 +14,10 @@ void add_model_options(CLI::App& app, ModelReading& reading) {
       ->excludes(voxels);
   app.add_option_function<std::string>(
          "--surface",
-         [&reading](const std::string& word) {
-           reading.surface = surface_of_word(word).value_or(reading.surface);
-         },
-         "model: what its surface sets besides the inside: none; thin, the default, which keeps "
-         "thin walls; thick; or all voxels that it touches")
+         [&reading](const std::string& word) { reading.surface = surface_of_word(word); },
+         "model: what its surface sets besides the inside: none; thin, which keeps walls without "
+         "the centre of a voxel; thick; or all voxels that it touches. Default: none, and thin if "
+         "nothing lies inside or with --hollow")
       ->check(CLI::IsMember({"none", "thin", "thick", "all"}));
   app.add_flag_callback(
       "--hollow", [&reading] { reading.is_solid = false; }, "model: do not fill its inside");
