@@ -8,6 +8,7 @@
 #include "client/app/clipboard_file.hpp"
 #include "client/tools/build_words.hpp"
 #include "common/build_files/build_files.hpp"
+#include "common/core/without_exceptions.hpp"
 
 namespace runstone {
 namespace {
@@ -46,22 +47,23 @@ std::optional<PlayerNotice> ClipboardTransfer::begin(const ClipboardOfFile& orde
     auto build = build_of_clipboard(file_, tools);
     if (!build) return transfer_warning(build.error());
     state_ = "writing " + last_part(file_);
-    writing_ = std::async(std::launch::async,
-                          [file = file_, build = *std::move(build)]() -> Result<void, std::string> {
-                            const auto written = write_build_to_file(file, build);
-                            if (!written) return failure(written.error());
-                            return {};
-                          });
+    writing_ = std::async(std::launch::async, [file = file_, build = *std::move(build)] {
+      return without_exceptions<std::uint64_t>(file,
+                                               [&] { return write_build_to_file(file, build); });
+    });
   } else {
     state_ = "reading " + last_part(file_);
     notices_ = std::make_shared<std::string>();
-    reading_ = std::async(std::launch::async, [file = file_, order, notices = notices_] {
-      BuildReading reading;
-      reading.model.voxels = order.voxels;
-      reading.model.is_solid = !order.is_hollow;
-      reading.notice = [&](const std::string& line) { *notices += ". " + line; };
-      return read_build_of_file(file, std::move(reading));
-    });
+    reading_ = std::async(
+        std::launch::async, [file = file_, order, notices = notices_, is_wanted = is_wanted_] {
+          BuildReading reading;
+          reading.model.voxels = order.voxels;
+          reading.model.is_solid = !order.is_hollow;
+          reading.model.file.should_continue = [is_wanted] { return is_wanted->load(); };
+          reading.notice = [&](const std::string& line) { *notices += ". " + line; };
+          return without_exceptions<FileBuild>(
+              file, [&] { return read_build_of_file(file, std::move(reading)); });
+        });
   }
   return std::nullopt;
 }
@@ -78,6 +80,7 @@ std::optional<PlayerNotice> ClipboardTransfer::step(ToolBox& tools) {
   auto read = reading_.get();
   if (!read) return transfer_warning(read.error());
   const std::string said = set_clipboard(*std::move(read), tools);
+  if (!tools.clipboard().build) return transfer_warning(said);
   has_loaded_ = true;
   std::string text = "clipboard: " + last_part(file_) + ", " + size_text(*tools.clipboard().build);
   text += *notices_;

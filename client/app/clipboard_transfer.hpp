@@ -2,6 +2,8 @@
 // a player at the window. Files are read and written on a thread of their own: a town must not delay a
 // frame. One file at a time. Thread: the main thread.
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <future>
 #include <memory>
 #include <optional>
@@ -23,8 +25,9 @@ class ClipboardTransfer {
   ClipboardTransfer() = default;
   ClipboardTransfer(const ClipboardTransfer&) = delete;
   ClipboardTransfer& operator=(const ClipboardTransfer&) = delete;
-  /// Waits until a file that is being written is on disk, or cannot be written.
-  ~ClipboardTransfer() = default;
+  /// Waits until a file that is being written is on disk, or cannot be written. A file that is being
+  /// read is given up.
+  ~ClipboardTransfer() { is_wanted_->store(false); }
 
   /// Begins to read or write a file. Returns a text for the player if it cannot: another file is under
   /// way, or there is nothing to write. Cost: O(materials) on this thread.
@@ -41,8 +44,9 @@ class ClipboardTransfer {
   std::string file_, state_;
   bool has_loaded_ = false;
   std::future<Result<FileBuild, std::string>> reading_;
+  const std::shared_ptr<std::atomic<bool>> is_wanted_ = std::make_shared<std::atomic<bool>>(true);
   std::shared_ptr<std::string> notices_;  // of the reading thread, until its outcome is here
-  std::future<Result<void, std::string>> writing_;
+  std::future<Result<std::uint64_t, std::string>> writing_;
 };
 
 }  // namespace runstone

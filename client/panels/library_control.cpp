@@ -4,6 +4,7 @@
 
 #include "client/tools/build_words.hpp"
 #include "common/core/text.hpp"
+#include "common/core/without_exceptions.hpp"
 #include "common/rights/right.hpp"
 
 namespace runstone {
@@ -124,7 +125,9 @@ bool LibraryControl::step_fetch() {
     const Sequence number = std::exchange(reading_, 0);
     auto read = read_.get();
     const bool is_wanted = goal_ != Goal::none && wanted_ == number;
-    if (read) {
+    if (number == 0) {
+      // It is of another world.
+    } else if (read) {
       held_ = Held{number, *std::move(read)};
       if (is_wanted) reach_goal();
     } else if (is_wanted) {
@@ -146,7 +149,9 @@ bool LibraryControl::step_fetch() {
   }
   if (fetched.state != TransferState::done || read_.valid()) return has_changed;
   reading_ = fetched.number;
-  read_ = std::async(launch_, [file = library.take_file()] { return read_library_file(file); });
+  read_ = std::async(launch_, [file = library.take_file()] {
+    return without_exceptions<LibraryBuild>("the build", [&] { return read_library_file(file); });
+  });
   return true;
 }
 
@@ -172,14 +177,19 @@ void LibraryControl::begin_adding(const std::string& name, const std::string& ta
   written_ = std::async(launch_, [build = clipboard.build, empty = clipboard.empty,
                                   rows = std::vector<MaterialRow>(rows.begin(), rows.end()),
                                   info = *std::move(info)] {
-    return write_library_file(*build, rows, info, empty, LibraryExchange::kFileBytesMax);
+    return without_exceptions<Bytes>("the build", [&] {
+      return write_library_file(*build, rows, info, empty, LibraryExchange::kFileBytesMax);
+    });
   });
 }
 
 void LibraryControl::stop_adding() {
   if (!is_adding_) return;
+  const bool is_sent = session_.library().has_sent_all();
   session_.library().stop_adding();
-  end_adding("stopped: nothing is added", false);
+  end_adding(is_sent ? "stopped, but the server has the whole file and may add it: see the list"
+                     : "stopped: nothing is added",
+             false);
 }
 
 void LibraryControl::end_adding(std::string text, bool is_ok) {
@@ -249,7 +259,16 @@ bool LibraryControl::step_removal() {
 
 // Turns.
 
+/// What was begun in another world does not go on in this one.
 void LibraryControl::forget() {
+  if (is_adding_) {
+    session_.library().stop_adding();
+    end_adding(
+        "this is another world: see the list of the other one before you add the build again",
+        false);
+  }
+  goal_ = Goal::none;
+  reading_ = 0;
   held_.reset();
   fetch_text_.clear();
   add_text_.clear();

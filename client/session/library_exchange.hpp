@@ -77,8 +77,10 @@ class LibraryExchange {
   /// Begins to add a file. An addition that is under way is dropped. Requires a file that is not
   /// empty. Fails (Addition::refusal) if it has more than kFileBytesMax.
   void add(Bytes file);
-  /// Sends no more of the file. The server forgets it after some time.
+  /// Sends no more of the file. The server forgets it after some time, unless it has all of it.
   void stop_adding();
+  /// Returns true if all of the file was sent. The server may then add the build whatever follows.
+  bool has_sent_all() const { return !file_.empty() && sent_bytes_ == file_.size(); }
 
   /// Returns the messages to send now, and ends what got no answer in time.
   std::vector<Message> step(TimeUs now_us);

@@ -27,6 +27,7 @@ VoxeliseOptions voxelise_options(const ModelReading& reading, const Model& model
       reading.surface.value_or(reading.is_solid ? SurfaceMode::none : SurfaceMode::separating_6);
   options.fills_overlaps = reading.fills_overlaps;
   options.colours_max = kModelColoursMax;
+  options.should_continue = reading.file.should_continue;
   return options;
 }
 

@@ -57,6 +57,12 @@ std::uint8_t colour_byte(double value, PlyType type) {
     case PlyType::f32:
     case PlyType::f64:
       return unit_byte(static_cast<float>(value));
+    case PlyType::i8:
+      return unit_byte(static_cast<float>(value / 127));
+    case PlyType::i16:
+      return unit_byte(static_cast<float>(value / 32767));
+    case PlyType::i32:
+      return unit_byte(static_cast<float>(value / 2147483647.0));
     case PlyType::u16:
       return unit_byte(static_cast<float>(value / 65535));
     case PlyType::u32:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <limits>
+#include <string_view>
 #include <system_error>
 
 namespace runstone {
@@ -60,7 +62,11 @@ bool PlySource::text_number(double& to) {
   }
   const char* const begin = text.data() + (bytes > 0 && text[0] == '+' ? 1 : 0);
   const auto [end, wrong] = std::from_chars(begin, text.data() + bytes, to);
-  if (wrong == std::errc::result_out_of_range) to = 0;  // below the least number, or far too large
+  if (wrong == std::errc::result_out_of_range) {
+    const bool is_small =
+        std::string_view(text.data(), bytes).find('-', 1) != std::string_view::npos;
+    to = is_small ? 0 : std::numeric_limits<double>::infinity();  // which is left out later
+  }
   return wrong != std::errc::invalid_argument && end == text.data() + bytes;
 }
 

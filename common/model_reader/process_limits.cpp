@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -107,6 +108,8 @@ std::vector<sock_filter> call_filter() {
 Result<void, std::string> limit_process(const ProcessLimits& limits) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return cannot("give up new privileges");
   ::prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
+  // A program that is killed leaves no reader behind. The thread that started this one waits for it.
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0);
 #ifndef RUNSTONE_SANITIZED
   if (!lower_limit(RLIMIT_AS, limits.memory_bytes, limits.memory_bytes))
     return cannot("limit its memory");

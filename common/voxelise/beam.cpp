@@ -72,6 +72,11 @@ struct ShellVoxel {
   VoxelRgb colour{};
 };
 
+/// What a beam finds is sorted, and what is equal left out, when it is first this much.
+constexpr std::size_t kBeamHeldSorted = std::size_t{1} << 22;
+/// At most twice 8 bytes each: 1 GiB while it is sorted.
+constexpr std::size_t kBeamHeldMax = std::size_t{1} << 26;
+
 /// Sorts stretches, and joins those that touch or overlap.
 void join_spans(std::vector<std::uint64_t>& spans) {
   std::sort(spans.begin(), spans.end());
@@ -112,6 +117,10 @@ class BeamMaker {
       } else {
         add_triangle(part);
       }
+      if (!has_room()) {
+        result_.holds_too_much = true;
+        return std::move(result_);
+      }
     }
     if (plan_.is_solid) find_inside();
     if (is_coloured_) {
@@ -133,6 +142,19 @@ class BeamMaker {
   }
 
  private:
+  /// Returns false if the beam has found more than it may hold. A file of a few megabytes can have
+  /// 100,000 triangles that all cover the beam.
+  bool has_room() {
+    if (held() <= held_max_) return true;
+    std::sort(candidates_.begin(), candidates_.end());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    join_spans(spans_);
+    // Sorting pays only if it is rare.
+    held_max_ = std::max(kBeamHeldSorted, 2 * held());
+    return held() <= kBeamHeldMax / 2;
+  }
+  std::size_t held() const { return crossings_.size() + candidates_.size() + spans_.size(); }
+
   bool holds(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return x >= 0 && x <= voxels_.high[0] && y >= y_ && y <= voxels_.high[1] && z >= z_ &&
            z <= voxels_.high[2];
@@ -532,6 +554,7 @@ class BeamMaker {
   std::int32_t y_, z_;
   LineRanges voxels_;  // of the beam
   std::vector<std::uint32_t> crossings_;
+  std::size_t held_max_ = kBeamHeldSorted;
   std::vector<std::uint64_t> spans_;         // of the surface, if there is one colour
   std::vector<std::uint64_t> spans_inside_;  // not in order
   std::vector<std::uint64_t> inside_;        // in order, disjoint

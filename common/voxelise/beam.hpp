@@ -37,7 +37,8 @@ struct BeamResult {
   std::vector<VoxelPiece> pieces;  // along x; none in the walk that counts colours
   std::vector<std::pair<VoxelRgb, std::uint64_t>> colours;  // only in that walk; ascending
   std::uint64_t voxels = 0;
-  bool is_too_much = false;  // of work; then the rest is not complete
+  bool is_too_much = false;     // of work; then the rest is not complete
+  bool holds_too_much = false;  // of memory; then the rest is not complete
 };
 
 /// Makes the beam with the lowest row (y, z), multiples of kVoxelSection. `parts` are the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <random>
 #include <utility>
 
 #include "common/core/hash.hpp"
@@ -9,10 +10,20 @@
 namespace runstone {
 namespace {
 
-/// The edges that are held at once: 64 MiB.
+/// The edges that are held at once: 64 MiB. Those of one vertex are held in any case.
 constexpr std::size_t kEdgesAtOnce = std::size_t{1} << 24;
 
-/// Returns for each vertex the first one with the same snapped position. Open addressing.
+/// Returns a number that no author of a file can know. The results do not depend on it.
+std::uint64_t secret_number() {
+  static const std::uint64_t number = [] {
+    std::random_device device;
+    return std::uint64_t{device()} << 32 | device();
+  }();
+  return number;
+}
+
+/// Returns for each vertex the first one with the same snapped position. Open addressing; the places are
+/// not those that a file could choose to make all of them collide.
 std::vector<std::uint32_t> joined_vertices(const Model& model, const ModelPlacement& placement) {
   std::vector<std::uint32_t> out(model.positions.size());
   const std::size_t places = std::bit_ceil(model.positions.size() + model.positions.size() / 2 + 1);
@@ -22,6 +33,7 @@ std::vector<std::uint32_t> joined_vertices(const Model& model, const ModelPlacem
   for (const auto& triangle : model.triangles) {
     for (const std::uint32_t vertex : triangle) is_used[vertex] = true;
   }
+  const std::uint64_t secret = secret_number();
   for (std::uint32_t vertex = 0; vertex < out.size(); ++vertex) {
     out[vertex] = vertex;
     if (!is_used[vertex]) continue;
@@ -29,7 +41,8 @@ std::vector<std::uint32_t> joined_vertices(const Model& model, const ModelPlacem
     const std::uint64_t packed = static_cast<std::uint64_t>(at[0]) << 42 |
                                  static_cast<std::uint64_t>(at[1]) << 21 |
                                  static_cast<std::uint64_t>(at[2]);
-    for (std::size_t place = mix64(packed) & (places - 1);; place = (place + 1) & (places - 1)) {
+    for (std::size_t place = mix64(packed ^ secret) & (places - 1);;
+         place = (place + 1) & (places - 1)) {
       if (table[place] == UINT32_MAX) {
         table[place] = vertex;
         break;

@@ -110,7 +110,14 @@ class BeamWalk {
   PartsByPlace slabs_;
 };
 
-Result<void> check_work(const BeamResult& result) {
+Result<void> check_work(const BeamResult& result, const VoxeliseOptions& options) {
+  if (options.should_continue && !options.should_continue())
+    return fail(ErrorCode::io_failed, "the work is not wanted any more");
+  if (result.holds_too_much) {
+    return fail(ErrorCode::limit_exceeded,
+                "too many triangles lie one behind another: choose a smaller scale, or a model "
+                "with fewer triangles");
+  }
   if (!result.is_too_much) return {};
   return fail(
       ErrorCode::limit_exceeded,
@@ -120,17 +127,17 @@ Result<void> check_work(const BeamResult& result) {
 
 /// Returns the colours of the surface of a model that has several.
 Result<ColourQuantiser> surface_colours(const BeamPlan& plan, const ParallelFor& parallel_for,
-                                        std::size_t colours_max) {
+                                        const VoxeliseOptions& options) {
   ColourQuantiser out;
   bool is_empty = true;
   auto walked = BeamWalk(plan, parallel_for).walk([&](BeamResult&& result) -> Result<void> {
     for (const auto& [colour, count] : result.colours) out.add(colour, count);
     is_empty = is_empty && result.colours.empty();
-    return check_work(result);
+    return check_work(result, options);
   });
   if (!walked) return failure(walked.error());
   if (is_empty) out.add(plan.colours->fallback());
-  out.choose(colours_max);
+  out.choose(options.colours_max);
   return out;
 }
 
@@ -173,7 +180,7 @@ Result<Voxelised> voxelise(const Model& model, const VoxeliseOptions& options,
   if (colours.only()) {
     out.colours = {*colours.only()};
   } else {
-    auto chosen = surface_colours(plan, parallel_for, options.colours_max);
+    auto chosen = surface_colours(plan, parallel_for, options);
     if (!chosen) return failure(chosen.error());
     quantiser = *std::move(chosen);
     out.colours = quantiser->colours();
@@ -181,7 +188,7 @@ Result<Voxelised> voxelise(const Model& model, const VoxeliseOptions& options,
   }
   if (winding) plan.winding = &*winding;
   auto walked = BeamWalk(plan, parallel_for).walk([&](BeamResult&& result) -> Result<void> {
-    if (auto checked = check_work(result); !checked) return checked;
+    if (auto checked = check_work(result, options); !checked) return checked;
     out.voxels += result.voxels;
     for (VoxelPiece& piece : result.pieces) {
       if (auto taken = sink(std::move(piece)); !taken) return taken;

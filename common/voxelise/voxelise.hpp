@@ -70,6 +70,9 @@ struct VoxeliseOptions {
   /// it. 0 .. kPointRadiusMax voxels, in steps of 1/256.
   double point_radius = 0.5;
   std::size_t colours_max = 255;  // 1 .. kModelColoursMax
+  /// Is asked after each beam. The work ends with io_failed soon after it returns false. Empty: it
+  /// always goes on.
+  std::function<bool()> should_continue = {};
 };
 
 /// The voxels of a section of the result: the box from `origin` on, cut at multiples of 64.

@@ -235,11 +235,13 @@ struct ReadFile {
   std::vector<std::string> notices;
 };
 
-Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
+Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted,
+                                               const ShouldContinue& should_continue) {
   ReadFile out;
   BuildReading reading;
   reading.foreign.colours_file = wanted.file_words.colours;
   reading.model = wanted.file_words.model;
+  reading.model.file.should_continue = should_continue;
   reading.notice = [&out](const std::string& line) { out.notices.push_back(line); };
   auto build = read_build_of_file(wanted.file, std::move(reading));
   if (!build) return failure(build.error());
@@ -259,7 +261,10 @@ Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted) {
 
 void import_file(const CommandCall& call, const PlacedFile& wanted) {
   call.on_worker(
-      "import: ", [wanted](WorldReader&) { return read_placed_file(wanted); },
+      "import: ",
+      [wanted, should_continue = call.services.rollback.should_continue()](WorldReader&) {
+        return read_placed_file(wanted, should_continue);
+      },
       [call, wanted](const ReadFile& read) {
         for (const std::string& notice : read.notices) call.report(notice);
         place_build(call, "import", '"' + read.build->info.name + '"', read.build, wanted.words);

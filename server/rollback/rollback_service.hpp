@@ -82,6 +82,12 @@ class RollbackService {
   /// Returns true if no job runs, none waits for the disk, and none is looked for in the log.
   bool is_idle() const { return jobs_.empty() && waiting_.empty() && player_changes_.empty(); }
 
+  /// Returns a function for workers, which returns false when the server stops. It may outlive the
+  /// service.
+  ShouldContinue should_continue() const {
+    return [flag = should_continue_] { return flag->load(); };
+  }
+
  private:
   struct Job;
   struct Waiting {
@@ -132,11 +138,6 @@ class RollbackService {
   std::string busy_text(AuthorId author) const;
   RollbackPreview* find_preview(const std::string& id);
   ClientInstance new_instance();
-  /// Returns a function for workers. It may outlive the service.
-  ShouldContinue should_continue() const {
-    return [flag = should_continue_] { return flag->load(); };
-  }
-
   WorldServer& world_;
   Workers& workers_;
   RandomBytes random_;

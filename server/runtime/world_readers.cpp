@@ -24,8 +24,11 @@ WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& r
 
 constexpr const char* kNotReadNow = "the library cannot be read now";
 
-// A file of 64 MiB has fewer, unless it was made to keep the reader busy. They take some 5 s of one core.
+// A file of 64 MiB has fewer, unless it was made to keep the reader busy. They take some 5 s of one
+// core.
 constexpr std::uint64_t kUploadedRunsMax = std::uint64_t{1} << 29;
+// The runs of an uploaded file of any size, and what each of its bytes may unpack to besides.
+constexpr std::uint64_t kSmallFileRuns = std::uint64_t{1} << 21, kRunsOfByte = 256;
 
 StoreResult<FoundBuilds> read_builds(LibraryReader& reader, const BuildsRequest& request) {
   LibraryQuery query{request.name, request.author, request.tag, request.before, request.count};
@@ -162,8 +165,11 @@ void WorldReaders::verify_build(std::vector<Bytes> parts,
   asio::post(*file_readers_, [this, parts = std::move(parts), then = std::move(then)]() mutable {
     auto file = std::make_shared<const Bytes>(joined(std::move(parts)));
     VerifiedBuildResult verified = failure("");
-    if (auto build = runstone::verify_build(*file, kUploadedRunsMax,
-                                            [this] { return !is_stopping_.load(); })) {
+    // A file of some KiB that unpacks to any amount must not keep the thread from the files of others.
+    const std::uint64_t runs_max =
+        std::min(kUploadedRunsMax, kSmallFileRuns + kRunsOfByte * std::uint64_t{file->size()});
+    if (auto build =
+            runstone::verify_build(*file, runs_max, [this] { return !is_stopping_.load(); })) {
       verified = VerifiedBuild{*std::move(build), std::move(file)};
     } else {
       verified = failure("the file is no sound .rsb: " + build.error());

@@ -56,11 +56,21 @@ std::optional<std::string> BuildUploads::refusal(const Session& session,
 }
 
 /// Returns why there is no room for the file of this session, or nullopt.
-std::optional<std::string> BuildUploads::slot_refusal(const Session& session) const {
+std::optional<std::string> BuildUploads::slot_refusal(const Session& session,
+                                                      const Clocks& now) const {
   for (const Upload& other : uploads_) {
     if (other.key == session.key) return "a build that you add is under way: wait until it is done";
     if (other.address == session.address && is_of_one_owner(other.address))
       return "a build from your address is being added: try again when it is done";
+  }
+  for (const Pause& pause : pauses_) {
+    if (now.steady_us >= pause.until_us) continue;
+    const bool is_mine = pause.key == session.key ||
+                         (pause.address == session.address && is_of_one_owner(pause.address));
+    if (is_mine) {
+      return "your last file was not added and kept others waiting: try again in " +
+             std::to_string((pause.until_us - now.steady_us) / 1'000'000 + 1) + " s";
+    }
   }
   if (uploads_.size() < kBuildUploadsMax) return std::nullopt;
   return "other players are adding builds: try again in a minute";
@@ -79,7 +89,17 @@ void BuildUploads::answer(Session& session, const BuildAnswer& answer) {
   world_.sessions.send_or_close(session, answer);
 }
 
+/// A file that was not added does not hold its place again before it was free for as long, so that two
+/// players cannot keep all others out.
+void BuildUploads::pause_after(const Upload& upload) {
+  const TimeUs held_us = std::min(now_us_ - upload.began_us, kUploadPauseUsMax);
+  if (held_us < kUploadSilenceUs) return;
+  if (pauses_.size() == kUploadPausesMax) pauses_.erase(pauses_.begin());
+  pauses_.push_back({upload.key, upload.address, now_us_ + held_us});
+}
+
 void BuildUploads::refuse(const Upload& upload, const std::string& why) {
+  pause_after(upload);
   Session* const session = upload.session ? world_.sessions.find(*upload.session) : nullptr;
   const BuildAnswer refused{upload.request, upload.received, 0,
                             std::string(cut_utf8(why, kTextBytesMax))};
@@ -91,6 +111,7 @@ void BuildUploads::end_offer(SessionId session) {
   const auto mine = std::ranges::find(uploads_, std::optional(session), &Upload::session);
   if (mine == uploads_.end()) return;
   if (mine->stage == Stage::receiving || mine->stage == Stage::waiting) {
+    pause_after(*mine);
     uploads_.erase(mine);
   } else {
     mine->session.reset();
@@ -98,9 +119,10 @@ void BuildUploads::end_offer(SessionId session) {
 }
 
 void BuildUploads::on_offer(Session& session, const BuildOffer& offer, const Clocks& now) {
+  now_us_ = now.steady_us;
   end_offer(session.id);
   auto why = refusal(session, offer.file_bytes);
-  if (!why) why = slot_refusal(session);
+  if (!why) why = slot_refusal(session, now);
   if (why) {
     return answer(session, {offer.request, 0, 0, std::string(cut_utf8(*why, kTextBytesMax))});
   }
@@ -143,7 +165,10 @@ void BuildUploads::verified(UploadNumber number, Result<VerifiedBuild, std::stri
   if (upload == nullptr) return;
   const Session* const session =
       upload->session ? std::as_const(world_.sessions).find(*upload->session) : nullptr;
-  if (session == nullptr) return remove(number);
+  if (session == nullptr) {
+    pause_after(*upload);
+    return remove(number);
+  }
   if (!result) return refuse(*upload, result.error());
   upload->build = std::move(result->build);
   upload->build.info.author = is_plain_name(session->name) ? session->name : std::string();
@@ -221,10 +246,12 @@ std::optional<std::string> BuildUploads::lateness(const Upload& upload, const Cl
 }
 
 void BuildUploads::tick(const Clocks& now) {
+  now_us_ = now.steady_us;
   std::vector<UploadNumber> numbers;
   for (const Upload& upload : uploads_) numbers.push_back(upload.number);
   for (const UploadNumber number : numbers) {
     Upload* const upload = find(number);
+    if (upload == nullptr) continue;
     auto why = lateness(*upload, now);
     if (!why && upload->stage == Stage::waiting) why = begin_saving(*upload);
     if (why) refuse(*upload, *why);

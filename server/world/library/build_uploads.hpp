@@ -8,6 +8,7 @@
 //     LibraryLimits::file_bytes_max each.
 //   - An offer ends if no byte comes for kUploadSilenceUs, or if the file takes longer than at
 //     kUploadBytesPerSecond and kUploadSilenceUs more.
+//   - A player whose file held a place for long and was not added waits as long before the next offer.
 //   - The limits of the library hold when the file is offered, before it is written, and when the
 //     build is added.
 // The author of a build that is added is the name of the player: a file may claim another one.
@@ -31,6 +32,11 @@ inline constexpr TimeUs kUploadSilenceUs = 30'000'000;
 inline constexpr std::uint64_t kUploadBytesPerSecond = 32 * 1024;
 /// The longest wait for the log writer, which writes one file at a time.
 inline constexpr TimeUs kUploadWriterUs = 60'000'000;
+/// A player whose file took kUploadSilenceUs or more and was not added may not offer another one for as
+/// long as it took, at most this time.
+inline constexpr TimeUs kUploadPauseUsMax = 600'000'000;
+/// Pauses that are remembered at a time; the oldest ones are dropped.
+inline constexpr std::size_t kUploadPausesMax = 256;
 
 class BuildUploads {
  public:
@@ -91,10 +97,11 @@ class BuildUploads {
     Sequence number = 0;
   };
   std::optional<std::string> refusal(const Session& session, std::uint64_t file_bytes) const;
-  std::optional<std::string> slot_refusal(const Session& session) const;
+  std::optional<std::string> slot_refusal(const Session& session, const Clocks& now) const;
   Upload* find(UploadNumber upload);
   Upload* receiving(SessionId session, const BuildUpload& upload);
   void answer(Session& session, const BuildAnswer& answer);
+  void pause_after(const Upload& upload);
   /// Refuses the upload and removes it.
   void refuse(const Upload& upload, const std::string& why);
   void remove(UploadNumber upload);
@@ -105,7 +112,16 @@ class BuildUploads {
   std::optional<std::string> begin_saving(Upload& upload);
   Result<Sequence, std::string> add(const Upload& upload, const Clocks& now);
 
+  /// A player who may not offer a file now.
+  struct Pause {
+    PublicKey key{};
+    AddressBlock address{};
+    TimeUs until_us = 0;
+  };
+
   World world_;
+  TimeUs now_us_ = 0;  // of the last tick or offer
+  std::vector<Pause> pauses_;
   std::vector<Upload> uploads_;  // at most kBuildUploadsMax
   std::vector<Added> added_;
   std::uint32_t last_number_ = 0;

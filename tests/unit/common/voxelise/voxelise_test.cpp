@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "common/voxelise/voxel_build.hpp"
 #include "tests/support/voxelise/meshes.hpp"
 #include "tests/support/voxelise/voxel_grid.hpp"
 #include "tests/support/voxelise/voxel_oracle.hpp"
@@ -366,6 +367,33 @@ TEST_CASE("the longest box has the largest coordinates", "[voxelise]") {
       CHECK(differ == 0);
     }
   }
+}
+
+TEST_CASE("very many triangles one behind another are refused before they take much memory",
+          "[voxelise]") {
+  // Each of them covers a half of the side of the beam.
+  Model wall;
+  wall.positions = {{0, 0, 0}, {0, 64, 0}, {0, 64, 64}, {0, 0, 64}, {64, 0, 0}};
+  for (int i = 0; i < 20'000; ++i) {
+    wall.triangles.push_back({0, 1, 2});
+    wall.triangles.push_back({0, 2, 1});
+  }
+  wall.triangles.push_back({0, 1, 4});
+  VoxeliseOptions options;
+  options.scale.longest_side = 64;
+  const auto build = voxel_build(wall, options);
+  REQUIRE_FALSE(build.has_value());
+  CHECK(build.error().code == ErrorCode::limit_exceeded);
+  CHECK(std::string(build.error().what).find("one behind another") != std::string::npos);
+}
+
+TEST_CASE("the voxeliser ends when its result is not wanted any more", "[voxelise]") {
+  VoxeliseOptions options;
+  options.scale.longest_side = 64;
+  options.should_continue = [] { return false; };
+  const auto build = voxel_build(box_mesh({0, 0, 0}, {1, 1, 1}), options);
+  REQUIRE_FALSE(build.has_value());
+  CHECK(build.error().code == ErrorCode::io_failed);
 }
 
 }  // namespace runstone::test

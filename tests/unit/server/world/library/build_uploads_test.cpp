@@ -290,6 +290,11 @@ TEST_CASE("an offer ends when no byte comes, and when the file comes too slowly"
   bench.tick(1);
   CHECK(bench.answer(1) == BuildAnswer{1, 0, 0, "no byte of the file came for 30 s"});
 
+  // It kept its place from others for 30 s.
+  bench.offer(1, 2);
+  CHECK(bench.refusal(1) ==
+        "your last file was not added and kept others waiting: try again in 30 s");
+  bench.tick(kUploadSilenceUs);
   bench.offer(1, 2, kUploadBytesPerSecond * 10);
   std::uint64_t received = 0;
   while (bench.refusal(1).empty() && received < 100) {
@@ -298,6 +303,20 @@ TEST_CASE("an offer ends when no byte comes, and when the file comes too slowly"
   }
   CHECK(received == 5);  // 40 s have passed
   CHECK(bench.refusal(1) == "the file came too slowly: at least 32 KiB each second are needed");
+}
+
+TEST_CASE("an offer that is ended soon lets the player offer again at once", "[world][library]") {
+  UploadsBench bench;
+  bench.join_with(1);
+  bench.offer(1, 1);
+  bench.upload(1, 1, 0, 100);
+  bench.tick(1'000'000);
+  bench.offer(1, 2);  // ends the first one
+  CHECK(bench.answer(1) == BuildAnswer{2, 0, 0, ""});
+  bench.upload_all(1, 2);
+  bench.verify("it is damaged");
+  bench.offer(1, 3);
+  CHECK(bench.answer(1) == BuildAnswer{3, 0, 0, ""});
 }
 
 TEST_CASE("a file waits for the log writer, and not for ever", "[world][library]") {
