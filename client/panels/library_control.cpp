@@ -267,7 +267,7 @@ void LibraryControl::forget() {
         "this is another world: see the list of the other one before you add the build again",
         false);
   }
-  goal_ = Goal::none;
+  if (goal_ != Goal::none) end_fetch("the connection ended", false);
   reading_ = 0;
   held_.reset();
   fetch_text_.clear();
@@ -296,7 +296,7 @@ void LibraryControl::list_first() {
 
 bool LibraryControl::step(TimeUs now_us) {
   if (const auto& welcome = session_.welcome(); welcome && world_ != welcome->world_id) {
-    forget();
+    if (world_) forget();
     world_ = welcome->world_id;
   }
   bool has_changed = step_removal();

@@ -69,7 +69,7 @@ std::optional<std::string> BuildUploads::slot_refusal(const Session& session,
                          (pause.address == session.address && is_of_one_owner(pause.address));
     if (is_mine) {
       return "your last file was not added and kept others waiting: try again in " +
-             std::to_string((pause.until_us - now.steady_us) / 1'000'000 + 1) + " s";
+             std::to_string((pause.until_us - now.steady_us + 999'999) / 1'000'000) + " s";
     }
   }
   if (uploads_.size() < kBuildUploadsMax) return std::nullopt;
