@@ -259,7 +259,7 @@ bool LibraryControl::step_removal() {
 
 // Turns.
 
-/// What was begun in another world does not go on in this one.
+/// Ends all that was begun in another world.
 void LibraryControl::forget() {
   if (is_adding_) {
     session_.library().stop_adding();

@@ -21,7 +21,7 @@ constexpr const char* kNoAnswer = "the server did not answer in time: try it aga
 
 }  // namespace
 
-// What the player wants.
+// Orders of the player.
 
 void LibraryExchange::list(LibrarySearch search) {
   search.name = cut_utf8(search.name, kBuildNameBytesMax);

@@ -23,9 +23,9 @@ struct ModelReading {
   std::optional<double> voxels_per_metre = std::nullopt;
   /// The inside is filled. A model that is no closed surface is filled by its winding number.
   bool is_solid = true;
-  /// What else is set. Unset: nothing, but if the model is hollow, or nothing lies inside it, a thin
-  /// surface. A solid with a surface is up to a voxel thicker, and keeps walls without the centre of
-  /// a voxel.
+  /// The surface that is set besides the inside. A solid with a surface is up to a voxel thicker, and
+  /// keeps walls in which no voxel has its centre. If it is unset, a solid model gets no surface. A
+  /// hollow model, and one in which no voxel is inside, then gets a thin one.
   std::optional<SurfaceMode> surface = std::nullopt;
   /// Where closed parts overlap, the inside is filled, too.
   bool fills_overlaps = false;

@@ -16,9 +16,9 @@ struct ForeignReading {
   bool keep_all = true;                    // as that of Format::material_of
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces
   std::string name;                        // of the build, if the file has none; see BuildInfo
-  // Of a height map: a PNG with the colours of its columns (height_map.hpp), which must outlive the
-  // call. Empty: there is none. `colours_file` is the file that has it, for messages; programs name
-  // it, and read_build_of_file() (common/build_files) reads it.
+  // For a height map: the bytes of a PNG with the colours of its columns (height_map.hpp), or none.
+  // They must outlive the call. Programs set `colours_file` alone, the path of the PNG:
+  // read_build_of_file() (common/build_files) reads the bytes from it.
   ByteView colours = {};
   std::string colours_file = {};
 };

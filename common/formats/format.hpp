@@ -70,7 +70,7 @@ using PieceSink = std::function<Result<void>(ForeignPiece&&)>;
 /// Takes the next bytes of a file. Returns false if they cannot be written, which ends the writing.
 using FormatSink = std::function<bool(ByteView)>;
 
-/// What a format of triangles has besides Format::write, which takes the default choices.
+/// The further functions of a format of triangles. Format::write writes with the default choices.
 struct TriangleFormat {
   /// Writes a build with choices. Fails as Format::write does, and before anything is written with
   /// bad_value if the build shows no face.
@@ -101,7 +101,7 @@ struct Format {
   Result<void> (*write)(const FileBuild& build, const FormatSink& sink) = nullptr;
   /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
   bool is_file = true;
-  /// Not null: a format of triangles, which is only written.
+  /// The further functions if the format has triangles, otherwise null. Such formats are only written.
   const TriangleFormat* model = nullptr;
 };
 

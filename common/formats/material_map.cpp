@@ -19,7 +19,7 @@ MaterialRow empty_row() { return {std::string(kEmptyName), {0, 0, 0, 0}, Visibil
 ForeignBlock block_of(const BuildMaterial& material) {
   const std::string& name = material.row.name;
   if (auto block = block_of_minecraft_material(name)) {
-    // Of a block that Minecraft does not know, the name may lack the states.
+    // The name of a block that Minecraft does not know may lack the states.
     if (block->states.empty()) block->states = material.states;
     return *std::move(block);
   }

@@ -18,7 +18,7 @@
 namespace runstone {
 namespace {
 
-/// What a property of a vertex is. The values are places in an array of numbers.
+/// The meaning of a property of a vertex. The values are indices of an array of numbers.
 enum PlyRole : std::uint8_t { kX, kY, kZ, kRed, kGreen, kBlue, kAlpha, kU, kV, kNoRole };
 
 PlyRole role_of(std::string_view name) {

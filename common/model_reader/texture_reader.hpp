@@ -17,7 +17,7 @@
 
 namespace runstone {
 
-/// What the alpha values of a texture mean to a material.
+/// The meaning of the alpha values of a texture to a material.
 enum class AlphaRule : std::uint8_t {
   opaque,  // nothing: all texels are opaque
   mask,    // texels below the cutoff are transparent, all others opaque

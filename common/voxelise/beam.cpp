@@ -72,10 +72,11 @@ struct ShellVoxel {
   VoxelRgb colour{};
 };
 
-/// What a beam finds is sorted, and what is equal left out, when it is first this much.
+/// When a beam holds so many entries for the first time, it sorts them and drops those that are equal.
 constexpr std::size_t kBeamHeldSorted = std::size_t{1} << 22;
-/// At most twice 8 bytes each: 1 GiB while it is sorted.
-constexpr std::size_t kBeamHeldMax = std::size_t{1} << 26;
+/// A beam that holds more than this after it was sorted is refused. It grows to twice as many entries of
+/// 8 bytes before it is sorted: 512 MiB.
+constexpr std::size_t kBeamHeldMax = std::size_t{1} << 25;
 
 /// Sorts stretches, and joins those that touch or overlap.
 void join_spans(std::vector<std::uint64_t>& spans) {
@@ -151,7 +152,7 @@ class BeamMaker {
     join_spans(spans_);
     // Sorting pays only if it is rare.
     held_max_ = std::max(kBeamHeldSorted, 2 * held());
-    return held() <= kBeamHeldMax / 2;
+    return held() <= kBeamHeldMax;
   }
   std::size_t held() const { return crossings_.size() + candidates_.size() + spans_.size(); }
 

@@ -20,7 +20,7 @@ namespace runstone {
 /// The side of the sections that the voxeliser makes.
 inline constexpr std::int32_t kVoxelSection = 64;
 
-/// What all beams of a model share.
+/// The data that all beams of a model share.
 struct BeamPlan {
   const Model* model = nullptr;
   const ModelPlacement* placement = nullptr;

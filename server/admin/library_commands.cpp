@@ -235,6 +235,9 @@ struct ReadFile {
   std::vector<std::string> notices;
 };
 
+/// The memory that a model may take, in MiB: in the process that reads it, and again in the server.
+constexpr std::uint64_t kPlacedModelMib = 512;
+
 Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted,
                                                const ShouldContinue& should_continue) {
   ReadFile out;
@@ -242,6 +245,7 @@ Result<ReadFile, std::string> read_placed_file(const PlacedFile& wanted,
   reading.foreign.colours_file = wanted.file_words.colours;
   reading.model = wanted.file_words.model;
   reading.model.file.should_continue = should_continue;
+  reading.model.file.memory_mib = kPlacedModelMib;
   reading.notice = [&out](const std::string& line) { out.notices.push_back(line); };
   auto build = read_build_of_file(wanted.file, std::move(reading));
   if (!build) return failure(build.error());

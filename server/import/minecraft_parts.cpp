@@ -23,7 +23,7 @@ ByteView view_of(const std::string& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
-/// What level.dat says, or why it says nothing.
+/// The place of level.dat where players arrive, or a notice why there is none.
 struct LevelFile {
   std::optional<VoxelPos> spawn;
   std::string notice;

@@ -1,16 +1,14 @@
 #include "server/rollback/restore_job.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
-#include <span>
 #include <utility>
-#include <variant>
 
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/rollback/restore_paste.hpp"
 #include "server/rollback/restore_plan.hpp"
+#include "server/rollback/slice_edits.hpp"
 
 namespace runstone {
 namespace {
@@ -31,75 +29,6 @@ RestoredChunk restored_chunk(const ChunkKey& key, const StoreResult<RestorePlan>
                            : restore_pastes(plan->now, plan->differences, origin);
   return chunk;
 }
-
-/// Returns the box of two boxes that share a whole side, or nullopt.
-std::optional<VoxelBox> joined(const VoxelBox& a, const VoxelBox& b) {
-  const VoxelBox both{
-      {std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-      {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-  const bool x = a.min.x == b.min.x && a.max.x == b.max.x;
-  const bool y = a.min.y == b.min.y && a.max.y == b.max.y;
-  const bool z = a.min.z == b.min.z && a.max.z == b.max.z;
-  const bool fits = (y && z && (a.max.x == b.min.x || b.max.x == a.min.x)) ||
-                    (x && z && (a.max.y == b.min.y || b.max.y == a.min.y)) ||
-                    (x && y && (a.max.z == b.min.z || b.max.z == a.min.z));
-  return fits ? std::optional(both) : std::nullopt;
-}
-
-/// The edits of a slice. A fill that continues the one before becomes a part of it.
-class SliceEdits {
- public:
-  SliceEdits(const WorldServer& world, AuthorId author, std::int32_t chunk_edge)
-      : world_(world), author_(author), chunk_edge_(chunk_edge) {}
-
-  void add(const EditDescriptor& edit, Sequence subject) {
-    const auto both =
-        edits_.empty() || subjects_.back() != subject ? std::nullopt : with_last(edit);
-    if (both) {
-      work_ -= edit_work(edits_.back(), chunk_edge_);
-      edits_.back() = *both;
-      ++parts_.back();
-    } else {
-      edits_.push_back(edit);
-      subjects_.push_back(subject);
-      parts_.push_back(1);
-    }
-    work_ += edit_work(edits_.back(), chunk_edge_);
-  }
-  std::size_t work() const { return work_; }
-  std::span<const EditDescriptor> edits() const { return edits_; }
-  Sequence subject(std::size_t i) const { return subjects_[i]; }
-  /// Returns how many of the edits that were added are in the first `count`.
-  std::size_t added_in(std::size_t count) const {
-    return std::accumulate(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count),
-                           std::size_t{0});
-  }
-
- private:
-  std::optional<EditDescriptor> with_last(const EditDescriptor& edit) const {
-    const EditDescriptor& last = edits_.back();
-    const auto* a = std::get_if<FillBox>(&last.shape);
-    const auto* b = std::get_if<FillBox>(&edit.shape);
-    if (a == nullptr || b == nullptr || last.mask != edit.mask || last.material != edit.material)
-      return std::nullopt;
-    const auto box = joined(a->box, b->box);
-    if (!box) return std::nullopt;
-    EditDescriptor both = edit;
-    both.shape = FillBox{*box};
-    // The limits of edits bound the volume, also that of the author's role.
-    if (world_.order().authority().check(both) || world_.rights().edit_refusal(author_, both))
-      return std::nullopt;
-    return both;
-  }
-
-  const WorldServer& world_;
-  AuthorId author_;
-  std::int32_t chunk_edge_;
-  std::vector<EditDescriptor> edits_;
-  std::vector<Sequence> subjects_;
-  std::vector<std::size_t> parts_;  // the edits that were added, in each
-  std::size_t work_ = 0;
-};
 
 }  // namespace
 

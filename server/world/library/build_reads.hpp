@@ -25,9 +25,9 @@
 
 namespace runstone {
 
-/// Of one session.
+/// Requests for pieces of one session that are not answered.
 inline constexpr std::size_t kBuildPiecesMax = 4;
-/// Of all sessions together.
+/// Lists and pieces of all sessions that readers read at a time.
 inline constexpr std::size_t kBuildListsRead = 2, kBuildPiecesRead = 4;
 /// A listed build counts as so many bytes that were read from the session. Those of a piece count
 /// as they are.

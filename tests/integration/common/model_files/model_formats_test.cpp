@@ -1,4 +1,4 @@
-// What runstone-read-model reads of each format.
+// runstone-read-model reads each format: places, colours, textures and transforms.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>

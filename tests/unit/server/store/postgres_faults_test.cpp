@@ -106,7 +106,8 @@ class FaultyLife {
     const auto nothing = [] {};
     const auto edit = [&] { require(append(true)); };
     const auto edit_and_keyframe = [&] {
-      // What an interrupted compaction left would make the next one longer, and there were no last one.
+      // An interrupted compaction leaves its records to the next one. Each would have more statements
+      // than the one before, and the test would never end.
       if (written_.head < written_.end().version.seq) require(compact());
       edit();
       require(save_keyframe());
