@@ -1,5 +1,5 @@
-// ClipboardTransfer: reads the clipboard of the tools from a file of any format, or writes it to one, for
-// a player at the window. Files are read and written on a thread of their own: a town must not delay a
+// ClipboardTransfer: reads the clipboard of the tools from a file of any format, or writes it to one,
+// for a player at the window. Files are read and written on a thread of their own: a town must not delay a
 // frame. One file at a time. Thread: the main thread.
 #pragma once
 #include <atomic>

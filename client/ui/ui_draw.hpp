@@ -22,7 +22,8 @@ float width_of(std::string_view text);
 /// Returns an opaque colour of a material in ImGui's form, with its brightness multiplied by
 /// `factor`. A transparent material shows a light ground through it.
 ImU32 shaded_colour(const MaterialColour& colour, double factor);
-/// Makes a button, which is grey and takes no clicks unless it is enabled. Returns true if it is pressed.
+/// Makes a button, which is grey and takes no clicks unless it is enabled. Returns true if it is
+/// pressed.
 bool enabled_button(const char* label, bool is_enabled);
 
 }  // namespace runstone
