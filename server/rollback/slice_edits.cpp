@@ -24,8 +24,7 @@ std::optional<VoxelBox> joined(const VoxelBox& a, const VoxelBox& b) {
 }  // namespace
 
 void SliceEdits::add(const EditDescriptor& edit, Sequence subject) {
-  const auto both =
-      edits_.empty() || subjects_.back() != subject ? std::nullopt : with_last(edit);
+  const auto both = edits_.empty() || subjects_.back() != subject ? std::nullopt : with_last(edit);
   if (both) {
     work_ -= edit_work(edits_.back(), chunk_edge_);
     edits_.back() = *both;
