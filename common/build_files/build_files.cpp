@@ -5,6 +5,8 @@
 
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
+#include "common/formats/model_formats.hpp"
+#include "common/model_writers/coarser_build.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/private_file.hpp"
 
@@ -12,6 +14,26 @@ namespace runstone {
 namespace {
 
 std::string stem_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+/// Writes the levels of detail that are files of their own. Returns their bytes.
+Result<std::uint64_t, std::string> write_level_files(const std::string& file,
+                                                     const FileBuild& build, ModelWriting writing) {
+  const unsigned levels = std::exchange(writing.levels, 0U);
+  std::uint64_t bytes = 0;
+  FileBuild coarser;
+  const FileBuild* finer = &build;
+  for (unsigned level = 1; level <= levels && can_be_coarser(*finer->build); ++level) {
+    auto made = coarser_level(*finer);
+    if (!made) return failure(level_file(file, level) + ": " + made.error().what);
+    coarser = *std::move(made);
+    finer = &coarser;
+    writing.metres_per_voxel *= 2;
+    const auto written = write_build_to_file(level_file(file, level), coarser, writing);
+    if (!written) return written;
+    bytes += *written;
+  }
+  return bytes;
+}
 
 }  // namespace
 
@@ -62,6 +84,11 @@ Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
   };
   const auto written = write_file_build(file, build, to(*out), writing);
   if (!written) return failure(out->error().empty() ? written.error() : file + ": " + out->error());
+  if (has_level_files(file)) {
+    const auto levels = write_level_files(file, build, writing);
+    if (!levels) return levels;
+    bytes += *levels;
+  }
   // The first file names the second one, so it is finished last.
   if (const std::string companion = companion_file(file); !companion.empty()) {
     auto second = open_output_file(companion);

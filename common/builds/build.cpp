@@ -172,10 +172,14 @@ RunChunk cells_in(const Build& build, const VoxelBox& box) {
   return out.finish();
 }
 
-RunChunk materials_in(const Build& build, const VoxelBox& box) {
+RunChunk cells_around(const Build& build, const VoxelBox& box) {
   const VoxelBox part = intersect(box, build.box());
-  if (part.empty()) return uniform_chunk(extent_of_cells(box), kEmpty);
-  const RunChunk cells = widened(cells_in(build, part), part, box);
+  if (part.empty()) return uniform_chunk(extent_of_cells(box), 0);
+  return widened(cells_in(build, part), part, box);
+}
+
+RunChunk materials_in(const Build& build, const VoxelBox& box) {
+  const RunChunk cells = cells_around(build, box);
   RunBuilder out(cells.extent, cells.order);
   cells.runs.visit([&](const auto& runs) {
     for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -108,6 +108,11 @@ using BuildPtr = std::shared_ptr<const Build>;
 /// sections along them); O(sections) if all cells are equal.
 RunChunk cells_in(const Build& build, const VoxelBox& box);
 
+/// Returns the cells of a box that may lie partly outside the build: cells outside are untouched.
+/// Requires a box that is not empty and has sides up to kSideMax. Cost: that of cells_in() for the
+/// part inside, and O(runs + lines of it).
+RunChunk cells_around(const Build& build, const VoxelBox& box);
+
 /// Returns what a box shows in a picture: the materials of its cells. Untouched cells and those
 /// outside the build are empty. Requires a box that is not empty and has sides up to kSideMax. Cost:
 /// that of cells_in() for the part inside, and O(runs + lines of it).

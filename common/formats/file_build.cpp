@@ -90,6 +90,16 @@ Result<void, std::string> write_companion(const std::string& file, const FileBui
   return {};
 }
 
+bool has_level_files(const std::string& file) {
+  const Format* format = file_format(file);
+  return format != nullptr && format->model != nullptr && !format->model->holds_levels;
+}
+
+std::string level_file(const std::string& file, unsigned level) {
+  const std::size_t dot = file.size() - file_format(file)->file_ending.size();
+  return file.substr(0, dot) + ".lod" + std::to_string(level) + file.substr(dot);
+}
+
 std::uint64_t solid_cells(const FileBuild& build) {
   const std::vector<std::uint64_t> counts = count_cells(*build.build);
   std::uint64_t sum = 0;

@@ -34,6 +34,11 @@ std::string companion_file(const std::string& file);
 Result<void, std::string> write_companion(const std::string& file, const FileBuild& build,
                                           const FormatSink& sink);
 
+/// Returns true if the levels of detail of a model in a file of this name are files of their own.
+bool has_level_files(const std::string& file);
+/// Returns the path of such a file, such as castle.lod2.obj to castle.obj.
+std::string level_file(const std::string& file, unsigned level);
+
 /// Returns the number of cells whose material is not empty. Cost: O(sections + runs).
 std::uint64_t solid_cells(const FileBuild& build);
 

@@ -80,6 +80,8 @@ struct TriangleFormat {
   /// ModelWriting::material_file names it in the first file. Empty: there is none.
   std::string_view companion_ending = {};
   Result<void> (*write_companion)(const FileBuild& build, const FormatSink& sink) = nullptr;
+  /// True: a file holds its levels of detail. False: they are files of their own, level_file().
+  bool holds_levels = false;
 };
 
 struct Format {

@@ -2,6 +2,7 @@
 
 #include "common/formats/material_match.hpp"
 #include "common/materials/default_look.hpp"
+#include "common/model_writers/coarser_build.hpp"
 #include "common/model_writers/model_writers.hpp"
 
 namespace runstone {
@@ -39,10 +40,23 @@ Result<void> write_mtl(const FileBuild& build, const FormatSink& sink) {
 
 }  // namespace
 
-constexpr TriangleFormat kGlbFormat{write_glb_with};
-constexpr TriangleFormat kGltfFormat{write_gltf_with};
+constexpr TriangleFormat kGlbFormat{write_glb_with, {}, nullptr, true};
+constexpr TriangleFormat kGltfFormat{write_gltf_with, {}, nullptr, true};
 constexpr TriangleFormat kObjFormat{write_obj_with, ".mtl", write_mtl};
 constexpr TriangleFormat kPlyFormat{write_ply_with};
+
+Result<FileBuild> coarser_level(const FileBuild& build) {
+  const auto made =
+      coarser_build(model_source(build), build.build->memory_bytes() + kBuildBytesMax);
+  if (!made) return failure(made.error());
+  FileBuild out{build.info, made->build, {}};
+  for (const std::uint16_t number : made->finer_numbers)
+    out.materials.push_back(build.materials[number - 1U]);
+  const VoxelPos sides = out.build->sides();
+  out.info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
+                    static_cast<std::uint32_t>(sides.z)};
+  return out;
+}
 
 Result<void> write_glb(const FileBuild& build, const FormatSink& sink) {
   return write_glb_with(build, {}, sink);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 
@@ -38,13 +40,9 @@ class GltfJson {
     out_.text(R"({"asset":{"version":"2.0","generator":"Runstone )");
     out_.text(version());
     out_.text("\"},");
-    if (writing_.is_quantised) {
-      out_.text(R"("extensionsUsed":["KHR_mesh_quantization"],)"
-                R"("extensionsRequired":["KHR_mesh_quantization"],)");
-    }
+    write_extensions();
     out_.text(R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[)");
-    write_root();
-    for (std::size_t i = 0; i < layout_.regions.size(); ++i) write_node(i);
+    for (std::size_t level = 0; level < layout_.level_ends.size(); ++level) write_level(level);
     out_.text("],\"meshes\":[");
     for (const GltfRegion& region : layout_.regions) write_mesh(region);
     out_.text("],\"materials\":[");
@@ -67,26 +65,63 @@ class GltfJson {
   }
   void corner(const Corner& at) { numbers(at[0], at[1], at[2]); }
 
-  void write_root() {
-    out_.text("{");
-    if (!source_.info.name.empty()) {
+  bool has_levels() const { return layout_.level_ends.size() > 1; }
+  std::size_t first_region(std::size_t level) const {
+    return level == 0 ? 0 : layout_.level_ends[level - 1];
+  }
+  /// Returns the node of a level, which is the parent of its regions. They follow it.
+  std::size_t node_of(std::size_t level) const { return first_region(level) + level; }
+
+  void write_extensions() {
+    if (writing_.is_quantised || has_levels()) {
+      out_.text("\"extensionsUsed\":[");
+      if (writing_.is_quantised) out_.text("\"KHR_mesh_quantization\"");
+      if (writing_.is_quantised && has_levels()) out_.text(",");
+      if (has_levels()) out_.text("\"MSFT_lod\"");
+      out_.text("],");
+    }
+    if (writing_.is_quantised) out_.text(R"("extensionsRequired":["KHR_mesh_quantization"],)");
+  }
+  void write_level(std::size_t level) {
+    out_.text(level == 0 ? "{" : ",{");
+    if (level != 0 || !source_.info.name.empty()) {
       out_.text("\"name\":");
-      write_json_text(source_.info.name, out_);
+      write_json_text(source_.info.name + (level == 0 ? "" : " level " + std::to_string(level)),
+                      out_);
       out_.text(",");
     }
-    if (const double scale = writing_.metres_per_voxel; scale != 1) {
+    const double scale = writing_.metres_per_voxel * static_cast<double>(1U << level);
+    if (scale != 1) {
       out_.text("\"scale\":");
       numbers(scale, scale, scale);
       out_.text(",");
     }
     out_.text("\"children\":[");
-    for (std::size_t i = 1; i <= layout_.regions.size(); ++i) {
+    const std::size_t regions = layout_.level_ends[level] - first_region(level);
+    for (std::size_t i = 1; i <= regions; ++i) {
       if (i != 1) out_.text(",");
-      out_.number(i);
+      out_.number(node_of(level) + i);
     }
+    out_.text("]");
+    if (level == 0) write_root_members();
+    out_.text("}");
+    for (std::size_t i = first_region(level); i < layout_.level_ends[level]; ++i) write_node(i);
+  }
+  /// Writes the levels of detail of the root, and its extras.
+  void write_root_members() {
+    if (has_levels()) {
+      out_.text(R"(,"extensions":{"MSFT_lod":{"ids":[)");
+      for (std::size_t level = 1; level < layout_.level_ends.size(); ++level) {
+        if (level != 1) out_.text(",");
+        out_.number(node_of(level));
+      }
+      out_.text("]}}");
+    }
+    out_.text(",\"extras\":{");
+    if (has_levels()) write_coverages();
     const VoxelPos& origin = source_.info.origin;
     const VoxelPos sides = source_.build.sides();
-    out_.text(R"(],"extras":{"runstone":{"origin":)");
+    out_.text(R"("runstone":{"origin":)");
     numbers(origin.x, origin.y, origin.z);
     out_.text(",\"sides\":");
     numbers(sides.x, sides.y, sides.z);
@@ -98,7 +133,23 @@ class GltfJson {
       out_.text(",\"created_us\":");
       out_.number(source_.info.created_us);
     }
-    out_.text("}}}");
+    out_.text("}}");
+  }
+  /// Writes for each level the least share of the screen's area with which it is shown. The first
+  /// coarser one begins where its voxels are two lines high on a screen of 1,024 lines, and at the
+  /// latest with half of the screen. Each further one begins with a quarter of that area, so that
+  /// its voxels are as high there. The last one is never hidden.
+  void write_coverages() {
+    const VoxelPos sides = source_.build.sides();
+    const double height = std::max({sides.x, sides.y, sides.z}) / 1024.0;
+    double coverage = std::min(0.5, height * height);
+    out_.text("\"MSFT_screencoverage\":[");
+    for (std::size_t level = 1; level < layout_.level_ends.size(); ++level) {
+      out_.rounded(coverage);
+      out_.text(",");
+      coverage /= 4;
+    }
+    out_.text("0],");
   }
   void write_node(std::size_t i) {
     const VoxelPos& at = layout_.regions[i].origin;

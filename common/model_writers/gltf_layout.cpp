@@ -5,14 +5,15 @@
 
 namespace runstone {
 
-Result<GltfLayout> GltfLayout::of(ModelWalk& walk, bool is_quantised) {
+Result<GltfLayout> GltfLayout::of(ModelLevels& levels, bool is_quantised) {
   GltfLayout out;
   out.vertex_bytes = is_quantised ? 8 : 24;
-  walk.for_each_region([&](const RegionModel& region) {
+  std::size_t level = 0;
+  const auto count = [&](const RegionModel& region) {
     GltfRegion counted{region.origin, out.parts.size(), region.parts.size(), 0, 0};
     for (const ModelPart& part : region.parts) {
       GltfPart made;
-      made.number = part.number;
+      made.number = levels.finest_number(level, part.number);
       made.vertices = static_cast<std::uint32_t>(part.vertex_count);
       made.indices = static_cast<std::uint32_t>(part.index_count);
       made.min.fill(kModelRegionEdge);
@@ -30,8 +31,12 @@ Result<GltfLayout> GltfLayout::of(ModelWalk& walk, bool is_quantised) {
     out.buffer_bytes += counted.vertices_bytes + counted.indices_bytes;
     out.regions.push_back(counted);
     return true;
-  });
-  if (out.regions.empty()) return fail(ErrorCode::bad_value, "model: build shows no face");
+  };
+  for (; level < levels.count(); ++level) {
+    levels.walk(level).for_each_region(count);
+    if (out.regions.empty()) return fail(ErrorCode::bad_value, "model: build shows no face");
+    out.level_ends.push_back(out.regions.size());
+  }
   return out;
 }
 

@@ -1,6 +1,6 @@
 // GltfLayout: the counts of a glTF model, from which its JSON and the places in its buffer follow.
-// The buffer has, region by region, the vertices of all parts and then their indices. A part is a
-// primitive with three accessors: positions, normals, indices.
+// The buffer has, level by level and region by region, the vertices of all parts and then their
+// indices. A part is a primitive with three accessors: positions, normals, indices.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 #include "common/core/coords.hpp"
 #include "common/mesh/quad_corners.hpp"
+#include "common/model_writers/model_levels.hpp"
 #include "common/model_writers/model_output.hpp"
-#include "common/model_writers/model_walk.hpp"
 #include "common/model_writers/model_writing.hpp"
 
 namespace runstone {
 
 struct GltfPart {
-  std::uint16_t number = 0;  // cell number of the build
+  std::uint16_t number = 0;  // cell number of the finest level
   std::uint32_t vertices = 0, indices = 0;
   Corner min{}, max{};  // of the places of its vertices
   /// Returns the bytes of an index. 65,535 is no index of a u16.
@@ -27,17 +27,18 @@ struct GltfPart {
 };
 
 struct GltfRegion {
-  VoxelPos origin;
+  VoxelPos origin;  // in cells of its level
   std::size_t first_part = 0, part_count = 0;
   std::uint64_t vertices_bytes = 0, indices_bytes = 0;
 };
 
 struct GltfLayout {
-  /// Counts what a walk gives. Fails with bad_value if it gives no face.
-  static Result<GltfLayout> of(ModelWalk& walk, bool is_quantised);
+  /// Counts what the levels give. Fails with bad_value if the finest one gives no face.
+  static Result<GltfLayout> of(ModelLevels& levels, bool is_quantised);
 
   std::uint32_t vertex_bytes = 24;
-  std::vector<GltfRegion> regions;
+  std::vector<GltfRegion> regions;  // of all levels, the finest first
+  std::vector<std::size_t> level_ends;  // by level: the end of its regions
   std::vector<GltfPart> parts;
   std::uint64_t buffer_bytes = 0;
 };

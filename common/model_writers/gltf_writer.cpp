@@ -53,6 +53,15 @@ std::uint64_t gltf_json_bytes(const WrittenBuild& source, const ModelWriting& wr
   return counted.size();
 }
 
+void write_gltf_buffer(ModelLevels& levels, bool is_quantised, ModelOutput& out) {
+  for (std::size_t level = 0; level < levels.count() && out.ok(); ++level) {
+    levels.walk(level).for_each_region([&](const RegionModel& region) {
+      write_gltf_region(region, is_quantised, out);
+      return out.ok();
+    });
+  }
+}
+
 Result<void> gltf_outcome(bool is_written) {
   if (!is_written) return fail(ErrorCode::io_failed, "model: cannot be written");
   return {};
@@ -67,8 +76,9 @@ void require_scale(const ModelWriting& writing) {
 Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink) {
   require_scale(writing);
-  ModelWalk walk(source, writing);
-  const auto layout = GltfLayout::of(walk, writing.is_quantised);
+  auto levels = ModelLevels::of(source, writing);
+  if (!levels) return failure(levels.error());
+  const auto layout = GltfLayout::of(*levels, writing.is_quantised);
   if (!layout) return failure(layout.error());
   constexpr std::string_view kEnd = "}]}";
   const std::uint64_t text = gltf_json_bytes(source, writing, *layout) + kEnd.size();
@@ -76,7 +86,7 @@ Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& wri
   const std::uint64_t size = kGlbHeadBytes + 2 * kGlbChunkHeadBytes + json + layout->buffer_bytes;
   if (size > kGlbBytesMax) {
     return fail(ErrorCode::limit_exceeded,
-                "model: a .glb has at most 4 GiB; write a smaller box, or a .ply");
+                "model: a .glb has at most 4 GiB; write a smaller box, fewer levels, or a .ply");
   }
   ModelOutput out(sink);
   out.text("glTF");
@@ -89,18 +99,16 @@ Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& wri
   out.text(std::string_view("   ").substr(0, json - text));
   out.u32(static_cast<std::uint32_t>(layout->buffer_bytes));
   out.text(std::string_view("BIN\0", 4));
-  walk.for_each_region([&](const RegionModel& region) {
-    write_gltf_region(region, writing.is_quantised, out);
-    return out.ok();
-  });
+  write_gltf_buffer(*levels, writing.is_quantised, out);
   return gltf_outcome(out.flush());
 }
 
 Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& writing,
                               const ModelSink& sink) {
   require_scale(writing);
-  ModelWalk walk(source, writing);
-  const auto layout = GltfLayout::of(walk, writing.is_quantised);
+  auto levels = ModelLevels::of(source, writing);
+  if (!levels) return failure(levels.error());
+  const auto layout = GltfLayout::of(*levels, writing.is_quantised);
   if (!layout) return failure(layout.error());
   constexpr std::string_view kEnd = "\"}]}\n";
   const std::uint64_t size = gltf_json_bytes(source, writing, *layout) + kGltfDataUri.size() +
@@ -118,10 +126,7 @@ Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& wr
     return out.ok();
   };
   ModelOutput buffer(encode);
-  walk.for_each_region([&](const RegionModel& region) {
-    write_gltf_region(region, writing.is_quantised, buffer);
-    return buffer.ok();
-  });
+  write_gltf_buffer(*levels, writing.is_quantised, buffer);
   buffer.flush();
   base64.finish();
   out.text(kEnd);

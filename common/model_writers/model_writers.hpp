@@ -8,8 +8,8 @@
 // The lowest corner of the build is at 0, and its place in a world stands beside the model. Equal
 // builds with equal sections give equal bytes.
 //
-// Each writer requires a material for each palette entry of the build, and a side of a voxel that
-// is finite and above 0. It fails, before anything is written, with:
+// Each writer requires a material for each palette entry of the build, a side of a voxel that is
+// finite and above 0, and at most kModelLevelsMax levels. It fails, before anything is written, with:
 //   - bad_value if the build shows no face;
 //   - limit_exceeded if the file becomes larger than the format allows.
 // It fails with io_failed if the sink returns false. Cost: a number of passes of ModelWalk: one for
@@ -32,8 +32,9 @@ inline constexpr std::uint64_t kGltfBytesMax = 500'000'000;
 /// The vertices and the triangles of a .ply: other programs number them with 32 bits and a sign.
 inline constexpr std::uint64_t kPlyCountMax = 0x7fff'ffff;
 
-/// Writes binary glTF 2.0: a node for each region, with a primitive for each material in it.
-/// Memory: 36 bytes for each primitive.
+/// Writes binary glTF 2.0: a node for each region, with a primitive for each material in it. Levels
+/// of detail are further trees of such nodes, to which MSFT_lod at the root refers.
+/// Memory: 36 bytes for each primitive, and ModelLevels. Fails with limit_exceeded as that does.
 Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the glTF 2.0 of write_glb_model() as JSON, which holds its buffer as base64.

@@ -13,6 +13,9 @@
 
 namespace runstone {
 
+/// The greatest number of levels of detail besides the finest one.
+inline constexpr unsigned kModelLevelsMax = 8;
+
 /// A material of a model that is written.
 struct WrittenMaterial {
   std::string name;                     // UTF-8; several may have one name
@@ -40,6 +43,9 @@ struct ModelWriting {
   /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24. Readers need
   /// KHR_mesh_quantization.
   bool is_quantised = false;
+  /// The levels of detail besides the finest one, at most kModelLevelsMax. A .glb or .gltf holds
+  /// them. The writers of other formats do not use it: their levels are files of their own (common/build_files).
+  unsigned levels = 0;
   /// The side of a voxel. Finite and above 0.
   double metres_per_voxel = 1;
   /// The name of the .mtl file that an .obj names, without folders. Empty: none. A name of several

@@ -9,13 +9,6 @@
 namespace runstone {
 namespace {
 
-std::vector<Visibility> visibility_of_cells(const WrittenBuild& source) {
-  RUNSTONE_ASSERT(source.materials.size() == source.build.palette().size());
-  std::vector<Visibility> out = {Visibility::empty};  // untouched cells
-  for (const WrittenMaterial& material : source.materials) out.push_back(material.visibility);
-  return out;
-}
-
 /// Returns the layer of cells that touches a box from outside.
 VoxelBox layer_beside(VoxelBox box, Direction direction) {
   const bool is_high = is_positive(direction);
@@ -47,6 +40,13 @@ std::uint64_t plane_of(Quad quad) {
 }
 
 }  // namespace
+
+VisibilityTable visibility_of_cells(const WrittenBuild& source) {
+  RUNSTONE_ASSERT(source.materials.size() == source.build.palette().size());
+  std::vector<Visibility> out = {Visibility::empty};  // untouched cells
+  for (const WrittenMaterial& material : source.materials) out.push_back(material.visibility);
+  return VisibilityTable(out);
+}
 
 ModelRegionPos region_counts(const Build& build) {
   const VoxelPos sides = build.sides();

@@ -23,6 +23,10 @@ struct ModelRegionPos {
   friend bool operator==(const ModelRegionPos&, const ModelRegionPos&) = default;
 };
 
+/// Returns the visibility of each cell number: untouched cells are empty. Requires a material for
+/// each palette entry.
+VisibilityTable visibility_of_cells(const WrittenBuild& source);
+
 /// Returns the number of regions along each axis.
 ModelRegionPos region_counts(const Build& build);
 /// Returns the cells of a region.

@@ -126,6 +126,10 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_option("--metres-per-voxel", options.model.metres_per_voxel,
                  "models: side of a voxel; default 1")
       ->check(CLI::Range(1e-6, 1e6));
+  app.add_option("--levels", options.model.levels,
+                 "models: levels of detail besides the full one, 0..8, each with voxels twice as "
+                 "wide; in a .glb or .gltf by MSFT_lod, otherwise as files such as castle.lod1.obj")
+      ->check(CLI::Range(0U, kModelLevelsMax));
   app.footer("docs/formats.md lists the formats, and what each of them keeps.");
   try {
     app.parse(argc, argv);

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/model_writers/written_model.hpp"
 
@@ -56,11 +57,30 @@ class GltfReader {
     out_.node_count = json_.at("nodes").size();
     for (const Json& node : json_.at("scenes").at(json_.at("scene").get<std::size_t>()).at("nodes"))
       visit(node, {0, 0, 0}, 1);
-    gltf_rule(visited_ == out_.node_count, "a node is in no scene");
+    read_levels();
+    gltf_rule(visited_ == out_.node_count, "a node is in no scene and no level");
     return std::move(out_);
   }
 
  private:
+  void read_levels() {
+    const Json& root = json_["nodes"].at(json_["scenes"][0]["nodes"].at(0).get<std::size_t>());
+    const bool is_named = json_.value("extensionsUsed", Json::array()).dump().find("MSFT_lod") !=
+                          std::string::npos;
+    gltf_rule(is_named == root.contains("extensions"), "MSFT_lod is not in extensionsUsed");
+    if (!is_named) return;
+    const Json& ids = root.at("extensions").at("MSFT_lod").at("ids");
+    const Json& coverages = root.at("extras").at("MSFT_screencoverage");
+    gltf_rule(!ids.empty() && coverages.size() == ids.size() + 1, "coverages");
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      gltf_rule(coverages[i] > coverages[i + 1] && coverages[i] <= 1, "coverages do not descend");
+      WrittenModel finest = std::exchange(out_, {});
+      visit(ids[i], {0, 0, 0}, 1);
+      finest.levels.push_back(std::exchange(out_, {}));
+      out_ = std::move(finest);
+    }
+    gltf_rule(coverages.back() == 0, "the last level is hidden");
+  }
   void visit(const Json& number, ModelPlace at, double scale) {
     ++visited_;
     const Json& node = json_.at("nodes").at(number.get<std::size_t>());

@@ -26,7 +26,8 @@ struct WrittenModel {
   std::vector<WrittenTriangle> triangles;
   std::size_t vertex_count = 0;  // of the whole file
   std::vector<std::string> material_names;
-  std::size_t node_count = 0;  // glTF only
+  std::size_t node_count = 0;        // glTF only
+  std::vector<WrittenModel> levels;  // coarser ones by MSFT_lod; glTF only
 };
 
 WrittenModel read_written_glb(const Bytes& file);
