@@ -51,13 +51,13 @@ class CoarserBuilder {
         return static_cast<std::int32_t>(2 * section + (i >> bit & 1U)) * kTileEdge;
       };
       const VoxelPos min{place(at.x, 0), place(at.y, 1), place(at.z, 2)};
-      children[i] = cells_around(
-          build_, {min, {min.x + kTileEdge, min.y + kTileEdge, min.z + kTileEdge}});
+      children[i] =
+          cells_around(build_, {min, {min.x + kTileEdge, min.y + kTileEdge, min.z + kTileEdge}});
       if (!is_empty(children[i])) pointers[i] = &children[i];
     }
     if (pointers == TileChildren{}) return std::nullopt;
-    RunChunk tile = build_tile(pointers, static_cast<unsigned>(kTileEdge), kTileOrder, visibility_,
-                               scratch_);
+    RunChunk tile =
+        build_tile(pointers, static_cast<unsigned>(kTileEdge), kTileOrder, visibility_, scratch_);
     const auto side = [&](std::size_t axis, std::uint32_t section) {
       const std::vector<std::int32_t>& cuts = out_.cuts()[axis];
       return static_cast<std::uint8_t>(cuts[section + 1] - cuts[section]);
@@ -81,10 +81,10 @@ bool can_be_coarser(const Build& build) {
 
 Result<CoarserBuild> coarser_build(const WrittenBuild& source, std::size_t bytes_max) {
   const VoxelPos sides = source.build.sides();
-  auto builder = BuildBuilder::of({grid_cuts(halved(sides.x), kTileEdge),
-                                   grid_cuts(halved(sides.y), kTileEdge),
-                                   grid_cuts(halved(sides.z), kTileEdge)},
-                                  bytes_max);
+  auto builder = BuildBuilder::of(
+      {grid_cuts(halved(sides.x), kTileEdge), grid_cuts(halved(sides.y), kTileEdge),
+       grid_cuts(halved(sides.z), kTileEdge)},
+      bytes_max);
   if (!builder) return failure(builder.error());
   // As materials the builder takes the cell numbers of the source, and so gives each its own number.
   for (std::size_t number = 1; number <= source.materials.size(); ++number)

@@ -37,7 +37,7 @@ struct GltfLayout {
   static Result<GltfLayout> of(ModelLevels& levels, bool is_quantised);
 
   std::uint32_t vertex_bytes = 24;
-  std::vector<GltfRegion> regions;  // of all levels, the finest first
+  std::vector<GltfRegion> regions;      // of all levels, the finest first
   std::vector<std::size_t> level_ends;  // by level: the end of its regions
   std::vector<GltfPart> parts;
   std::uint64_t buffer_bytes = 0;

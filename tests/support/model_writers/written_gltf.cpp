@@ -65,8 +65,8 @@ class GltfReader {
  private:
   void read_levels() {
     const Json& root = json_["nodes"].at(json_["scenes"][0]["nodes"].at(0).get<std::size_t>());
-    const bool is_named = json_.value("extensionsUsed", Json::array()).dump().find("MSFT_lod") !=
-                          std::string::npos;
+    const bool is_named =
+        json_.value("extensionsUsed", Json::array()).dump().find("MSFT_lod") != std::string::npos;
     gltf_rule(is_named == root.contains("extensions"), "MSFT_lod is not in extensionsUsed");
     if (!is_named) return;
     const Json& ids = root.at("extensions").at("MSFT_lod").at("ids");

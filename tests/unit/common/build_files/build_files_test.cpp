@@ -68,6 +68,46 @@ TEST_CASE("an .obj is written with its materials beside it, and both or none", "
   CHECK_FALSE(std::filesystem::exists(folder / "lake.obj"));
 }
 
+TEST_CASE("levels of detail of an .obj or .ply are files of their own", "[build_files]") {
+  const TempFolder folder;
+  ModelWriting writing;
+  writing.levels = 2;
+  const auto text_of = [&](const std::string& name) {
+    std::ifstream in(folder / name);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  const auto bytes = write_build_to_file(folder / "tower.obj", sample_tower(), writing);
+  REQUIRE(bytes);
+  std::uint64_t sum = 0;
+  for (const char* name : {"tower.obj", "tower.mtl", "tower.lod1.obj", "tower.lod1.mtl",
+                           "tower.lod2.obj", "tower.lod2.mtl"}) {
+    CAPTURE(name);
+    sum += std::filesystem::file_size(folder / name);
+  }
+  CHECK(*bytes == sum);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 6);
+  // 3 x 9 x 2 voxels become 1 x 3 x 1 of 4 metres, and the corner stays.
+  const std::string level = text_of("tower.lod2.obj");
+  CHECK(level.find("\nmtllib tower.lod2.mtl\n") != std::string::npos);
+  CHECK(level.find("\nv 4 12 4\n") != std::string::npos);
+  CHECK(level.find("\nv 0 0 0\n") != std::string::npos);
+
+  REQUIRE(write_build_to_file(folder / "tower.ply", sample_tower(), writing));
+  CHECK(std::filesystem::exists(folder / "tower.lod2.ply"));
+  // A .glb holds them, and other formats have none.
+  REQUIRE(write_build_to_file(folder / "keep.glb", sample_tower(), writing));
+  REQUIRE(write_build_to_file(folder / "keep.vox", sample_tower(), writing));
+  CHECK_FALSE(std::filesystem::exists(folder / "keep.lod1.glb"));
+  CHECK_FALSE(std::filesystem::exists(folder / "keep.lod1.vox"));
+
+  // A level that cannot be written leaves the old model.
+  std::filesystem::create_directory(folder / "lake.lod1.obj");
+  const auto refused = write_build_to_file(folder / "lake.obj", sample_tower(), writing);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().find((folder / "lake.lod1.obj") + ": ") == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "lake.obj"));
+}
+
 TEST_CASE("files with builds that cannot be read are refused in one line", "[build_files]") {
   const TempFolder folder;
   const std::string file = folder / "tower.npy";

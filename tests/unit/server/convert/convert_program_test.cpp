@@ -116,6 +116,11 @@ TEST_CASE("runstone-convert writes models with the choices of its options", "[co
   CHECK(size_with({"--split"}) > size);
   CHECK(size_with({"--close-t-junctions"}) > size);
   CHECK(size_with({"--quantise"}) < size);
+  CHECK(size_with({"--levels", "2"}) > size);
+  CHECK(convert({file, folder / "house.glb", "--levels", "9"}).code != 0);
+  REQUIRE(convert({file, folder / "house.ply", "--levels", "1"}).code == 0);
+  CHECK(std::filesystem::exists(folder / "house.lod1.ply"));
+  CHECK_FALSE(std::filesystem::exists(folder / "house.lod2.ply"));
   size_with({"--metres-per-voxel", "0.25"});
   const Bytes bytes = bytes_of(folder / "house.glb");
   CHECK(std::string(bytes.begin(), bytes.end()).find(R"("scale":[0.25,0.25,0.25])") !=
