@@ -23,8 +23,8 @@ struct ModelReading {
   std::optional<double> voxels_per_metre = std::nullopt;
   /// The inside is filled. A model that is no closed surface is filled by its winding number.
   bool is_solid = true;
-  /// The surface that is set besides the inside. A solid with a surface is up to a voxel thicker, and
-  /// keeps walls in which no voxel has its centre. If it is unset, a solid model gets no surface. A
+  /// The surface that is set besides the inside. It keeps walls in which no voxel has its centre. A
+  /// closed model becomes no thicker by a thin one, and up to a voxel by the others. If it is unset, a solid model gets no surface. A
   /// hollow model, and one in which no voxel is inside, then gets a thin one.
   std::optional<SurfaceMode> surface = std::nullopt;
   /// Where closed parts overlap, the inside is filled, too.

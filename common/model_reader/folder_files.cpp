@@ -44,6 +44,17 @@ class FolderStream : public Assimp::IOStream {
   std::uint64_t at_ = 0;
 };
 
+/// Returns a path in the form in which two spellings of one file are equal.
+std::string plain_path(const std::string& path) {
+  std::string plain = path_within(path);
+  if (!plain.empty()) return plain;
+  plain = path;  // it leads out of the folder
+  while (plain.compare(0, 2, "./") == 0) plain.erase(0, 2);
+  return plain;
+}
+
+std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
+
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -74,10 +85,19 @@ Result<OpenedFile, ModelFolder::Refusal> FolderFiles::open(const std::string& pa
   return decoded == path ? std::move(opened) : folder_.open(decoded);
 }
 
+/// Returns true if Assimp looks for a file that it was refused before. It tries other spellings and
+/// other folders, and for the materials of an .obj at last a file with the name of the model.
+bool FolderFiles::is_searched(const std::string& path) const {
+  const std::string plain = plain_path(path);
+  const std::string& model = folder_.name();
+  if (!refused_.empty() && plain == model.substr(0, model.find_last_of('.')) + ".mtl") return true;
+  return std::any_of(refused_.begin(), refused_.end(), [&](const Refused& other) {
+    return plain_path(other.path) == plain || last_name(other.path) == plain;
+  });
+}
+
 void FolderFiles::refuse(const std::string& path, ModelFolder::Refusal why) const {
-  const bool is_known = std::any_of(refused_.begin(), refused_.end(),
-                                    [&](const Refused& other) { return other.path == path; });
-  if (!is_known && refused_.size() < kRefusedMax) refused_.push_back({path, why});
+  if (!is_searched(path) && refused_.size() < kRefusedMax) refused_.push_back({path, why});
 }
 
 bool FolderFiles::Exists(const char* path) const {
@@ -93,6 +113,7 @@ Assimp::IOStream* FolderFiles::Open(const char* path, const char* mode) {
     refuse(path, opened.error());
     return nullptr;
   }
+  if (last_name(path) != folder_.name()) has_opened_others_ = true;
   return new FolderStream(*std::move(opened));  // Assimp owns it until Close()
 }
 

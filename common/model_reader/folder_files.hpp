@@ -26,15 +26,19 @@ class FolderFiles : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char* path, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
 
-  /// Returns the first files that were refused, without repetition.
+  /// Returns the first files that were refused, each once and as the model names it.
   const std::vector<Refused>& refused() const { return refused_; }
+  /// Returns true if a file besides the model was opened.
+  bool has_opened_others() const { return has_opened_others_; }
 
  private:
   Result<OpenedFile, ModelFolder::Refusal> open(const std::string& path) const;
+  bool is_searched(const std::string& path) const;
   void refuse(const std::string& path, ModelFolder::Refusal why) const;
 
   const ModelFolder& folder_;
   mutable std::vector<Refused> refused_;
+  bool has_opened_others_ = false;
 };
 
 /// Returns the text with the bytes in place of each "%20" and the like, as addresses in .gltf have

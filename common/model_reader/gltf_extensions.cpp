@@ -6,17 +6,31 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/models/printable_line.hpp"
+
 namespace runstone {
 namespace {
 
 constexpr std::size_t kExtensionsMax = 64;
-constexpr std::size_t kGlbHeadBytes = 20;  // of the file, and of its first chunk
+constexpr std::size_t kExtensionNameBytesMax = 100;  // of a message
+constexpr std::size_t kGlbHeadBytes = 20;            // of the file, and of its first chunk
 
 bool is_read(std::string_view extension) {
   // Materials of all kinds have a base colour beside what the extension says. Lights are no triangles.
   constexpr std::string_view kMaterials = "KHR_materials_";
   return extension == "KHR_draco_mesh_compression" || extension == "KHR_texture_transform" ||
          extension == "KHR_lights_punctual" || extension.substr(0, kMaterials.size()) == kMaterials;
+}
+
+/// Returns what to do about an extension that is not read.
+std::string_view advice(std::string_view extension) {
+  if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression" ||
+      extension == "KHR_mesh_quantization")
+    return "export the model without compression, or with that of Draco";
+  if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp" ||
+      extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
+    return "export the model with textures of PNG or JPEG";
+  return "export the model without it";
 }
 
 /// Returns the JSON of a .gltf or .glb, or an empty text.
@@ -58,7 +72,8 @@ std::vector<std::string> required_extensions(std::string_view json) {
 Result<void, std::string> check_extensions(const OpenedFile& file) {
   for (const std::string& name : required_extensions(json_of(file))) {
     if (!is_read(name))
-      return failure("requires the extension \"" + name + "\" of glTF, which is not read");
+      return failure("requires the extension \"" + printable_line(name, kExtensionNameBytesMax) +
+                     "\" of glTF, which is not read: " + std::string(advice(name)));
   }
   return {};
 }

@@ -100,7 +100,8 @@ Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const Sc
   for (const FolderFiles::Refused& refused : files.refused())
     notices.add("the file " + refused_line(refused) + ": it is left out");
   SceneRules scene_rules = rules;
-  scene_rules.lacks_materials = rules.format == ModelFormat::obj && !files.refused().empty();
+  scene_rules.lacks_materials =
+      rules.format == ModelFormat::obj && !files.refused().empty() && !files.has_opened_others();
   const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
   auto model = model_of_scene(*scene, scene_rules, folder, notices);
   if (!model) return failure(model.error());

@@ -65,6 +65,55 @@ struct ColourCandidate {
   }
 };
 
+/// A triangle crosses the line between the centres of two voxels: of `at` and of the voxel before it
+/// along `axis`. It sorts by axis and place.
+struct WallCrossing {
+  unsigned axis = 0;
+  std::array<std::int32_t, 3> at{};  // y and z from the beam on; along `axis` up to the side
+  std::uint32_t part = 0;
+  bool is_positive = false;  // the normal of the triangle points along the axis
+  bool is_in_first = false;  // the point is in the voxel before `at`
+
+  std::uint64_t packed() const {
+    return place() << 33 | std::uint64_t{part} << 2 | std::uint64_t{is_positive} << 1 |
+           std::uint64_t{is_in_first};
+  }
+  static std::uint64_t place_of(std::uint64_t packed) { return packed >> 33; }
+  static WallCrossing of(std::uint64_t packed) {
+    const auto bits = [&](unsigned shift, unsigned count) {
+      return static_cast<std::int32_t>(packed >> shift & ((1U << count) - 1));
+    };
+    return {static_cast<unsigned>(bits(60, 2)),
+            {bits(47, 13), bits(40, 7), bits(33, 7)},
+            static_cast<std::uint32_t>(packed >> 2 & 0x7fff'ffff),
+            (packed & 2) != 0,
+            (packed & 1) != 0};
+  }
+
+ private:
+  std::uint64_t place() const {
+    return std::uint64_t{axis} << 27 | static_cast<std::uint64_t>(at[0]) << 14 |
+           static_cast<std::uint64_t>(at[1]) << 7 | static_cast<std::uint64_t>(at[2]);
+  }
+};
+
+/// Returns the first voxel whose centre is behind a crossing of a line along an axis, if centre and
+/// line are moved by an infinitesimal along x, an infinitely smaller one along y, and again along z.
+std::int32_t first_centre_behind(const Crossing& crossing, unsigned axis, const UnitTriangle& t) {
+  const std::int32_t first = crossing.first_centre();
+  if (axis == 0 || !crossing.is_on_centre()) return first;
+  // The point of the line moves against the first other axis along which the triangle is inclined.
+  for (unsigned other = 0; other < axis; ++other) {
+    const unsigned u = (other + 1) % 3, v = (other + 2) % 3;
+    const auto edge = [&](std::size_t to, unsigned along) {
+      return std::int64_t{t[to][along]} - t[0][along];
+    };
+    const std::int64_t normal = edge(1, u) * edge(2, v) - edge(1, v) * edge(2, u);
+    if (normal != 0) return (normal > 0) == crossing.is_positive ? first : first + 1;
+  }
+  return first;
+}
+
 /// A voxel of a row with its colour.
 struct ShellVoxel {
   std::uint32_t row = 0;
@@ -123,7 +172,10 @@ class BeamMaker {
         return std::move(result_);
       }
     }
-    if (plan_.is_solid) find_inside();
+    if (plan_.is_solid) {
+      add_walls();
+      find_inside();
+    }
     if (is_coloured_) {
       find_shell();
       if (plan_.quantiser == nullptr) {
@@ -154,7 +206,9 @@ class BeamMaker {
     held_max_ = std::max(kBeamHeldSorted, 2 * held());
     return held() <= kBeamHeldMax;
   }
-  std::size_t held() const { return crossings_.size() + candidates_.size() + spans_.size(); }
+  std::size_t held() const {
+    return crossings_.size() + candidates_.size() + spans_.size() + walls_.size();
+  }
 
   bool holds(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return x >= 0 && x <= voxels_.high[0] && y >= y_ && y <= voxels_.high[1] && z >= z_ &&
@@ -212,7 +266,11 @@ class BeamMaker {
         add_thick(t, part);
         break;
       case SurfaceMode::separating_6:
-        add_thin(t, part);
+        if (is_closed_solid()) {
+          add_wall_crossings(t, part);
+        } else {
+          add_thin(t, part);
+        }
         break;
     }
   }
@@ -240,6 +298,56 @@ class BeamMaker {
                                  add_surface_voxel(at, part);
                                });
     }
+  }
+
+  /// Returns true if the crossings between two centres say whether one of them is inside.
+  bool is_closed_solid() const {
+    return plan_.is_solid && (plan_.winding == nullptr || plan_.winding->is_zero());
+  }
+
+  void add_wall_crossings(const UnitTriangle& t, std::uint32_t part) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const std::int32_t side = plan_.placement->side(axis);
+      const std::int32_t low = axis == 0 ? 0 : voxels_.low[axis];
+      const std::int32_t high = voxels_.high[axis] + 1;
+      for_each_crossing<true>(
+          t, axis, kHalfUnit, voxels_,
+          [&](std::array<std::int32_t, 3> at, const Crossing& crossing) {
+            at[axis] = std::min(first_centre_behind(crossing, axis, t), side);
+            if (at[axis] < low || at[axis] > high) return;
+            const std::int32_t voxel = std::min(crossing.voxel(), side - 1);
+            const bool is_in_first = voxel < at[axis];
+            at[1] -= y_;
+            at[2] -= z_;
+            walls_.push_back(
+                WallCrossing{axis, at, part, crossing.is_positive, is_in_first}.packed());
+          });
+    }
+  }
+
+  /// Adds the thin surface where it is not the border of the solid. Of two neighbours, one is inside
+  /// and the other is not if the line between their centres crosses the mesh an odd number of times;
+  /// by winding number at least one is inside if the signed crossings do not cancel out.
+  void add_walls() {
+    std::sort(walls_.begin(), walls_.end());
+    for (std::size_t begin = 0; begin < walls_.size();) {
+      std::size_t end = begin;
+      std::int64_t sum = 0;
+      for (; end < walls_.size() &&
+             WallCrossing::place_of(walls_[end]) == WallCrossing::place_of(walls_[begin]);
+           ++end)
+        sum += WallCrossing::of(walls_[end]).is_positive ? 1 : -1;
+      const bool is_border = plan_.winding != nullptr ? sum != 0 : (end - begin) % 2 != 0;
+      for (; begin < end; ++begin) {
+        if (is_border) continue;
+        WallCrossing wall = WallCrossing::of(walls_[begin]);
+        if (wall.is_in_first) --wall.at[wall.axis];
+        wall.at[1] += y_;
+        wall.at[2] += z_;
+        add_surface_voxel(wall.at, wall.part);
+      }
+    }
+    walls_ = {};
   }
 
   void add_thick(const UnitTriangle& t, std::uint32_t part) {
@@ -556,6 +664,7 @@ class BeamMaker {
   LineRanges voxels_;  // of the beam
   std::vector<std::uint32_t> crossings_;
   std::size_t held_max_ = kBeamHeldSorted;
+  std::vector<std::uint64_t> walls_;         // of a thin surface that is beside a solid
   std::vector<std::uint64_t> spans_;         // of the surface, if there is one colour
   std::vector<std::uint64_t> spans_inside_;  // not in order
   std::vector<std::uint64_t> inside_;        // in order, disjoint

@@ -97,10 +97,13 @@ class BeamWalk {
       };
       std::tie(low, high) = std::minmax({along(corners[0]), along(corners[1]), along(corners[2])});
     }
-    // A voxel is touched from its lower side, too.
+    // A voxel is touched from its lower side, too. In a solid the lines to the centres of the next
+    // voxels matter, half a voxel beyond the band.
+    const std::int32_t beyond = plan_.is_solid ? kVoxelUnit / 2 + 1 : 0;
     constexpr std::int32_t kBandUnits = kVoxelSection * kVoxelUnit;
     const std::int32_t last = bands(axis) - 1;
-    return {std::clamp((low - 1) / kBandUnits, 0, last), std::clamp(high / kBandUnits, 0, last)};
+    return {std::clamp((low - 1 - beyond) / kBandUnits, 0, last),
+            std::clamp((high + beyond) / kBandUnits, 0, last)};
   }
 
   const BeamPlan& plan_;

@@ -39,7 +39,9 @@ enum class SurfaceMode : std::uint8_t {
   /// The voxels in which a triangle crosses one of the three lines through the centre along the
   /// axes: thin (Laine 2013, the thin voxels of Schwarz and Seidel). The lines of a voxel are
   /// half-open, so that a face between two voxels is one voxel thick. Parts between the lines are
-  /// lost.
+  /// lost. Together with a solid that is closed, the border of the solid is the surface: a voxel is
+  /// added only where a triangle crosses the line to the centre of a neighbour, and neither is
+  /// inside.
   separating_6 = 3,
 };
 

@@ -163,6 +163,47 @@ bool VoxelOracle::is_surface(VoxelPos voxel, SurfaceMode mode) const {
   return false;
 }
 
+bool VoxelOracle::is_wall(VoxelPos voxel) const {
+  if (is_inside(voxel)) return false;
+  const std::array<std::int32_t, 3> at{voxel.x, voxel.y, voxel.z};
+  const std::array<std::int32_t, 3> sides{sides_.x, sides_.y, sides_.z};
+  // Centres are moved as in crossings(), here by small numbers.
+  constexpr std::int64_t kFine = std::int64_t{1} << 24;
+  constexpr Vec kMoved{1 << 16, 1 << 8, 1};
+  Vec middle{}, centre{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    middle[i] = at[i] * kSide + kSide / 2;
+    centre[i] = middle[i] * kFine + kMoved[i];
+  }
+  for (const Corners& t : triangles_) {
+    Corners fine = t;
+    bool is_near = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      is_near = is_near && std::min({t[0][i], t[1][i], t[2][i]}) <= middle[i] + kSide / 2 &&
+                std::max({t[0][i], t[1][i], t[2][i]}) >= middle[i] - kSide / 2;
+      for (Vec& corner : fine) corner[i] *= kFine;
+    }
+    if (!is_near) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // A face between voxels belongs to the one behind it, and the last one to the last voxel.
+      Vec low = middle, high = middle;
+      low[axis] -= kSide / 2;
+      high[axis] += kSide / 2;
+      if (!segment_crosses(t, low, high, at[axis] + 1 != sides[axis])) continue;
+      for (const int step : {-1, 1}) {
+        std::array<std::int32_t, 3> beside = at;
+        beside[axis] += step;
+        Vec other = centre;
+        other[axis] += step * kSide * kFine;
+        if (segment_crosses(fine, centre, other, false) &&
+            !is_inside({beside[0], beside[1], beside[2]}))
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
 int VoxelOracle::crossings(VoxelPos voxel) const {
   // The centre moves by e along x, e^2 along y, e^3 along z, for an infinitesimal e.
   const Vec p{voxel.x * kSide + kSide / 2, voxel.y * kSide + kSide / 2,

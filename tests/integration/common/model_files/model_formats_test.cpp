@@ -99,11 +99,31 @@ TEST_CASE("an .obj without its .mtl or a texture is read, with notices", "[model
   SECTION("without an .mtl") {
     folder.write("a.obj", "mtllib gone.mtl\n" + triangle);
     const ReadModel read = folder.model("a.obj");
-    REQUIRE_FALSE(read.notices.empty());
-    CHECK(read.notices[0] ==
-          "the file refers to \"gone.mtl\", which does not exist: it is left out");
+    CHECK(read.notices ==
+          std::vector<std::string>{"the file refers to \"gone.mtl\", which does not "
+                                   "exist: it is left out"});
     for (const ModelMaterial& material : read.model.materials)
       CHECK(material.colour == ModelColour{255, 255, 255, 255});
+  }
+  SECTION("without an .mtl that is named in several ways") {
+    // The first name is that of the model, for which the parser looks in any case.
+    for (const std::string name :
+         {"a.mtl", "./gone.mtl", "b/gone.mtl", "b\\\\gone.mtl", "../gone.mtl"}) {
+      CAPTURE(name);
+      folder.write("a.obj", "mtllib " + name + "\n" + triangle + "mtllib " + name + "\n");
+      const ReadModel read = folder.model("a.obj");
+      REQUIRE(read.notices.size() == 1);
+      CHECK(read.notices[0].find("the file refers to \"" + name + "\", which ") == 0);
+    }
+    folder.write("a.obj", "mtllib one.mtl\nmtllib two.mtl\n" + triangle);
+    CHECK(folder.model("a.obj").notices.size() == 2);
+  }
+  SECTION("with an .mtl that has got the name of the model") {
+    folder.write("a.mtl", "newmtl a\nKd 0 1 0\n");
+    folder.write("a.obj", "mtllib before.mtl\n" + triangle);
+    const ReadModel read = folder.model("a.obj");
+    CHECK(read.notices.size() == 1);
+    CHECK(material_of(read.model, 0).colour == ModelColour{0, 255, 0, 255});
   }
   SECTION("without a texture") {
     folder.write("a.mtl", "newmtl a\nKd 0 1 0\nmap_Kd gone.png\n");
@@ -312,6 +332,30 @@ TEST_CASE("what is left out of a .gltf is said", "[model_files]") {
                             "animations are left out: the model stands as the file places it"});
 }
 
+TEST_CASE("a mesh that is compressed with Draco is read", "[model_files]") {
+  ModelFolderOfTest folder;
+  // One triangle, written by the encoder of Draco 1.5 (sequential, 14 bits).
+  folder.write(
+      "a.gltf",
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],)"
+      R"("extensionsRequired":["KHR_draco_mesh_compression"],"scene":0,"scenes":[{"nodes":[0]}],)"
+      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0,)"
+      R"("extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}],)"
+      R"("accessors":[{"componentType":5123,"count":3,"type":"SCALAR"},)"
+      R"({"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":66}],"buffers":[{"byteLength":66,)"
+      R"("uri":"data:application/octet-stream;base64,)"
+      "RFJBQ08CAgEAAAABAwEAAQIBAQAJAwAAAgABAQADA60qVRUDoHqBiAEAAAAA/z8AAAAAAAAAAAAAAAAAAAAAgD8O"
+      R"("}]})");
+  const Model model = folder.model("a.gltf").model;
+  REQUIRE(model.triangles.size() == 1);
+  const Corners expected = {Corner{0, 0, 0}, Corner{1, 0, 0}, Corner{0, 1, 0}};
+  const Corners got = corners(model, 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) CHECK(got[i][k] == Approx(expected[i][k]).margin(0.001));
+  }
+}
+
 TEST_CASE("a .gltf that requires an unknown extension is refused", "[model_files]") {
   ModelFolderOfTest folder;
   GltfText gltf;
@@ -324,8 +368,17 @@ TEST_CASE("a .gltf that requires an unknown extension is refused", "[model_files
   for (const std::string name : {"a.gltf", "a.glb"}) {
     CHECK(folder.error(name) == name +
                                     ": requires the extension \"EXT_meshopt_compression\" of "
-                                    "glTF, which is not read");
+                                    "glTF, which is not read: export the model without "
+                                    "compression, or with that of Draco");
   }
+  gltf.more = R"(,"extensionsRequired":["KHR_texture_basisu"])";
+  folder.write("a.glb", gltf.glb());
+  CHECK(folder.error("a.glb") ==
+        "a.glb: requires the extension \"KHR_texture_basisu\" of glTF, which is not read: export "
+        "the model with textures of PNG or JPEG");
+  gltf.more = R"(,"extensionsRequired":["X_Y\u001b"])";
+  folder.write("a.glb", gltf.glb());
+  CHECK(folder.error("a.glb").find("export the model without it") != std::string::npos);
 }
 
 TEST_CASE("a symbolic link to a model is followed", "[model_files]") {

@@ -178,6 +178,48 @@ TEST_CASE("a T-junction closes the solid although the mesh is open", "[voxelise]
   CHECK(grid->result.voxels == 512);
 }
 
+TEST_CASE("a thin surface beside a closed solid adds walls and no thickness", "[voxelise]") {
+  VoxeliseOptions both = solid_options();
+  both.surface = SurfaceMode::separating_6;
+  // The far sides end before centres, and behind them.
+  for (const float side : {9.0F, 9.3F, 9.5F, 9.7F}) {
+    CAPTURE(side);
+    const Model box = box_mesh({0, 0, 0}, {side, side, side});
+    CHECK(voxels_of(box, both) == voxels_of(box, solid_options()));
+  }
+  // Walls without a centre inside stay, also at the borders of beams.
+  for (const float at : {3.1F, 63.6F, 64.1F, 64.4F}) {
+    CAPTURE(at);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      Place low{0, 0, 0}, high{70, 66, 66};
+      low[axis] = at;
+      high[axis] = at + 0.05F;
+      const Model corners =
+          joined({box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({69, 65, 65}, {70, 66, 66})});
+      const Model wall = joined({corners, box_mesh(low, high)});
+      const std::uint64_t area = axis == 0 ? 66 * 66 : 70 * 66;
+      const std::uint64_t voxels = voxels_of(wall, both);
+      CHECK(voxels >= area);
+      CHECK(voxels <= area + 2);
+    }
+  }
+  SplitMix64 rng{4820};
+  for (int round = 0; round < 40; ++round) {
+    CAPTURE(round);
+    const Model mesh = random_closed_mesh(rng, 10 + static_cast<int>(rng.below(14)));
+    const VoxelOracle oracle(mesh, 1);
+    const auto grid = voxel_grid(mesh, both);
+    REQUIRE(grid.has_value());
+    REQUIRE(grid->result.closure != MeshClosure::open);
+    std::size_t faults = 0;
+    grid->for_each([&](VoxelPos p, Material material) {
+      const bool wanted = oracle.is_inside(p) || oracle.is_wall(p);
+      faults += (material != kEmpty) != wanted;
+    });
+    CHECK(faults == 0);
+  }
+}
+
 TEST_CASE("surfaces are as thick as their mode says", "[voxelise]") {
   const Model box = box_mesh({0, 0, 0}, {10, 10, 10});
   const std::uint64_t shell = 1000 - 512;
