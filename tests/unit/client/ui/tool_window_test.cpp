@@ -30,7 +30,7 @@ struct ToolWindowBench {
     for (int i = 0; i < 4; ++i) frame();
   }
   void frame() {
-    static_cast<void>(hud.make_frame(state, kToolsSize, 0.016));
+    static_cast<void>(hud.make_frame(state, size, 0.016));
     for (UiAction& action : hud.take_actions()) {
       if (const auto* file = std::get_if<ClipboardOfFile>(&action)) {
         files.push_back(*file);
@@ -81,6 +81,7 @@ struct ToolWindowBench {
   std::vector<ToolCommand> commands;
   std::vector<ClipboardOfFile> files;
   int stops = 0;
+  std::array<int, 2> size = kToolsSize;
   double found_y = 0;
 };
 
@@ -232,6 +233,7 @@ TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes vox
     const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
     return static_cast<double>(window->Pos.y + window->Size.y);
   };
+  size = {1280, 1000};  // all of the window fits
   state.has_files = true;
   frames();
   click(x(kRow), below() - 15);
