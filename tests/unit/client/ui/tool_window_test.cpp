@@ -269,4 +269,6 @@ TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes vox
   const auto count = files.size();
   click(x(kRow), below() - 18);
   CHECK(files.size() == count);
+  // A model that is dropped then has the usual choices.
+  CHECK(hud.panels().tools().file().drop("/tmp/third.glb").model == ModelChoices());
 }
