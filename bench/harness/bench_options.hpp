@@ -16,9 +16,10 @@ struct BenchOptions {
   std::string luanti;                                   // folder of a Luanti world
   std::string csv, json;                                // files to write; empty: none
   unsigned repetitions = 30;
-  std::size_t edits = 200'000;  // length of the log
-  std::size_t clients = 1'000;  // receivers of a commit
-  std::string postgres;         // address of a PostgreSQL database
+  std::size_t edits = 200'000;         // length of the log
+  std::size_t clients = 1'000;         // receivers of a commit
+  std::vector<std::size_t> triangles;  // of the meshes that become voxels
+  std::string postgres;                // address of a PostgreSQL database
 };
 
 }  // namespace runstone::bench

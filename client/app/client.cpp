@@ -179,7 +179,7 @@ void Client::poll_window() {
   if (!window_) return;
   const WindowEvents polled = window_->poll();
   if (polled.close) end_requested_ = true;
-  for (const std::string& file : polled.dropped) dropped_.push_back({file, false});
+  for (const std::string& file : polled.dropped) dropped_.push_back(hud_.drop(file));
   if (feed_menu(polled)) return;
   if (!runner_) return play_.input().push(polled.events);
   // A script plays. Of the keyboard only escape counts.
@@ -192,12 +192,13 @@ void Client::poll_window() {
 void Client::step_files(TimeUs now_us) {
   ToolBox& tools = play_.tool().box();
   std::vector<ClipboardOfFile> wanted = hud_.take_files();
+  if (hud_.take_file_stop()) files_.stop();
   for (ClipboardOfFile& file : std::exchange(dropped_, {})) wanted.push_back(std::move(file));
   for (const ClipboardOfFile& file : wanted) {
     if (auto notice = files_.begin(file, tools)) hud_.notify(std::move(notice->text), notice->kind);
   }
   if (auto notice = files_.step(tools)) hud_.notify(std::move(notice->text), notice->kind);
-  if (!wanted.empty() || !files_.state().empty()) pipeline_.moved();
+  if (!wanted.empty() || files_.is_busy()) pipeline_.moved();
   // The player sees the ghost of the build, and clicks where it is to stand.
   if (files_.take_loaded()) static_cast<void>(play_.tool().carry_out(ToolChoice{"paste"}, now_us));
 }
@@ -289,7 +290,7 @@ HudScene Client::hud_scene() const {
   if (play_.was_opened()) scene.state = lost_text(network_, steady_now_us());
   if (scene.state.empty()) scene.state = play_.state_text();
   if (hud_.shows_statistics()) scene.net = network_.net_counts();
-  scene.file_state = files_.state();
+  scene.file = files_.state();
   scene.camera = play_.scene().camera(field_of_view());
   scene.size = frame_size();
   return scene;

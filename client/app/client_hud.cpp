@@ -69,6 +69,7 @@ std::shared_ptr<const OverlayFrame> ClientHud::make_frame(const HudScene& scene,
   for (const UiAction& action : hud_.take_actions()) {
     play_.carry_out(action, now_us);
     if (const auto* file = std::get_if<ClipboardOfFile>(&action)) files_.push_back(*file);
+    stops_file_ = stops_file_ || std::holds_alternative<FileStop>(action);
   }
   if (!is_shown_) return nullptr;
   return frame;
@@ -84,7 +85,7 @@ HudState ClientHud::state(const HudScene& scene) const {
                           std::floor(eye.z), play_.player().is_walking() ? "walking" : "flying");
   out.state = scene.state;
   out.has_files = true;
-  out.file_state = scene.file_state;
+  out.file = scene.file;
   out.tool = play_.tool().text();
   out.shows_players = scene.shows_players;
   if (out.shows_players) add_players(out);

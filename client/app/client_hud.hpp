@@ -17,9 +17,9 @@ namespace runstone {
 /// The client's own state, as the display shows it.
 struct HudScene {
   bool has_window = false, is_connected = false, shows_players = false;
-  std::string state;       // as HudState::state
-  std::string file_state;  // as HudState::file_state
-  NetCounts net;           // filled only while ClientHud::shows_statistics()
+  std::string state;  // as HudState::state
+  FileState file;     // as HudState::file
+  NetCounts net;      // filled only while ClientHud::shows_statistics()
   Camera camera;
   std::array<int, 2> size{};  // of the frame, in pixels
 };
@@ -44,6 +44,12 @@ class ClientHud {
   std::shared_ptr<const OverlayFrame> make_frame(const HudScene& scene, TimeUs now_us);
   /// Returns the files that the user wants to read or to write, since the last call.
   std::vector<ClipboardOfFile> take_files() { return std::exchange(files_, {}); }
+  /// Returns true once after the user stopped the file that is being read.
+  bool take_file_stop() { return std::exchange(stops_file_, false); }
+  /// Takes a file that was dropped on the window. Returns the order to read it.
+  ClipboardOfFile drop(std::string file) {
+    return hud_.panels().tools().file().drop(std::move(file));
+  }
   bool is_moving() const { return is_shown_ && hud_.is_moving(); }
   void set_shown(bool is_shown) { is_shown_ = is_shown; }
   bool is_shown() const { return is_shown_; }
@@ -69,6 +75,7 @@ class ClientHud {
   const std::string name_;
   Hud hud_;
   std::vector<ClipboardOfFile> files_;
+  bool stops_file_ = false;
   bool is_shown_ = true;
   NetCounts net_before_;           // at net_us_
   std::array<double, 4> rates_{};  // bytes a second by class, in the interval before net_us_

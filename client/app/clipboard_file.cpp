@@ -105,8 +105,11 @@ Result<FileBuild, std::string> build_of_clipboard(const std::string& file, const
   return build;
 }
 
-Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools) {
-  auto read = read_build_of_file(file);
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools,
+                                                const ModelChoices& model) {
+  BuildReading reading;
+  static_cast<ModelChoices&>(reading.model) = model;
+  auto read = read_build_of_file(file, std::move(reading));
   if (!read) return failure(read.error());
   return set_clipboard(*std::move(read), tools);
 }

@@ -12,6 +12,7 @@
 #include "client/tools/tool_box.hpp"
 #include "common/core/result.hpp"
 #include "common/formats/file_build.hpp"
+#include "common/models/model_choices.hpp"
 
 namespace runstone {
 
@@ -53,9 +54,10 @@ std::string set_clipboard(FileBuild read, ToolBox& tools);
 Result<FileBuild, std::string> build_of_clipboard(const std::string& file, const ToolBox& tools);
 
 /// Sets the clipboard to the build of a file, whose ending names the format (docs/formats.md). Returns
-/// text about materials that the world lacks, which may be empty. The error is one line. Blocks on the
-/// disk.
-Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools);
+/// text about materials that the world lacks, which may be empty. `model` counts for a file with a
+/// model. The error is one line. Blocks until the build is made.
+Result<std::string, std::string> read_clipboard(const std::string& file, ToolBox& tools,
+                                                const ModelChoices& model = {});
 /// Writes the clipboard to a file, whose ending names the format. An old file is replaced when the new
 /// one is whole. Fails with one line, also if nothing was copied. Blocks on the disk.
 Result<void, std::string> write_clipboard(const std::string& file, const ToolBox& tools);

@@ -53,17 +53,16 @@ std::optional<PlayerNotice> ClipboardTransfer::begin(const ClipboardOfFile& orde
     });
   } else {
     state_ = "reading " + last_part(file_);
-    notices_ = std::make_shared<std::string>();
-    reading_ = std::async(
-        std::launch::async, [file = file_, order, notices = notices_, is_wanted = is_wanted_] {
-          BuildReading reading;
-          reading.model.voxels = order.voxels;
-          reading.model.is_solid = !order.is_hollow;
-          reading.model.file.should_continue = [is_wanted] { return is_wanted->load(); };
-          reading.notice = [&](const std::string& line) { *notices += ". " + line; };
-          return without_exceptions<FileBuild>(
-              file, [&] { return read_build_of_file(file, std::move(reading)); });
-        });
+    shared_ = std::make_shared<Reading>();
+    reading_ = std::async(std::launch::async, [file = file_, order, shared = shared_] {
+      BuildReading reading;
+      static_cast<ModelChoices&>(reading.model) = order.model;
+      reading.model.file.should_continue = [shared] { return shared->is_wanted.load(); };
+      reading.model.progress = [shared](double share) { shared->share.store(share); };
+      reading.notice = [&](const std::string& line) { shared->notices += ". " + line; };
+      return without_exceptions<FileBuild>(
+          file, [&] { return read_build_of_file(file, std::move(reading)); });
+    });
   }
   return std::nullopt;
 }
@@ -78,14 +77,32 @@ std::optional<PlayerNotice> ClipboardTransfer::step(ToolBox& tools) {
   if (!has_outcome(reading_)) return std::nullopt;
   state_.clear();
   auto read = reading_.get();
+  if (!shared_->is_wanted) return PlayerNotice{"stopped: " + file_ + " was not read"};
   if (!read) return transfer_warning(read.error());
   const std::string said = set_clipboard(*std::move(read), tools);
   if (!tools.clipboard().build) return transfer_warning(said);
   has_loaded_ = true;
   std::string text = "clipboard: " + last_part(file_) + ", " + size_text(*tools.clipboard().build);
-  text += *notices_;
+  text += shared_->notices;
   if (!said.empty()) text += ". " + said;
   return PlayerNotice{std::move(text)};
+}
+
+void ClipboardTransfer::stop() {
+  if (shared_ == nullptr || !reading_.valid()) return;
+  shared_->is_wanted = false;
+  state_ = "stopping: " + last_part(file_);
+}
+
+FileState ClipboardTransfer::state() const {
+  FileState out{state_, std::nullopt, false};
+  if (!reading_.valid() || !shared_->is_wanted) return out;
+  out.can_stop = true;
+  if (const double share = shared_->share; share >= 0) {
+    out.text = "making voxels of " + last_part(file_);
+    out.share = share;
+  }
+  return out;
 }
 
 }  // namespace runstone

@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "client/play/server_notices.hpp"
 #include "client/tools/tool_box.hpp"
+#include "client/ui/hud_state.hpp"
 #include "client/ui/ui_action.hpp"
 #include "common/formats/file_build.hpp"
 
@@ -27,7 +29,7 @@ class ClipboardTransfer {
   ClipboardTransfer& operator=(const ClipboardTransfer&) = delete;
   /// Waits until a file that is being written is on disk, or cannot be written. A file that is being
   /// read is given up.
-  ~ClipboardTransfer() { is_wanted_->store(false); }
+  ~ClipboardTransfer() { stop(); }
 
   /// Begins to read or write a file. Returns a text for the player if it cannot: another file is under
   /// way, or there is nothing to write. Cost: O(materials) on this thread.
@@ -37,15 +39,26 @@ class ClipboardTransfer {
   std::optional<PlayerNotice> step(ToolBox& tools);
   /// Returns true once after a file became the clipboard.
   bool take_loaded() { return std::exchange(has_loaded_, false); }
-  /// Returns what is under way, such as "reading castle.schem", or an empty text.
-  const std::string& state() const { return state_; }
+  /// Gives up the file that is being read. The clipboard stays as it is. The next file can begin when
+  /// the thread has ended: step() says so. Files of other formats than models are read to their end
+  /// first. Does nothing if no file is being read.
+  void stop();
+  bool is_busy() const { return !state_.empty(); }
+  /// Returns what is under way, such as "reading castle.schem".
+  FileState state() const;
 
  private:
+  /// What the two threads of one reading share.
+  struct Reading {
+    std::atomic<bool> is_wanted = true;
+    std::atomic<double> share = -1;  // of the voxels of a model that are made; below 0: none yet
+    std::string notices;             // of the reading thread, until its outcome is here
+  };
+
   std::string file_, state_;
   bool has_loaded_ = false;
   std::future<Result<FileBuild, std::string>> reading_;
-  const std::shared_ptr<std::atomic<bool>> is_wanted_ = std::make_shared<std::atomic<bool>>(true);
-  std::shared_ptr<std::string> notices_;  // of the reading thread, until its outcome is here
+  std::shared_ptr<Reading> shared_;  // of reading_
   std::future<Result<std::uint64_t, std::string>> writing_;
 };
 

@@ -82,8 +82,9 @@ void ScriptActions::finish_preview() {
     play_.pipeline().moved();
 }
 
-Result<void, std::string> ScriptActions::load_clipboard(const std::string& file) {
-  const auto said = read_clipboard(file, play_.tool().box());
+Result<void, std::string> ScriptActions::load_clipboard(const std::string& file,
+                                                        const ModelChoices& model) {
+  const auto said = read_clipboard(file, play_.tool().box(), model);
   if (!said) return failure(said.error());
   if (!said->empty()) spdlog::info("{}", *said);
   return {};

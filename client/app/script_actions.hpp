@@ -56,7 +56,8 @@ class ScriptActions final : public ScriptHost {
                                     ActionPart part) override {
     return play_.tool().propose(edit, due_us, now_us, part);
   }
-  Result<void, std::string> load_clipboard(const std::string& file) override;
+  Result<void, std::string> load_clipboard(const std::string& file,
+                                           const ModelChoices& model) override;
   Result<void, std::string> save_clipboard(const std::string& file) override {
     return write_clipboard(file, play_.tool().box());
   }

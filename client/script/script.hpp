@@ -15,6 +15,7 @@
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/models/model_choices.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -251,6 +252,7 @@ struct RunToolCommand {
 struct FileOfClipboard {
   bool is_written = false;
   std::string file;
+  ModelChoices model = {};  // of a file with a model that is read
 };
 struct Quit {};
 

@@ -77,8 +77,9 @@ class ScriptHost {
   }
 
   /// Reads the clipboard of the tools from a file, or writes it to one; the ending names the format.
-  /// Fails with one line. Blocks on the disk.
-  virtual Result<void, std::string> load_clipboard(const std::string& /*file*/) {
+  /// `model` counts for a file with a model. Fails with one line. Blocks until it is done.
+  virtual Result<void, std::string> load_clipboard(const std::string& /*file*/,
+                                                   const ModelChoices& /*model*/) {
     return failure(std::string("this client reads no files"));
   }
   virtual Result<void, std::string> save_clipboard(const std::string& /*file*/) {

@@ -131,7 +131,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::RunToolCommand& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::FileOfClipboard& c) {
-  const auto done = c.is_written ? host_.save_clipboard(c.file) : host_.load_clipboard(c.file);
+  const auto done =
+      c.is_written ? host_.save_clipboard(c.file) : host_.load_clipboard(c.file, c.model);
   return done ? Progress::done : give_up(done.error());
 }
 

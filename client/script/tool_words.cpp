@@ -4,6 +4,10 @@
 #include <string>
 #include <utility>
 
+#include "common/build_files/build_files.hpp"
+#include "common/build_files/model_words.hpp"
+#include "common/models/model_format.hpp"
+
 namespace runstone {
 namespace {
 
@@ -122,6 +126,45 @@ script::Step symmetry_step(ScriptWords& words) {
   return symmetry;
 }
 
+/// Returns the bytes of `text` that name a file. Behind the name of a model, which may have blanks, words
+/// of ModelChoices may stand.
+std::size_t file_name_bytes(std::string_view text) {
+  if (file_refusal(std::string(text), false).empty()) return text.size();
+  for (std::size_t end = text.find(' '); end != std::string_view::npos;
+       end = text.find(' ', end + 1)) {
+    if (model_format_of(text.substr(0, end))) return end;
+  }
+  return text.size();
+}
+
+void read_model_choices(std::string_view text, ModelChoices& choices) {
+  ScriptWords words(text);
+  while (words.more()) {
+    const std::string name(words.word("WORD"));
+    const ModelWord* const word = model_word(name);
+    if (word == nullptr) throw LineError{"unexpected \"" + name + "\""};
+    std::string value;
+    if (word->has_value()) value = words.word(std::string(word->values).c_str());
+    if (const auto chosen = choose_by_word(*word, value, choices); !chosen)
+      throw LineError{name + " \"" + value + "\": " + chosen.error()};
+  }
+}
+
+script::Step clipboard_step(ScriptWords& words) {
+  const std::string_view what = words.word("load or save");
+  if (what != "load" && what != "save")
+    throw LineError{"\"" + std::string(what) + "\" is neither load nor save"};
+  const std::string_view rest = words.rest();
+  if (rest.empty()) throw LineError{"expected FILE"};
+  if (what == "save") return script::FileOfClipboard{true, std::string(rest), {}};
+  const std::size_t bytes = file_name_bytes(rest);
+  script::FileOfClipboard step{false, std::string(rest.substr(0, bytes)), {}};
+  read_model_choices(rest.substr(bytes), step.model);
+  if (const std::string why = choices_refusal(step.model); !why.empty())
+    throw LineError{step.file + ": " + why};
+  return step;
+}
+
 }  // namespace
 
 std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words) {
@@ -145,14 +188,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};
   if (verb == "mirror") return script::RunToolCommand{ClipboardTurn{0, read_axis(words)}};
   if (verb == "symmetry") return symmetry_step(words);
-  if (verb == "clipboard") {
-    const std::string_view what = words.word("load or save");
-    if (what != "load" && what != "save")
-      throw LineError{"\"" + std::string(what) + "\" is neither load nor save"};
-    std::string file(words.rest());
-    if (file.empty()) throw LineError{"expected FILE"};
-    return script::FileOfClipboard{what == "save", std::move(file)};
-  }
+  if (verb == "clipboard") return clipboard_step(words);
   if (verb == "preview") return script::RunToolCommand{PreviewChange{read_on_off(words)}};
   if (verb == "places") return places_step(words);
   if (verb == "apply") return script::RunToolCommand{TypedApply{}};

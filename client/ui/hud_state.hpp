@@ -56,6 +56,13 @@ struct TimelineState {
   }
 };
 
+/// The file of the clipboard that is being read or written.
+struct FileState {
+  std::string text;             // such as "reading castle.schem"; empty: no file is under way
+  std::optional<double> share;  // of the work that is done, 0 .. 1; unset if nobody knows
+  bool can_stop = false;        // the file is read, and the user has not stopped it
+};
+
 struct HudState {
   const MaterialTable* materials = nullptr;  // not null; it must outlive the call
   std::array<Material, kSlotCount> slots{};
@@ -70,7 +77,7 @@ struct HudState {
   const ToolBox* tools = nullptr;    // not null while the tool window is open
   bool has_preview = false;          // `tools` has the preview of the next click
   bool has_files = false;            // the clipboard can be read from files, and written to them
-  std::string file_state;            // such as "reading castle.schem"; empty: no file is under way
+  FileState file;
   bool shows_players = false;
   std::vector<ListedPlayer> players;
   std::vector<std::string> names;  // of the other players, for completion

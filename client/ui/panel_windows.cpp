@@ -55,7 +55,7 @@ void PanelWindows::build(const HudState& state, UiContext& context, std::vector<
   std::vector<ToolCommand> commands;
   tools_.build(state, scale, commands);
   for (ToolCommand& command : commands) out.emplace_back(std::move(command));
-  if (auto file = tools_.take_file()) out.emplace_back(*std::move(file));
+  if (auto wanted = tools_.file().take()) out.push_back(*std::move(wanted));
 }
 
 }  // namespace runstone

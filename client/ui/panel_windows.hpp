@@ -39,6 +39,7 @@ class PanelWindows {
   const RollbackWindow& rollback() const { return rollback_; }
   LibraryWindow& library() { return library_; }
   const LibraryWindow& library() const { return library_; }
+  ToolWindow& tools() { return tools_; }
   const ToolWindow& tools() const { return tools_; }
 
   /// Returns true if a window was opened or closed since the last call, so that ImGui does not know

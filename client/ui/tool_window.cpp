@@ -13,7 +13,6 @@
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
 #include "common/materials/readable_name.hpp"
-#include "common/models/model_format.hpp"
 
 namespace runstone {
 namespace {
@@ -24,8 +23,6 @@ constexpr std::array<const char*, 5> kSymmetries = {"none", "mirrored along x", 
                                                     "mirrored along x and z", "a half turn"};
 /// The range of the coordinates that can be typed.
 constexpr int kCoordinateMin = -kWorldLimit, kCoordinateMax = kWorldLimit - 1;
-/// The longest side of a model that the slider reaches.
-constexpr int kModelVoxelsShown = 1024;
 const ImVec4 kToolWarning = {1, 0.82F, 0.47F, 1};
 
 std::array<int, 3> numbers_of(VoxelPos at) { return {at.x, at.y, at.z}; }
@@ -312,7 +309,7 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   build_steps(out);
   ImGui::EndDisabled();
   build_clipboard(box, out);
-  if (state.has_files) build_file(state, out);
+  if (state.has_files && file_.build(state)) add(SelectionCommand::Kind::copy);
 }
 
 void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
@@ -333,41 +330,6 @@ void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
     command.count = count_;
     out.emplace_back(command);
   }
-}
-
-void ToolWindow::build_file(const HudState& state, std::vector<ToolCommand>& out) {
-  ImGui::Separator();
-  if (!state.file_state.empty()) return ImGui::TextUnformatted(state.file_state.c_str());
-  ImGui::SetNextItemWidth(-1);
-  ImGui::InputTextWithHint("##file", "path, such as ~/castle.schem", &file_);
-  if (file_.empty() && ImGui::IsItemHovered()) {
-    ImGui::SetTooltip(
-        "The ending names the format: .schem, .litematic, .vox, .mts, .rsb and others; .obj, "
-        ".stl, .ply, .gltf and .glb are models, which become voxels.\n"
-        "A file that is dropped on the window is loaded, too.");
-  }
-  const ToolBox& box = *state.tools;
-  if (model_format_of(file_)) {
-    ImGui::SliderInt("longest side", &voxels_, 8, kModelVoxelsShown, "%d voxels",
-                     ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
-    ImGui::SameLine();
-    ImGui::Checkbox("hollow", &is_hollow_);
-  }
-  ImGui::BeginDisabled(file_.empty());
-  if (button_beside("Load into the clipboard", true)) {
-    wanted_ = ClipboardOfFile{file_, false, static_cast<std::uint32_t>(voxels_), is_hollow_};
-  }
-  ImGui::BeginDisabled(!box.clipboard().build);
-  if (button_beside("Save the clipboard")) wanted_ = ClipboardOfFile{file_, true};
-  ImGui::EndDisabled();
-  ImGui::BeginDisabled(!box.selection());
-  if (button_beside("Save the selection")) {
-    out.emplace_back(
-        SelectionCommand{SelectionCommand::Kind::copy, !keeps_air_, kEmpty, kEmpty, {}, 1});
-    wanted_ = ClipboardOfFile{file_, true};
-  }
-  ImGui::EndDisabled();
-  ImGui::EndDisabled();
 }
 
 void ToolWindow::build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out) {

@@ -12,8 +12,8 @@
 
 #include "client/input/key_map.hpp"
 #include "client/tools/tool_command.hpp"
+#include "client/ui/file_panel.hpp"
 #include "client/ui/hud_state.hpp"
-#include "client/ui/ui_action.hpp"
 
 namespace runstone {
 
@@ -34,8 +34,8 @@ class ToolWindow {
   /// Makes the window with ImGui, and appends what the user did in it. Requires HudState::tools if
   /// the window is open.
   void build(const HudState& state, double scale, std::vector<ToolCommand>& out);
-  /// Returns the file that the user wants to read or to write, once. The commands of build() come first.
-  std::optional<ClipboardOfFile> take_file() { return std::exchange(wanted_, std::nullopt); }
+  /// The file that the user wants to read or to write. The commands of build() come first.
+  FilePanel& file() { return file_; }
 
  private:
   void build_tools(const ToolBox& box, std::vector<ToolCommand>& out) const;
@@ -44,7 +44,6 @@ class ToolWindow {
   void build_selection(const HudState& state, double scale, std::vector<ToolCommand>& out);
   void build_steps(std::vector<ToolCommand>& out);
   void build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out);
-  void build_file(const HudState& state, std::vector<ToolCommand>& out);
   TypedPlaces typed_places() const;
 
   using Numbers = std::array<int, 3>;  // x, y, z
@@ -59,10 +58,7 @@ class ToolWindow {
   int count_ = 1;
   bool keeps_air_ = false;
   std::string replaced_;  // the name of the material to be replaced, as typed
-  std::string file_;      // a path, as typed
-  int voxels_ = 128;      // of the longest side of a model
-  bool is_hollow_ = false;
-  std::optional<ClipboardOfFile> wanted_;
+  FilePanel file_;
 };
 
 }  // namespace runstone

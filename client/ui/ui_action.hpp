@@ -9,6 +9,7 @@
 #include "client/ui/library_window.hpp"
 #include "client/ui/rollback_window.hpp"
 #include "common/core/ids.hpp"
+#include "common/models/model_choices.hpp"
 
 namespace runstone {
 
@@ -30,9 +31,10 @@ struct ShowMoment {
 struct ClipboardOfFile {
   std::string file;  // as typed
   bool is_saved = false;
-  std::uint32_t voxels = 128;  // of the longest side of a model that is read
-  bool is_hollow = false;      // the inside of a model stays untouched
+  ModelChoices model = {};  // of a file with a model that is read
 };
+/// The file that is being read is not wanted any more.
+struct FileStop {};
 
 /// The user chose what frames show of storage and meshing.
 struct SetInspection {
@@ -40,6 +42,6 @@ struct SetInspection {
 };
 
 using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
-                              LibraryOrder, ToolCommand, ClipboardOfFile>;
+                              LibraryOrder, ToolCommand, ClipboardOfFile, FileStop>;
 
 }  // namespace runstone

@@ -1,19 +1,15 @@
 #include "common/build_files/model_reading.hpp"
 
-#include <array>
 #include <utility>
 
 #include "common/models/model_format.hpp"
 #include "common/voxelise/voxel_build.hpp"
+#include "common/voxelise/voxelise.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SurfaceMode>, 4> kSurfaceWords = {
-    {{"none", SurfaceMode::none},
-     {"thin", SurfaceMode::separating_6},
-     {"thick", SurfaceMode::separating_26},
-     {"all", SurfaceMode::conservative}}};
+static_assert(kModelVoxelsMax == kVoxeliseSideMax);
 
 VoxeliseOptions voxelise_options(const ModelReading& reading, const Model& model) {
   VoxeliseOptions options;
@@ -22,12 +18,14 @@ VoxeliseOptions voxelise_options(const ModelReading& reading, const Model& model
   } else {
     options.scale.longest_side = reading.voxels;
   }
+  options.turn = options.turn.rotated_about_y(reading.quarters);
   options.is_solid = reading.is_solid;
   options.surface =
       reading.surface.value_or(reading.is_solid ? SurfaceMode::none : SurfaceMode::separating_6);
   options.fills_overlaps = reading.fills_overlaps;
   options.colours_max = kModelColoursMax;
   options.should_continue = reading.file.should_continue;
+  options.progress = reading.progress;
   return options;
 }
 
@@ -41,13 +39,6 @@ void notice_result(const Voxelised& result, const Model& model, bool is_solid,
 
 }  // namespace
 
-std::optional<SurfaceMode> surface_of_word(std::string_view word) {
-  for (const auto& [name, mode] : kSurfaceWords) {
-    if (name == word) return mode;
-  }
-  return std::nullopt;
-}
-
 bool is_model_file(std::string_view file) { return model_format_of(file).has_value(); }
 
 std::string model_endings() { return ".obj, .stl, .ply, .gltf, .glb"; }
@@ -55,9 +46,11 @@ std::string model_endings() { return ".obj, .stl, .ply, .gltf, .glb"; }
 Result<FileBuild, std::string> read_model_build(const std::string& file,
                                                 const ModelReading& reading, std::size_t bytes_max,
                                                 const ReadNotice& notice) {
-  if (!reading.is_solid && reading.surface.value_or(SurfaceMode::separating_6) == SurfaceMode::none)
-    return failure(file + ": neither its inside nor its surface is wanted");
-  const auto read = read_model_file(file, reading.file);
+  if (const std::string why = choices_refusal(reading); !why.empty())
+    return failure(file + ": " + why);
+  ModelFileOptions file_options = reading.file;
+  file_options.up = reading.up;
+  const auto read = read_model_file(file, file_options);
   if (!read) return failure(read.error());
   const ReadNotice say = [&](const std::string& line) {
     if (notice) notice(file + ": " + line);

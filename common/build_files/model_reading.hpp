@@ -1,39 +1,24 @@
 // ModelReading: how a file of triangles or points becomes a build (docs/models.md).
 #pragma once
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "common/core/result.hpp"
 #include "common/formats/rsb_build.hpp"
 #include "common/model_files/model_file.hpp"
-#include "common/voxelise/voxelise.hpp"
+#include "common/models/model_choices.hpp"
 
 namespace runstone {
 
-inline constexpr std::uint32_t kModelVoxelsUsual = 128;
-
-struct ModelReading {
-  /// Voxels of the longest side, 1 .. kVoxeliseSideMax.
-  std::uint32_t voxels = kModelVoxelsUsual;
-  /// In place of `voxels`. In a format without units a unit is a metre.
-  std::optional<double> voxels_per_metre = std::nullopt;
-  /// The inside is filled. A model that is no closed surface is filled by its winding number.
-  bool is_solid = true;
-  /// The surface that is set besides the inside. It keeps walls in which no voxel has its centre. A
-  /// closed model becomes no thicker by a thin one, and up to a voxel by the others. If it is unset, a solid model gets no surface. A
-  /// hollow model, and one in which no voxel is inside, then gets a thin one.
-  std::optional<SurfaceMode> surface = std::nullopt;
-  /// Where closed parts overlap, the inside is filled, too.
-  bool fills_overlaps = false;
+struct ModelReading : ModelChoices {
+  /// `file.up` is not used: ModelChoices has it.
   ModelFileOptions file;
+  /// Takes the share of the voxels that are made, above 0 .. 1, on the thread of the call. It is not
+  /// called while the file is read. Empty: nobody wants to know.
+  std::function<void(double share)> progress = {};
 };
-
-/// Returns the surface of a word: none, thin, thick or all. nullopt: it is no such word.
-std::optional<SurfaceMode> surface_of_word(std::string_view word);
 
 /// Takes a line for the person who reads a file, such as "the mesh is open".
 using ReadNotice = std::function<void(const std::string&)>;

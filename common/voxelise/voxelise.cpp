@@ -26,12 +26,24 @@ Result<void> check_options(const VoxeliseOptions& options) {
   return {};
 }
 
+/// The part of the work that one walk over the beams is.
+struct WalkProgress {
+  const std::function<void(double)>& take;
+  double begin = 0, length = 1;  // of the whole work, which is 1
+
+  /// Requires 0 .. 1 of the walk.
+  void done(double share) const {
+    if (take) take(begin + share * length);
+  }
+};
+
 /// The beams of a model, in the order of z and y.
 class BeamWalk {
  public:
-  BeamWalk(const BeamPlan& plan, const ParallelFor& parallel_for)
+  BeamWalk(const BeamPlan& plan, const ParallelFor& parallel_for, WalkProgress progress)
       : plan_(plan),
         parallel_for_(parallel_for),
+        progress_(progress),
         count_(plan.model->is_cloud() ? plan.model->positions.size()
                                       : plan.model->triangles.size()),
         layers_(bands(2)),
@@ -42,6 +54,7 @@ class BeamWalk {
   template <class F>
   Result<void> walk(F&& take) {
     for (std::int32_t slab = 0; slab < layers_; ++slab) {
+      if (slab != 0) progress_.done(share_of(slab, 0));
       const auto parts = slabs_.at(slab, [&](std::uint32_t part) { return range_of(part, 2); });
       if (parts.empty() && !needs_all()) continue;
       const std::int32_t rows = bands(1);
@@ -62,6 +75,7 @@ class BeamWalk {
         if (parallel_for_) continue;
         if (auto taken = take(make(static_cast<std::size_t>(row))); !taken) return taken;
         own = {};
+        progress_.done(share_of(slab, row + 1));
       }
       if (!parallel_for_) continue;
       made.resize(of_rows.size());
@@ -72,12 +86,17 @@ class BeamWalk {
         if (auto taken = take(std::move(result)); !taken) return taken;
       }
     }
+    progress_.done(1);
     return {};
   }
 
  private:
   std::int32_t bands(unsigned axis) const {
     return (plan_.placement->side(axis) + kVoxelSection - 1) / kVoxelSection;
+  }
+  /// Returns the share of the walk before a row of a slab.
+  double share_of(std::int32_t slab, std::int32_t row) const {
+    return (slab + static_cast<double>(row) / bands(1)) / layers_;
   }
   /// A beam without a triangle may have voxels inside an open mesh.
   bool needs_all() const { return plan_.winding != nullptr && !plan_.winding->is_zero(); }
@@ -108,6 +127,7 @@ class BeamWalk {
 
   const BeamPlan& plan_;
   const ParallelFor& parallel_for_;
+  const WalkProgress progress_;
   std::size_t count_;
   std::int32_t layers_;
   PartsByPlace slabs_;
@@ -133,7 +153,9 @@ Result<ColourQuantiser> surface_colours(const BeamPlan& plan, const ParallelFor&
                                         const VoxeliseOptions& options) {
   ColourQuantiser out;
   bool is_empty = true;
-  auto walked = BeamWalk(plan, parallel_for).walk([&](BeamResult&& result) -> Result<void> {
+  // The second walk makes the voxels.
+  const WalkProgress first{options.progress, 0, 0.5};
+  auto walked = BeamWalk(plan, parallel_for, first).walk([&](BeamResult&& result) -> Result<void> {
     for (const auto& [colour, count] : result.colours) out.add(colour, count);
     is_empty = is_empty && result.colours.empty();
     return check_work(result, options);
@@ -190,7 +212,9 @@ Result<Voxelised> voxelise(const Model& model, const VoxeliseOptions& options,
     plan.quantiser = &*quantiser;
   }
   if (winding) plan.winding = &*winding;
-  auto walked = BeamWalk(plan, parallel_for).walk([&](BeamResult&& result) -> Result<void> {
+  const double begin = quantiser ? 0.5 : 0;
+  const WalkProgress last{options.progress, begin, 1 - begin};
+  auto walked = BeamWalk(plan, parallel_for, last).walk([&](BeamResult&& result) -> Result<void> {
     if (auto checked = check_work(result, options); !checked) return checked;
     out.voxels += result.voxels;
     for (VoxelPiece& piece : result.pieces) {

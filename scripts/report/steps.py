@@ -179,6 +179,34 @@ def _edit_steps(quick):
     )
 
 
+def _voxel_steps(quick):
+    yield Step(
+        "voxelise",
+        (
+            "voxelise",
+            "--triangles",
+            "10000,100000" if quick else "10000,100000,1000000",
+            "--edges",
+            "128,256" if quick else "128,256,512,1024",
+            "--min-runs",
+            "1" if quick else "5",
+        ),
+        10 if quick else 300,
+        (
+            "way",
+            "triangles",
+            "side",
+            "cpu_s",
+            "model_bytes",
+            "peak_bytes",
+            "voxels",
+            "run_bytes",
+            "compared",
+            "differing",
+        ),
+    )
+
+
 def _network_steps(quick):
     for profile in PROFILES:
         if quick and profile not in ("loopback", "broadband"):
@@ -232,6 +260,6 @@ def _network_steps(quick):
 def report_steps(quick):
     """Returns all steps in the order in which they run."""
     out = []
-    for group in (_scenario_steps, _mesh_steps, _drawing_steps, _edit_steps, _network_steps):
+    for group in (_scenario_steps, _mesh_steps, _drawing_steps, _edit_steps, _voxel_steps, _network_steps):
         out += group(quick)
     return out

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/build_files/model_words.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
@@ -104,22 +105,15 @@ Result<void, std::string> add_missing(const CommandCall& call, MatchedBuild& mad
 }
 
 /// Takes a word that says how a model becomes a build. Returns false if there is none.
-bool take_model_word(WordReader& reader, ModelReading& model) {
-  if (reader.take_word("voxels")) {
-    model.voxels = static_cast<std::uint32_t>(reader.number("voxels", 1, kVoxeliseSideMax));
-  } else if (reader.take_word("surface")) {
-    const auto mode = surface_of_word(reader.take("surface", "none, thin, thick or all"));
-    if (!mode) reader.wrong("surface: none, thin, thick or all");
-    model.surface = mode;
-  } else if (reader.take_word("hollow")) {
-    model.is_solid = false;
-  } else if (reader.take_word("up")) {
-    const bool is_y = reader.take_word("y");
-    if (!is_y && !reader.take_word("z")) reader.wrong("up: y or z");
-    model.file.up = is_y ? ModelUp::y : ModelUp::z;
-  } else {
-    return false;
-  }
+bool take_model_word(WordReader& reader, ModelChoices& model) {
+  const ModelWord* const word = model_word(reader.peek());
+  if (word == nullptr) return false;
+  const std::string name(word->name);
+  reader.take_word(name);
+  const std::string value =
+      word->has_value() ? reader.take(name, std::string(word->values)) : std::string();
+  if (const auto chosen = choose_by_word(*word, value, model); !chosen)
+    reader.wrong(name + " \"" + value + "\": " + chosen.error());
   return true;
 }
 
@@ -159,8 +153,10 @@ PlaceWords take_place_words(WordReader& reader, PlacedFileWords* file) {
     } else if (file == nullptr || !take_model_word(reader, file->model)) {
       reader.wrong(reader.command() + " \"" + reader.peek() +
                    "\": turn, mirror, only-into, without" +
-                   (file != nullptr ? ", materials, map, colours, voxels, surface, hollow or up"
-                                    : " or materials"));
+                   (file != nullptr
+                        ? ", materials, map, colours, voxels, voxels-per-metre, surface, hollow, "
+                          "fill-overlaps or up"
+                        : " or materials"));
     }
   }
   return out;

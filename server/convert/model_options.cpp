@@ -2,34 +2,51 @@
 
 #include <string>
 
-namespace runstone {
+#include "common/build_files/model_words.hpp"
 
-void add_model_options(CLI::App& app, ModelReading& reading) {
-  const auto voxels = app.add_option("--voxels", reading.voxels,
-                                     "model: voxels of its longest side, 1..4096; default 128")
-                          ->check(CLI::Range(1, int{kVoxeliseSideMax}));
-  app.add_option("--voxels-per-metre", reading.voxels_per_metre,
-                 "model: voxels of a metre; without units in the file, a unit is a metre")
-      ->check(CLI::Range(1e-6, 1e6))
+namespace runstone {
+namespace {
+
+/// Adds the option of a word, with two dashes before it.
+CLI::Option* add_word(CLI::App& app, ModelChoices& choices, const ModelWord& word,
+                      const std::string& what) {
+  const std::string name = "--" + std::string(word.name);
+  if (!word.has_value()) {
+    return app.add_flag_callback(
+        name, [&] { static_cast<void>(choose_by_word(word, "", choices)); }, what);
+  }
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&](const std::string& value) {
+            static_cast<void>(choose_by_word(word, value, choices));
+          },
+          what)
+      ->check([&](const std::string& value) {
+        ModelChoices unused;
+        const auto chosen = choose_by_word(word, value, unused);
+        return chosen ? std::string() : "\"" + value + "\": " + chosen.error();
+      });
+}
+
+}  // namespace
+
+void add_model_options(CLI::App& app, ModelChoices& choices) {
+  const auto add = [&](const ModelWord& word, const std::string& what) {
+    return add_word(app, choices, word, "model: " + what);
+  };
+  CLI::Option* const voxels = add(kVoxelsWord, "voxels of its longest side, 1..4096; default 128");
+  add(kVoxelsPerMetreWord, "voxels of a metre; without units in the file, a unit is a metre")
       ->excludes(voxels);
-  app.add_option_function<std::string>(
-         "--surface",
-         [&reading](const std::string& word) { reading.surface = surface_of_word(word); },
-         "model: what its surface sets besides the inside: none; thin, which keeps walls without "
-         "the centre of a voxel; thick; or all voxels that it touches. Default: none, and thin if "
-         "nothing lies inside or with --hollow")
-      ->check(CLI::IsMember({"none", "thin", "thick", "all"}));
-  app.add_flag_callback(
-      "--hollow", [&reading] { reading.is_solid = false; }, "model: do not fill its inside");
-  app.add_flag("--fill-overlaps", reading.fills_overlaps,
-               "model: fill the inside also where closed parts of it overlap");
-  app.add_option_function<std::string>(
-         "--up",
-         [&reading](const std::string& axis) {
-           reading.file.up = axis == "y" ? ModelUp::y : ModelUp::z;
-         },
-         "model: the axis of the file that points up; default: z for .stl and .ply, otherwise y")
-      ->check(CLI::IsMember({"y", "z"}));
+  add(kSurfaceWord,
+      "what its surface sets besides the inside: none; thin, which keeps walls without the centre of "
+      "a voxel; thick; or all voxels that it touches. Default: none, and thin if nothing lies inside "
+      "or with --hollow");
+  add(kHollowWord, "do not fill its inside");
+  add(kFillOverlapsWord, "fill the inside also where closed parts of it overlap");
+  add(kUpWord,
+      "y or z, the axis of the file that points up; default: z for .stl and .ply, otherwise y");
+  add(kTurnWord, "0, 90, 180 or 270 degrees to the left as seen from above; default 0");
 }
 
 }  // namespace runstone

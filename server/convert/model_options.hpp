@@ -2,12 +2,11 @@
 #pragma once
 #include <CLI/CLI.hpp>
 
-#include "common/build_files/model_reading.hpp"
+#include "common/models/model_choices.hpp"
 
 namespace runstone {
 
-/// Adds --voxels, --voxels-per-metre, --surface, --hollow, --fill-overlaps and --up. Their values go to
-/// `reading`, which must outlive the parsing.
-void add_model_options(CLI::App& app, ModelReading& reading);
+/// Adds an option for each of kModelWords. Their values go to `choices`, which must outlive the parsing.
+void add_model_options(CLI::App& app, ModelChoices& choices);
 
 }  // namespace runstone

@@ -1,5 +1,7 @@
 #include <array>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/build_files/build_files.hpp"
 #include "server/import/import_parts.hpp"
@@ -21,12 +23,15 @@ class FileParts final : public ImportParts {
         model_(std::move(model)) {}
 
   std::size_t count() const override { return 1; }
+  std::vector<std::string> notices() const override { return notices_; }
   Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
     BuildReading reading;
     reading.foreign.keep_all = keep_all_;
     reading.foreign.bytes_max = kFileBuildBytesMax;
     reading.foreign.colours_file = colours_;
     reading.model = model_;
+    notices_.clear();
+    reading.notice = [this](const std::string& line) { notices_.push_back(line); };
     auto build = read_build_of_file(file_, std::move(reading), kFileBytesMax);
     if (!build) return failure(build.error());
     const VoxelPos sides = build->build->sides();
@@ -45,6 +50,7 @@ class FileParts final : public ImportParts {
   bool keep_all_;
   std::string colours_;
   ModelReading model_;
+  std::vector<std::string> notices_;  // of the last read()
 };
 
 }  // namespace

@@ -166,6 +166,29 @@ def _results():
                 for brush in ("voxel", "sphere r 3", "box 6")
             ]
         },
+        "voxelise": {
+            "rows": [
+                {
+                    "way": way,
+                    "triangles": 1_000_000,
+                    "side": side,
+                    "cpu_s": seconds,
+                    "model_bytes": 20_000_000,
+                    "peak_bytes": peak,
+                    "voxels": 1000,
+                    "runs": 100,
+                    "run_bytes": 400,
+                    "compared": 200,
+                    "differing": differing,
+                }
+                for way, side, seconds, peak, differing in (
+                    ("solid", 128, 0.1, 20_000_000, 0),
+                    ("solid, byte grid", 128, 0.05, 30_000_000, 0),
+                    ("solid", 1024, 0.2, 20_000_000, 1),
+                    ("solid, byte grid", 1024, 0.8, 780_000_000, 0),
+                )
+            ]
+        },
         "bytes": {
             "rows": [
                 {"world": "luanti", "set": "all", "form": form, "bytes": n, "encode_us": 1, "decode_us": 1}

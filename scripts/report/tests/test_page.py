@@ -36,6 +36,9 @@ FIGURES = (
     "axis-orders",
     "dirty-layers",
     "stacks",
+    "voxelise-time",
+    "voxelise-memory",
+    "voxelise-errors",
     "bytes",
     "transfers",
     "latency",
@@ -113,6 +116,20 @@ class Page(unittest.TestCase):
                 rows = list(csv.reader(lines))
             self.assertGreater(len(rows), 1, figure)
             self.assertEqual({len(r) for r in rows}, {len(rows[0])}, figure)
+
+    def test_runs_of_triangles_are_compared_with_a_grid_and_an_oracle(self):
+        text = self.text[self.text.index('id="voxelise-time"') :]
+        self.assertIn(
+            "On one core 1,000,000 triangles into 1,024³ take 200 ms, and 4 times as much by way of a grid of one"
+            " byte a voxel. The grid takes less with 1,000,000 triangles into 128³.",
+            text,
+        )
+        self.assertIn(
+            "1,000,000 triangles into 1,024³ take 40 MB at their peak, and 20 times as much by way of a grid of"
+            " one byte a voxel. It takes more in every case.",
+            text,
+        )
+        self.assertIn("Of 800 voxels that an independent oracle computed, 1 differs.", text)
 
     def test_the_gateway_is_compared_with_tcp(self):
         text = self.text[self.text.index('id="gateway"') :]

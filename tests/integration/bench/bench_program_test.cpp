@@ -223,6 +223,28 @@ TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[benc
   CHECK(std::stoul(rows[0].at("quads")) > std::stoul(rows[1].at("quads")));  // borders cut them
 }
 
+TEST_CASE("runstone-bench voxelise compares runs with a byte grid and with an oracle", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "voxelise.json";
+  const BenchOutput output = run_bench(
+      {"voxelise", "--triangles", "2000", "--edges", "48,80", "--min-runs", "1", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const auto rows = nlohmann::json::parse(text_of(json)).at("rows");
+  REQUIRE(rows.size() == 2 * 6);
+  std::map<std::string, std::uint64_t> voxels;
+  for (const auto& row : rows) {
+    CHECK(row.at("compared") > 1'000);
+    CHECK(row.at("differing") == 0);
+    CHECK(row.at("runs") > 100);
+    if (row.at("side") == 80) voxels[row.at("way")] = row.at("voxels");
+  }
+  CHECK(voxels.at("solid") == voxels.at("solid, byte grid"));
+  CHECK(voxels.at("surface, conservative") > voxels.at("surface, 26-separating"));
+  CHECK(voxels.at("surface, 26-separating") > voxels.at("surface, 6-separating"));
+  CHECK(run_bench({"voxelise", "--edges", "8"}).exit_code == 2);
+}
+
 TEST_CASE("runstone-bench rejects unknown options and values", "[bench]") {
   CHECK(run_bench({}).exit_code == 2);
   CHECK(run_bench({"mesh", "--worlds", "atlantis"}).exit_code == 2);

@@ -1,4 +1,5 @@
 // A build becomes a model, and the model a build again, through runstone-read-model.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "common/build_files/build_files.hpp"
+#include "common/builds/build_transforms.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
@@ -80,6 +82,58 @@ TEST_CASE("a build that is written as a model is read as the same voxels", "[bui
       }
     }
   }
+}
+
+TEST_CASE("a model is turned as a build is", "[build_files]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.glb";
+  REQUIRE(write_build_to_file(file, sample_house()));
+  const auto plain = read_build_of_file(file, model_reading());
+  REQUIRE(plain);
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    CAPTURE(quarters);
+    BuildReading reading = model_reading();
+    reading.model.quarters = quarters;
+    const auto read = read_build_of_file(file, reading);
+    REQUIRE(read);
+    FileBuild wanted;
+    wanted.materials = plain->materials;
+    wanted.build = *turned(*plain->build, Orientation{}.rotated_about_y(quarters));
+    const VoxelPos sides = wanted.build->sides();
+    REQUIRE(read->build->sides() == sides);
+    CHECK(read->info.sides.x == static_cast<std::uint32_t>(sides.x));
+    for (std::int32_t z = 0; z < sides.z; ++z) {
+      for (std::int32_t y = 0; y < sides.y; ++y) {
+        for (std::int32_t x = 0; x < sides.x; ++x) {
+          CAPTURE(x, y, z);
+          REQUIRE(colour_at(*read, {x, y, z}) == colour_at(wanted, {x, y, z}));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the making of voxels tells its progress, and stops when it is not wanted",
+          "[build_files]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.glb";
+  REQUIRE(write_build_to_file(file, sample_house()));
+  BuildReading reading = model_reading();
+  reading.model.voxels = 256;
+  std::vector<double> shares;
+  reading.model.progress = [&](double share) { shares.push_back(share); };
+  REQUIRE(read_build_of_file(file, reading));
+  REQUIRE(shares.size() > 4);
+  CHECK(std::is_sorted(shares.begin(), shares.end()));
+  CHECK(shares.front() > 0);
+  CHECK(shares.back() == 1);
+
+  reading.model.file.should_continue = [&] { return shares.size() < 3; };
+  shares.clear();
+  const auto stopped = read_build_of_file(file, reading);
+  REQUIRE_FALSE(stopped);
+  CHECK(stopped.error() == file + ": the work is not wanted any more");
+  CHECK(shares.size() == 3);
 }
 
 TEST_CASE("a model is refused with what is wrong, and says what was done", "[build_files]") {

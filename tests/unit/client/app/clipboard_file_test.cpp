@@ -181,7 +181,7 @@ TEST_CASE("the clipboard goes to a file and back while the player goes on", "[cl
     return *notice;
   };
   REQUIRE_FALSE(transfer.begin({file, true}, bench.box));
-  CHECK(transfer.state() == "writing tower.schem");
+  CHECK(transfer.state().text == "writing tower.schem");
   CHECK(transfer.begin({file, false}, bench.box)->text == "wait: writing tower.schem");
   CHECK(outcome(bench.box).text == "written: " + file);
   CHECK_FALSE(transfer.take_loaded());
@@ -189,13 +189,13 @@ TEST_CASE("the clipboard goes to a file and back while the player goes on", "[cl
   ToolBox box;
   static_cast<void>(box.set_materials(table_of_names({"ice", "sand"})));
   REQUIRE_FALSE(transfer.begin({file, false}, box));
-  CHECK(transfer.state() == "reading tower.schem");
+  CHECK(transfer.state().text == "reading tower.schem");
   const PlayerNotice read = outcome(box);
   CHECK(read.text.starts_with("clipboard: tower.schem, 3 x 1 x 1"));
   CHECK(read.kind == NoticeKind::information);
   CHECK(transfer.take_loaded());
   CHECK_FALSE(transfer.take_loaded());
-  CHECK(transfer.state().empty());
+  CHECK_FALSE(transfer.is_busy());
   REQUIRE(box.clipboard().build);
 
   REQUIRE_FALSE(transfer.begin({place.folder / "none.vox", false}, box));
@@ -204,6 +204,19 @@ TEST_CASE("the clipboard goes to a file and back while the player goes on", "[cl
   CHECK(missing.text.find("none.vox") != std::string::npos);
   CHECK_FALSE(transfer.take_loaded());
   CHECK(transfer.begin({"tower.exe", false}, box)->kind == NoticeKind::warning);
+
+  const auto before = box.clipboard().build;
+  REQUIRE_FALSE(transfer.begin({file, false}, box));
+  CHECK(transfer.state().can_stop);
+  CHECK_FALSE(transfer.state().share);
+  transfer.stop();
+  CHECK(transfer.state().text == "stopping: tower.schem");
+  CHECK_FALSE(transfer.state().can_stop);
+  CHECK(outcome(box).text == "stopped: " + file + " was not read");
+  CHECK_FALSE(transfer.take_loaded());
+  CHECK(box.clipboard().build == before);
+  transfer.stop();
+  CHECK_FALSE(transfer.is_busy());
   CHECK(transfer.begin({file, true}, ToolBox())->text ==
         "the clipboard is empty: copy a selection first");
 }

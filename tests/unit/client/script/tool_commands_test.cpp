@@ -75,6 +75,35 @@ TEST_CASE_METHOD(ToolScript, "a script names the file of the clipboard", "[bots]
   CHECK(runner->failures().back() == "s.txt:1: this client writes no files");
 }
 
+TEST_CASE_METHOD(ToolScript, "a script says how a model becomes voxels", "[bots]") {
+  const auto step = [&](std::string_view text) {
+    const auto parsed = parse_script(text, "s.txt");
+    INFO((parsed ? "" : parsed.error().message()));
+    REQUIRE(parsed);
+    return std::get<script::FileOfClipboard>(parsed->commands.at(0).step);
+  };
+  script::FileOfClipboard read =
+      step("clipboard load my statue.STL voxels 512 up z turn 90 surface thin  # a comment");
+  CHECK(read.file == "my statue.STL");
+  CHECK(read.model.voxels == 512);
+  CHECK(read.model.up == ModelUp::z);
+  CHECK(read.model.quarters == 1);
+  CHECK(read.model.surface == SurfaceMode::separating_6);
+  CHECK(step("clipboard load a.glb").model == ModelChoices());
+  CHECK(step("clipboard load a.glb voxels-per-metre 2.5").model.voxels_per_metre == 2.5);
+  CHECK(step("clipboard load a.obj of b.schem").file == "a.obj of b.schem");
+  CHECK(step("clipboard load a.schem voxels 3").file == "a.schem voxels 3");
+  CHECK(step("clipboard save a.glb hollow").file == "a.glb hollow");
+
+  CHECK(error_of("clipboard load a.glb voxels 5000") ==
+        "s.txt:1: voxels \"5000\": a whole number from 1 to 4096 is expected");
+  CHECK(error_of("clipboard load a.glb voxels") ==
+        "s.txt:1: expected a whole number from 1 to 4096");
+  CHECK(error_of("clipboard load a.glb wide") == "s.txt:1: unexpected \"wide\"");
+  CHECK(error_of("clipboard load a.glb hollow surface none") ==
+        "s.txt:1: a.glb: neither its inside nor its surface is wanted");
+}
+
 TEST_CASE_METHOD(ToolScript, "a script sets symmetry and previews", "[bots]") {
   run("symmetry x 5.5 0 0\nhold sand\naim 3 3 3 +y\nuse\nsymmetry none\npreview off\naim look\n"
       "screenshot a.png\nuse");

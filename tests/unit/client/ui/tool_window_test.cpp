@@ -30,10 +30,14 @@ struct ToolWindowBench {
     for (int i = 0; i < 4; ++i) frame();
   }
   void frame() {
-    static_cast<void>(hud.make_frame(state, kToolsSize, 0.016));
+    static_cast<void>(hud.make_frame(state, size, 0.016));
     for (UiAction& action : hud.take_actions()) {
       if (const auto* file = std::get_if<ClipboardOfFile>(&action)) {
         files.push_back(*file);
+        continue;
+      }
+      if (std::holds_alternative<FileStop>(action)) {
+        ++stops;
         continue;
       }
       REQUIRE(std::holds_alternative<ToolCommand>(action));
@@ -76,11 +80,14 @@ struct ToolWindowBench {
   HudState state;
   std::vector<ToolCommand> commands;
   std::vector<ClipboardOfFile> files;
+  int stops = 0;
+  std::array<int, 2> size = kToolsSize;
   double found_y = 0;
 };
 
 // Distances from the left border of the window. In the first every row has something to click.
-constexpr double kRow = 30, kSliderLow = 11, kSliderMiddle = 110, kSecondChoice = 120, kApply = 175;
+constexpr double kRow = 30, kSliderLow = 11, kSliderMiddle = 110, kSecondChoice = 120, kApply = 175,
+                 kByVoxels = 16, kHollow = 75, kByMetres = 130, kSize = 220;
 
 }  // namespace
 
@@ -208,7 +215,60 @@ TEST_CASE_METHOD(ToolWindowBench, "a path is typed from which the clipboard is l
   CHECK(files[0].file == "~/castle.schem");
   CHECK_FALSE(files[0].is_saved);
   const double full = below();
-  state.file_state = "reading castle.schem";
+  state.file.text = "reading castle.schem";
   frames();
   CHECK(below() < full);  // the text takes the place of the field
+  click(x(kRow), below() - 18);
+  CHECK(stops == 0);
+  state.file.share = 0.5;
+  state.file.can_stop = true;
+  frames();
+  click(x(kRow), below() - 18);
+  CHECK(stops == 1);
+}
+
+TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes voxels",
+                 "[client_ui]") {
+  const auto below = [] {
+    const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
+    return static_cast<double>(window->Pos.y + window->Size.y);
+  };
+  size = {1280, 1000};  // all of the window fits
+  state.has_files = true;
+  frames();
+  click(x(kRow), below() - 15);
+  frames();
+  const double plain = ImGui::FindWindowByName("Tools")->Size.y;
+  click(x(kRow), below() - 18 - 23);
+  type("statue.stl");
+  frames();
+  CHECK(ImGui::FindWindowByName("Tools")->Size.y > plain);
+  click(x(kRow), below() - 18);
+  REQUIRE(files.size() == 1);
+  CHECK(files[0].file == "statue.stl");
+  CHECK(files[0].model == ModelChoices());
+  // From below: the button, the row of the surface, that of the inside, and that of the size.
+  const double inside_y = below() - 18 - 46, size_y = below() - 18 - 69;
+  click(x(kHollow), inside_y);
+  click(x(kByMetres), size_y);
+  click(x(kRow), below() - 18);
+  REQUIRE(files.size() == 2);
+  CHECK_FALSE(files[1].model.is_solid);
+  CHECK(files[1].model.voxels_per_metre == 1.0);
+  // A dropped file gets the same choices.
+  const ClipboardOfFile dropped = hud.panels().tools().file().drop("/tmp/other.glb");
+  CHECK(dropped.file == "/tmp/other.glb");
+  CHECK(dropped.model == files[1].model);
+  frames();
+  click(x(kRow), below() - 18);
+  CHECK(files.back().file == "/tmp/other.glb");
+  // A size out of its range has words, and the button is dead.
+  click(x(kByVoxels), size_y);
+  click(x(kSize), size_y);
+  type("5000");
+  const auto count = files.size();
+  click(x(kRow), below() - 18);
+  CHECK(files.size() == count);
+  // A model that is dropped then has the usual choices.
+  CHECK(hud.panels().tools().file().drop("/tmp/third.glb").model == ModelChoices());
 }

@@ -235,4 +235,22 @@ TEST_CASE("a file is placed with the materials that a map chooses", "[admin][lib
   CHECK_FALSE(bench.give("builds place 1 at 0 0 0 map " + map).is_ok);
 }
 
+TEST_CASE("an import of a model takes the words of the converter", "[admin][library]") {
+  LibraryBench bench;
+  const std::string file = bench.folder / "statue.obj";
+  const auto answer = [&](const std::string& words) {
+    const CommandAnswer given = bench.give("import " + file + " at 0 0 0 " + words);
+    CHECK_FALSE(given.is_ok);
+    return given.text;
+  };
+  CHECK(answer("voxels 5000") == "voxels \"5000\": a whole number from 1 to 4096 is expected");
+  CHECK(answer("up x") == "up \"x\": y or z is expected");
+  CHECK(answer("voxels-per-metre 0") ==
+        "voxels-per-metre \"0\": a number from 0.000001 to 1000000 is expected");
+  CHECK(answer("hollow surface none").find("neither its inside nor its surface is wanted") !=
+        std::string::npos);
+  CHECK(answer("wide").find("voxels-per-metre, surface, hollow, fill-overlaps or up") !=
+        std::string::npos);
+}
+
 }  // namespace runstone::test

@@ -128,6 +128,25 @@ TEST_CASE("runstone-convert writes models with the choices of its options", "[co
   CHECK(convert({file, folder / "house.glb", "--metres-per-voxel", "0"}).code != 0);
 }
 
+TEST_CASE("runstone-convert refuses choices of models that are out of range", "[convert]") {
+  const TempFolder folder;
+  const auto refusal = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words = {folder / "statue.obj"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome done = convert(words);
+    CHECK(done.code != 0);
+    return done.err;
+  };
+  CHECK(refusal({"--voxels", "5000"})
+            .find("--voxels: \"5000\": a whole number from 1 to 4096 is expected") !=
+        std::string::npos);
+  CHECK(refusal({"--turn", "45"}).find("\"45\": 0, 90, 180 or 270 is expected") !=
+        std::string::npos);
+  CHECK(refusal({"--voxels", "5", "--voxels-per-metre", "2"}).find("excludes") !=
+        std::string::npos);
+  CHECK(refusal({"--hollow", "--surface", "none"}).find("neither its inside") != std::string::npos);
+}
+
 TEST_CASE("runstone-convert maps materials, and names the rows that fit none", "[convert]") {
   const TempFolder folder;
   const std::string file = folder / "house.rsb", map = folder / "map.toml";
