@@ -49,8 +49,9 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file, Build
 
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
                                                        const FileBuild& build,
-                                                       const ModelWriting& writing) {
+                                                       const FileWriting& writing) {
   if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = choice_refusal(file, writing); !why.empty()) return failure(std::move(why));
   auto out = open_output_file(file);
   if (!out) return failure(out.error());
   std::uint64_t bytes = 0;

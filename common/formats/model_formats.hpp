@@ -15,6 +15,16 @@ Result<void> write_gltf(const FileBuild& build, const FormatSink& sink);
 Result<void> write_obj(const FileBuild& build, const FormatSink& sink);
 Result<void> write_ply(const FileBuild& build, const FormatSink& sink);
 
+/// Write a build with the choices of FileWriting::model. Otherwise they are as those above.
+Result<void> write_glb_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
+Result<void> write_gltf_with(const FileBuild& build, const FileWriting& writing,
+                             const FormatSink& sink);
+Result<void> write_obj_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
+Result<void> write_ply_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
+
 extern const TriangleFormat kGlbFormat, kGltfFormat, kObjFormat, kPlyFormat;
 
 }  // namespace runstone

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
+#include "common/formats/file_writing.hpp"
 #include "server/history/named_moment.hpp"
 #include "server/replay/subcommand_options.hpp"
 #include "server/replay/timelapse.hpp"
@@ -57,6 +58,7 @@ struct ExportOptions {
   std::optional<NamedMoment> at;    // last edit of the file; default: the end of the log
   std::optional<VoxelBox> box;      // of the world; nullopt: the log is exported
   std::string name;                 // of the build; empty: the name of the file
+  FileWriting writing;
   std::uint64_t memory_mib = 1024;  // of the runs of a box, at most
 };
 

@@ -24,7 +24,7 @@ Bytes model_bytes(const std::string& file, const FileBuild& build, const ModelWr
         out.insert(out.end(), bytes.begin(), bytes.end());
         return true;
       },
-      writing);
+      {.model = writing});
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
   return out;
