@@ -19,7 +19,7 @@ constexpr std::optional<SchemVersion> parse_schem_version(std::string_view text)
 }
 
 struct FileWriting {
-  ModelWriting model;  // of formats of triangles
+  ModelWriting model{};  // of formats of triangles
   SchemVersion schem = SchemVersion::three;
 };
 
