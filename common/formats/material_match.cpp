@@ -30,7 +30,8 @@ bool has_states_in_name(const BuildMaterial& material) {
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  if (!material.states.empty() && !has_states_in_name(material)) name += '[' + material.states + ']';
+  if (!material.states.empty() && !has_states_in_name(material))
+    name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);
   return std::string(cut_utf8(name, kMaterialNameBytesMax - ending.size())) + ending;

@@ -27,9 +27,9 @@ void make_edited_world(const std::string& folder, std::uint16_t edge) {
   WorldMeta meta = sample_meta();
   meta.chunk_edge = edge;
   meta.generator = {"terrain", 1, 77, ""};
-  for (const char* name : {"default:dirt", "minecraft:oak_stairs[facing=east]", "é ~", "ignore",
-                           "runstone:red__bricks", "my flower", "stairs:stair_wood[param2=20]",
-                           "é ~[param2=1]"})
+  for (const char* name :
+       {"default:dirt", "minecraft:oak_stairs[facing=east]", "é ~", "ignore",
+        "runstone:red__bricks", "my flower", "stairs:stair_wood[param2=20]", "é ~[param2=1]"})
     REQUIRE(
         meta.materials.add({name, {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
   auto store = create_world(folder, meta);
@@ -37,7 +37,7 @@ void make_edited_world(const std::string& folder, std::uint16_t edge) {
   REQUIRE((*store)->raise_epoch().has_value());
   SplitMix64 rng(7);
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
-  std::vector<EditRecord> records = sample_records(rng, 1, 1, 60);
+  std::vector<EditRecord> records = sample_records(rng, 1, 1, 90);
   const auto count = static_cast<std::uint32_t>(meta.materials.size());
   for (EditRecord& record : records) {
     // A paste has materials of its own. Half of the others have one of the names above.

@@ -59,9 +59,9 @@ TEST_CASE("a name that ends with a param2 is a node with it", "[formats]") {
   CHECK(luanti_node_of("red bricks[param2=255]") == LuantiNode{"runstone:red__bricks", 255});
   CHECK(luanti_node_of("a[b][param2=1]") == LuantiNode{luanti_node_name("a[b]"), 1});
   for (const char* name :
-       {"default:chest", "a[param2=0]", "a[param2=03]", "a[param2=256]", "a[param2=]",
-        "a[param2=3", "[param2=3]", "a[param2=3] ", "a[b=c,param2=3]", "air[param2=3]",
-        "ignore[param2=3]", "a[param2=-1]", "minecraft:oak_stairs[facing=east]"})
+       {"default:chest", "a[param2=0]", "a[param2=03]", "a[param2=256]", "a[param2=]", "a[param2=3",
+        "[param2=3]", "a[param2=3] ", "a[b=c,param2=3]", "air[param2=3]", "ignore[param2=3]",
+        "a[param2=-1]", "minecraft:oak_stairs[facing=east]"})
     CHECK(luanti_node_of(name) == LuantiNode{luanti_node_name(name)});
 }
 
@@ -87,8 +87,7 @@ TEST_CASE("a written block of Luanti is read with the same nodes", "[formats]") 
       const ForeignBlock& node = piece->blocks[piece->voxels.runs.material(i) - 1U];
       const LuantiNode written = node_of(expected.runs.material(i));
       CHECK(node.name == written.name);
-      CHECK(node.states ==
-            (written.param2 == 0 ? "" : "param2=" + std::to_string(written.param2)));
+      CHECK(node.states == (written.param2 == 0 ? "" : "param2=" + std::to_string(written.param2)));
     }
   }
 }

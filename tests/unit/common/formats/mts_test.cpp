@@ -142,12 +142,11 @@ TEST_CASE("a build written as .mts is read with equal voxels, names and states",
 
 TEST_CASE("the param2 in the name of a world's material becomes the param2 of a node",
           "[formats]") {
-  const auto build = file_build(
-      {3, 1, 1},
-      {file_material("default:chest", "", {1, 2, 3, 255}),
-       file_material("default:chest[param2=3]", "", {1, 2, 3, 255}),
-       file_material("default:stone[1]", "", {1, 2, 3, 255})},
-      [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
+  const auto build = file_build({3, 1, 1},
+                                {file_material("default:chest", "", {1, 2, 3, 255}),
+                                 file_material("default:chest[param2=3]", "", {1, 2, 3, 255}),
+                                 file_material("default:stone[1]", "", {1, 2, 3, 255})},
+                                [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
   const auto bytes = written(write_mts, build);
   REQUIRE(bytes.has_value());
   const auto read = read_foreign_build({"", "", read_mts, material_of_look, nullptr}, *bytes, {});

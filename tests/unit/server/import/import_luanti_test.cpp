@@ -42,7 +42,8 @@ void each_block(const std::string& folder,
     std::vector<std::string> nodes = luanti_nodes(row);
     const Bytes params = luanti_params(row);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (params[i] != 0 && nodes[i] != "air") nodes[i] += "[param2=" + std::to_string(params[i]) + "]";
+      if (params[i] != 0 && nodes[i] != "air")
+        nodes[i] += "[param2=" + std::to_string(params[i]) + "]";
     }
     f(at, nodes);
   }
@@ -162,9 +163,8 @@ TEST_CASE("the param2 of nodes makes few materials", "[server][import]") {
                                                       {"default:acacia_tree[param2=3]", 25},
                                                       {"default:chest[param2=2]", 2},
                                                       {"stairs:stair_cobble[param2=3]", 20}});
-  const LuantiImportSink sink{[](const MaterialTable&) {},
-                              [](const ChunkKey&, RunChunk&&) { return true; },
-                              {}};
+  const LuantiImportSink sink{
+      [](const MaterialTable&) {}, [](const ChunkKey&, RunChunk&&) { return true; }, {}};
   const auto without = import_luanti(kWorld, {.edge = 32, .keep_param2 = false}, sink);
   REQUIRE(without.has_value());
   CHECK(without->materials.size() + 5 - 1 == table.size());
