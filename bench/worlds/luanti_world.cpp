@@ -56,8 +56,8 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
                                 return true;
                               },
                               {}};
-  const auto report =
-      import_luanti(folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes}, sink);
+  const auto report = import_luanti(
+      folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes, .keep_param2 = false}, sink);
   if (!report) return failure(report.error().message());
   DenseBox dense{report->bounds, {}};
   const VoxelBox& box = dense.box;

@@ -17,8 +17,8 @@ std::string stem_of(const std::string& file) { return std::filesystem::path(file
 
 /// Writes the levels of detail that are files of their own. Returns their bytes.
 Result<std::uint64_t, std::string> write_level_files(const std::string& file,
-                                                     const FileBuild& build, ModelWriting writing) {
-  const unsigned levels = std::exchange(writing.levels, 0U);
+                                                     const FileBuild& build, FileWriting writing) {
+  const unsigned levels = std::exchange(writing.model.levels, 0U);
   std::uint64_t bytes = 0;
   FileBuild coarser;
   const FileBuild* finer = &build;
@@ -27,7 +27,7 @@ Result<std::uint64_t, std::string> write_level_files(const std::string& file,
     if (!made) return failure(level_file(file, level) + ": " + made.error().what);
     coarser = *std::move(made);
     finer = &coarser;
-    writing.metres_per_voxel *= 2;
+    writing.model.metres_per_voxel *= 2;
     const auto written = write_build_to_file(level_file(file, level), coarser, writing);
     if (!written) return written;
     bytes += *written;
@@ -71,8 +71,9 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file, Build
 
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
                                                        const FileBuild& build,
-                                                       const ModelWriting& writing) {
+                                                       const FileWriting& writing) {
   if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = choice_refusal(file, writing); !why.empty()) return failure(std::move(why));
   auto out = open_output_file(file);
   if (!out) return failure(out.error());
   std::uint64_t bytes = 0;

@@ -35,13 +35,13 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file,
                                                   std::size_t file_bytes_max = kBuildFileBytesMax);
 
 /// Writes a build in the format of the file's ending, as open_output_file() does: an old file is
-/// replaced when the new one is whole. `writing` counts for models of triangles. The materials of an
-/// .obj become a second file, companion_file(). Levels of detail of an .obj or .ply become files of
-/// their own, level_file(); a single voxel has no coarser level. Returns the number of bytes of all
-/// files. The error is one line that begins with the name of the file.
+/// replaced when the new one is whole. Fails if choice_refusal() refuses. The materials of an .obj
+/// become a second file, companion_file(). Levels of detail of an .obj or .ply become files of their
+/// own, level_file(); a single voxel has no coarser level. Returns the number of bytes of all files.
+/// The error is one line that begins with the name of the file.
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
                                                        const FileBuild& build,
-                                                       const ModelWriting& writing = {});
+                                                       const FileWriting& writing = {});
 
 /// Returns the name of a build that is written to a file and has no other name: that of the file
 /// without its ending, or "build" if no build may have that name.

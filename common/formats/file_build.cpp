@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::string_view kRsbEnding = ".rsb";
 constexpr std::string_view kHeightMapEnding = ".png";
+constexpr std::string_view kSchemEnding = ".schem";
 
 bool is_rsb(std::string_view file) { return has_ending(file, kRsbEnding); }
 
@@ -54,8 +55,9 @@ Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView
 }
 
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
-                                           const FormatSink& sink, ModelWriting writing) {
+                                           const FormatSink& sink, FileWriting writing) {
   if (auto why = ending_refusal(file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = choice_refusal(file, writing); !why.empty()) return failure(std::move(why));
   bool is_written = true;
   const FormatSink noting = [&](ByteView bytes) { return is_written = sink(bytes); };
   if (is_rsb(file)) {
@@ -65,12 +67,18 @@ Result<void, std::string> write_file_build(const std::string& file, const FileBu
     return {};
   }
   const Format& format = *file_format(file);
-  writing.material_file = without_folders(companion_file(file));
-  const auto done = format.model != nullptr ? format.model->write(build, writing, noting)
-                                            : format.write(build, noting);
+  writing.model.material_file = without_folders(companion_file(file));
+  const auto done = format.write_with != nullptr ? format.write_with(build, writing, noting)
+                                                 : format.write(build, noting);
   if (!is_written) return failure(file + ": cannot be written");
   if (!done) return failure(file + ": " + done.error().what);
   return {};
+}
+
+std::string choice_refusal(std::string_view file, const FileWriting& writing) {
+  if (writing.schem == SchemVersion::three || has_ending(file, kSchemEnding)) return "";
+  return std::string(file) + ": is no " + std::string(kSchemEnding) +
+         ", and only these have a version to choose";
 }
 
 std::string companion_file(const std::string& file) {

@@ -8,9 +8,9 @@
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 #include "common/formats/build_of_file.hpp"
+#include "common/formats/file_writing.hpp"
 #include "common/formats/format.hpp"
 #include "common/formats/rsb_build.hpp"
-#include "common/model_writers/model_writing.hpp"
 
 namespace runstone {
 
@@ -19,11 +19,15 @@ namespace runstone {
 Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView bytes,
                                                const ForeignReading& reading);
 
-/// Writes a build in the format of the file's ending. `writing` counts for models of triangles; an
-/// .obj names companion_file(file), whatever `writing` names. The error is one line with the file
-/// and the reason; it is "cannot be written" if the sink returned false.
+/// Writes a build in the format of the file's ending. An .obj names companion_file(file), whatever
+/// `writing` names. Fails as choice_refusal() says. The error is one line with the file and the
+/// reason; it is "cannot be written" if the sink returned false.
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
-                                           const FormatSink& sink, ModelWriting writing = {});
+                                           const FormatSink& sink, FileWriting writing = {});
+
+/// Returns why a file of this name cannot be written with these choices, or an empty text: a version
+/// of the .schem is chosen, and the file is none. Choices for models count for models only.
+std::string choice_refusal(std::string_view file, const FileWriting& writing);
 
 /// Returns the path of the second file that belongs to a file of this name, such as castle.mtl to
 /// castle.obj, or an empty text. A caller of write_file_build() writes it with write_companion(),

@@ -21,8 +21,9 @@ namespace runstone {
 namespace {
 
 constexpr Format kFormats[] = {
-    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_node, nullptr, false},
-    {"sponge", ".schem", read_schematic, material_of_schematic_block, write_schem},
+    {"luanti", "map.sqlite", read_luanti_block, material_of_luanti_world_node, nullptr, false},
+    {"sponge", ".schem", read_schematic, material_of_schematic_block, write_schem, true,
+     write_schem_with},
     {"mcedit", ".schematic", read_schematic, material_of_schematic_block},
     {"litematica", ".litematic", read_litematic, material_of_schematic_block, write_litematic},
     {"minecraft", ".mca", read_minecraft_region, material_of_minecraft_block},
@@ -32,10 +33,10 @@ constexpr Format kFormats[] = {
     {"height map", ".png", read_height_map, material_of_look, write_height_map},
     {"numpy", ".npy", read_npy, material_of_look, write_npy},
     {"numpy archive", ".npz", read_npz, material_of_look, write_npz},
-    {"glTF", ".glb", nullptr, nullptr, write_glb, true, &kGlbFormat},
-    {"glTF as text", ".gltf", nullptr, nullptr, write_gltf, true, &kGltfFormat},
-    {"wavefront", ".obj", nullptr, nullptr, write_obj, true, &kObjFormat},
-    {"polygon file", ".ply", nullptr, nullptr, write_ply, true, &kPlyFormat},
+    {"glTF", ".glb", nullptr, nullptr, write_glb, true, write_glb_with, &kGlbFormat},
+    {"glTF as text", ".gltf", nullptr, nullptr, write_gltf, true, write_gltf_with, &kGltfFormat},
+    {"wavefront", ".obj", nullptr, nullptr, write_obj, true, write_obj_with, &kObjFormat},
+    {"polygon file", ".ply", nullptr, nullptr, write_ply, true, write_ply_with, &kPlyFormat},
 };
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }

@@ -30,7 +30,7 @@
 namespace runstone {
 
 struct FileBuild;
-struct ModelWriting;
+struct FileWriting;
 
 /// The look of a block, in formats that give it. A block with alpha below 255 is transparent.
 struct ForeignLook {
@@ -70,12 +70,9 @@ using PieceSink = std::function<Result<void>(ForeignPiece&&)>;
 /// Takes the next bytes of a file. Returns false if they cannot be written, which ends the writing.
 using FormatSink = std::function<bool(ByteView)>;
 
-/// The further functions of a format of triangles. Format::write writes with the default choices.
+/// The further properties of a format of triangles. Its functions that write fail with bad_value,
+/// before anything is written, if the build shows no face.
 struct TriangleFormat {
-  /// Writes a build with choices. Fails as Format::write does, and before anything is written with
-  /// bad_value if the build shows no face.
-  Result<void> (*write)(const FileBuild& build, const ModelWriting& writing,
-                        const FormatSink& sink);
   /// A second file holds the materials: its name has this ending instead of that of the format, and
   /// ModelWriting::material_file names it in the first file. Empty: there is none.
   std::string_view companion_ending = {};
@@ -103,7 +100,11 @@ struct Format {
   Result<void> (*write)(const FileBuild& build, const FormatSink& sink) = nullptr;
   /// True: a record is a whole file. False: a record is a part of a world, such as a row of a database.
   bool is_file = true;
-  /// The further functions if the format has triangles, otherwise null. Such formats are only written.
+  /// Writes a build as `write` does, with the choices that concern this format. `write` takes the
+  /// default choices. Null: the format has no choices.
+  Result<void> (*write_with)(const FileBuild& build, const FileWriting& writing,
+                             const FormatSink& sink) = nullptr;
+  /// The further properties if the format has triangles, otherwise null. Such formats are only written.
   const TriangleFormat* model = nullptr;
 };
 

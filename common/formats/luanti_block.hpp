@@ -4,6 +4,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
@@ -41,5 +42,14 @@ Result<ForeignInfo> read_luanti_block(ByteView data, const PieceSink& sink);
 /// The result is deterministic, and MaterialTable::add() accepts it for every
 /// name. Only "air" and "ignore" share a row: that of air.
 MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all);
+
+/// Returns true if the param2 of a node of this name gives it a direction, a shape or a colour. It is
+/// false for flowing liquids (the level of the liquid), leaves (players placed them) and the ground of
+/// plants under water (the height of the plant). docs/formats.md explains the rule.
+bool keeps_luanti_param2(std::string_view name);
+
+/// Returns material_of_luanti_node() for a node of a world. The name has the states as world_name_of()
+/// has them, "default:chest[param2=3]", if keeps_luanti_param2().
+MaterialInfo material_of_luanti_world_node(const ForeignBlock& node, bool keep_all);
 
 }  // namespace runstone

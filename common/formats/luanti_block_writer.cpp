@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/core/assert.hpp"
 #include "common/formats/deflate.hpp"
@@ -35,20 +37,32 @@ Bytes encode_luanti_block(const RunChunk& voxels, const LuantiNodeOf& node_of) {
   RUNSTONE_ASSERT(voxels.extent == Extent::cube(kLuantiBlockEdge));
   if (voxels.order != AxisOrder::xyz)
     return encode_luanti_block(reorder(voxels, AxisOrder::xyz), node_of);
-  std::map<Material, std::uint16_t> ids;
+  std::map<std::string, std::uint16_t> ids;
   std::vector<std::string> names;  // by id
-  Bytes nodes;
+  struct WrittenNode {
+    std::uint16_t id = 0;
+    std::uint8_t param2 = 0;
+  };
+  std::map<Material, WrittenNode> written;
+  Bytes nodes, param2;
+  param2.reserve(kWrittenNodes);
   nodes.reserve(4 * kWrittenNodes);
   for (std::size_t i = 0; i < voxels.runs.size(); ++i) {
     const Material material = voxels.runs.material(i);
-    const auto [known, is_new] =
-        ids.try_emplace(material, static_cast<std::uint16_t>(names.size()));
-    if (is_new) names.push_back(node_of(material));
-    for (std::uint32_t node = voxels.runs.begin(i); node < voxels.runs.end(i); ++node)
-      put_u16(nodes, known->second);
+    const auto [known, is_new] = written.try_emplace(material);
+    if (is_new) {
+      const LuantiNode node = node_of(material);
+      const auto [named, is_new_name] =
+          ids.try_emplace(node.name, static_cast<std::uint16_t>(names.size()));
+      if (is_new_name) names.push_back(node.name);
+      known->second = {named->second, node.param2};
+    }
+    const std::uint32_t count = voxels.runs.end(i) - voxels.runs.begin(i);
+    for (std::uint32_t node = 0; node < count; ++node) put_u16(nodes, known->second.id);
+    param2.insert(param2.end(), count, known->second.param2);
   }
-  nodes.insert(nodes.end(), kWrittenNodes, kDayLight);        // param1
-  nodes.insert(nodes.end(), kWrittenNodes, std::uint8_t{0});  // param2
+  nodes.insert(nodes.end(), kWrittenNodes, kDayLight);  // param1
+  put(nodes, param2);
   // Version, flags, which sides have complete light (all), the bytes of an id and of the
   // parameters.
   Bytes out = {kWrittenVersion, 0, 0xff, 0xff, 2, 2};

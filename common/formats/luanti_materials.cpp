@@ -9,6 +9,7 @@
 #include "common/core/hash.hpp"
 #include "common/formats/luanti_block.hpp"
 #include "common/formats/luanti_names.hpp"
+#include "common/formats/material_match.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/materials/default_look.hpp"
 
@@ -336,6 +337,21 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
   if (name.ends_with("_source") || name.ends_with("_flowing")) out.body = MaterialBody::liquid;
   // It is stored, so that every client draws the world alike.
   out.look = default_look(name, out.body);
+  return out;
+}
+
+bool keeps_luanti_param2(std::string_view name) {
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
+  if (name.ends_with("_flowing") || has("kelp")) return false;
+  const bool is_of_leaves = has("leaves") || has("needles");
+  // Stairs of leaves have a direction.
+  return !is_of_leaves || has("stair") || has("slab") || has("slope");
+}
+
+MaterialInfo material_of_luanti_world_node(const ForeignBlock& node, bool keep_all) {
+  MaterialInfo out = material_of_luanti_node(node, keep_all);
+  if (out.visibility != Visibility::empty && keeps_luanti_param2(node.name))
+    out.name = world_name_of({row_of(out), node.states});
   return out;
 }
 

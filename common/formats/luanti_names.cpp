@@ -1,7 +1,8 @@
 #include "common/formats/luanti_names.hpp"
 
 #include <algorithm>
-#include <cstdint>
+#include <charconv>
+#include <system_error>
 
 #include "common/core/material_row.hpp"
 
@@ -41,6 +42,32 @@ std::string luanti_node_name(std::string_view material) {
       out += "0123456789abcdef"[byte & 15];
     }
   }
+  return out;
+}
+
+std::optional<std::uint8_t> luanti_param2(std::string_view state) {
+  if (!state.starts_with(kLuantiParam)) return std::nullopt;
+  const std::string_view digits = state.substr(kLuantiParam.size());
+  if (digits.empty() || digits.front() == '0') return std::nullopt;
+  std::uint8_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
+  return number;
+}
+
+LuantiNode split_luanti_param2(std::string_view material) {
+  const std::size_t open = material.rfind('[');
+  if (open != std::string_view::npos && open > 0 && material.ends_with(']')) {
+    const auto param2 = luanti_param2(material.substr(open + 1, material.size() - open - 2));
+    const std::string_view name = material.substr(0, open);
+    if (param2 && name != "air" && name != "ignore") return {std::string(name), *param2};
+  }
+  return {std::string(material), 0};
+}
+
+LuantiNode luanti_node_of(std::string_view material) {
+  LuantiNode out = split_luanti_param2(material);
+  out.name = luanti_node_name(out.name);
   return out;
 }
 

@@ -20,12 +20,18 @@ std::string hash_text(const std::string& name) {
   return text;
 }
 
+/// Returns true if the name of a material is that of a block of Minecraft with these states.
+bool has_states_in_name(const BuildMaterial& material) {
+  const auto block = block_of_minecraft_material(material.row.name);
+  return block && minecraft_material_name({block->name, material.states}) == material.row.name;
+}
+
 }  // namespace
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  const bool has_states = block_of_minecraft_material(name).has_value();
-  if (!material.states.empty() && !has_states) name += '[' + material.states + ']';
+  if (!material.states.empty() && !has_states_in_name(material))
+    name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);
   return std::string(cut_utf8(name, kMaterialNameBytesMax - ending.size())) + ending;

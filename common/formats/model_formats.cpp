@@ -1,5 +1,6 @@
 #include "common/formats/model_formats.hpp"
 
+#include "common/formats/file_writing.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/materials/default_look.hpp"
 #include "common/model_writers/coarser_build.hpp"
@@ -18,32 +19,33 @@ WrittenBuild model_source(const FileBuild& build) {
   return source;
 }
 
-Result<void> write_glb_with(const FileBuild& build, const ModelWriting& writing,
-                            const FormatSink& sink) {
-  return write_glb_model(model_source(build), writing, sink);
-}
-Result<void> write_gltf_with(const FileBuild& build, const ModelWriting& writing,
-                             const FormatSink& sink) {
-  return write_gltf_model(model_source(build), writing, sink);
-}
-Result<void> write_obj_with(const FileBuild& build, const ModelWriting& writing,
-                            const FormatSink& sink) {
-  return write_obj_model(model_source(build), writing, sink);
-}
-Result<void> write_ply_with(const FileBuild& build, const ModelWriting& writing,
-                            const FormatSink& sink) {
-  return write_ply_model(model_source(build), writing, sink);
-}
 Result<void> write_mtl(const FileBuild& build, const FormatSink& sink) {
   return write_mtl_model(model_source(build), sink);
 }
 
 }  // namespace
 
-constexpr TriangleFormat kGlbFormat{write_glb_with, {}, nullptr, true};
-constexpr TriangleFormat kGltfFormat{write_gltf_with, {}, nullptr, true};
-constexpr TriangleFormat kObjFormat{write_obj_with, ".mtl", write_mtl};
-constexpr TriangleFormat kPlyFormat{write_ply_with};
+constexpr TriangleFormat kGlbFormat{{}, nullptr, true};
+constexpr TriangleFormat kGltfFormat{{}, nullptr, true};
+constexpr TriangleFormat kObjFormat{".mtl", write_mtl};
+constexpr TriangleFormat kPlyFormat{};
+
+Result<void> write_glb_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink) {
+  return write_glb_model(model_source(build), writing.model, sink);
+}
+Result<void> write_gltf_with(const FileBuild& build, const FileWriting& writing,
+                             const FormatSink& sink) {
+  return write_gltf_model(model_source(build), writing.model, sink);
+}
+Result<void> write_obj_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink) {
+  return write_obj_model(model_source(build), writing.model, sink);
+}
+Result<void> write_ply_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink) {
+  return write_ply_model(model_source(build), writing.model, sink);
+}
 
 Result<FileBuild> coarser_level(const FileBuild& build) {
   const auto made =

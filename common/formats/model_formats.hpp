@@ -19,6 +19,15 @@ Result<void> write_ply(const FileBuild& build, const FormatSink& sink);
 /// which has the name and the origin of the build. Fails as coarser_build() does. Requires
 /// can_be_coarser().
 Result<FileBuild> coarser_level(const FileBuild& build);
+/// Write a build with the choices of FileWriting::model. Otherwise they are as those above.
+Result<void> write_glb_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
+Result<void> write_gltf_with(const FileBuild& build, const FileWriting& writing,
+                             const FormatSink& sink);
+Result<void> write_obj_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
+Result<void> write_ply_with(const FileBuild& build, const FileWriting& writing,
+                            const FormatSink& sink);
 
 extern const TriangleFormat kGlbFormat, kGltfFormat, kObjFormat, kPlyFormat;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,7 +21,6 @@ namespace {
 
 constexpr std::size_t kMtsPart = 8192;  // nodes
 constexpr int kMtsLevel = 6;
-constexpr std::string_view kMtsParam = "param2=";
 
 std::uint16_t mts_u16(ByteReader& in) {
   const unsigned high = in.u8();
@@ -91,7 +89,7 @@ class MtsBlocks {
     blocks_.push_back(name);
     if (param2 != 0) {
       std::string& states = blocks_.back().states;
-      states += (states.empty() ? "" : ",") + std::string(kMtsParam) + std::to_string(param2);
+      states += (states.empty() ? "" : ",") + std::string(kLuantiParam) + std::to_string(param2);
     }
     known->second = static_cast<Material>(blocks_.size());
     return known->second;
@@ -104,12 +102,6 @@ class MtsBlocks {
   std::size_t bytes_ = 0;  // of the names of the blocks
 };
 
-/// A material as a node.
-struct MtsNode {
-  std::string name;
-  std::uint8_t param2 = 0;
-};
-
 /// Returns a name of a material as the name of a node. Names that a reader of nodes would change,
 /// or take for a written name, are written so that they can be read back.
 std::string mts_name(const std::string& name) {
@@ -119,21 +111,18 @@ std::string mts_name(const std::string& name) {
                                                                         : luanti_node_name(name);
 }
 
-MtsNode mts_node(const BuildMaterial& material) {
-  if (material.row.visibility == Visibility::empty) return {"air", 0};
+LuantiNode mts_node(const BuildMaterial& material) {
+  if (material.row.visibility == Visibility::empty) return {"air"};
   std::string_view states = material.states;
-  MtsNode out{mts_name(material.row.name), 0};
+  LuantiNode out{material.row.name};
+  // The materials of a world have the states in their names.
+  if (states.empty()) out = split_luanti_param2(material.row.name);
+  out.name = mts_name(out.name);
   // The param2 is the last of the states.
-  const std::size_t at = states.rfind(kMtsParam);
-  if (at != std::string_view::npos && (at == 0 || states[at - 1] == ',')) {
-    const std::string_view digits = states.substr(at + kMtsParam.size());
-    std::uint8_t number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error == std::errc{} && end == digits.data() + digits.size() && number != 0 &&
-        digits.front() != '0') {
-      out.param2 = number;
-      states = states.substr(0, at == 0 ? 0 : at - 1);
-    }
+  const std::size_t last = states.rfind(',') + 1;  // 0 if there is one state or none
+  if (const auto param2 = luanti_param2(states.substr(last))) {
+    out.param2 = *param2;
+    states = states.substr(0, last == 0 ? 0 : last - 1);
   }
   // A name that ends so would be read as a name with states.
   if (!states.empty() || (out.name.ends_with(']') && out.name.find('[') != std::string::npos))
@@ -266,7 +255,7 @@ Result<void> write_mts(const FileBuild& build, const FormatSink& sink) {
   };
   std::vector<Cell> cells = {{}};
   for (const BuildMaterial& material : build.materials) {
-    const MtsNode node = mts_node(material);
+    const LuantiNode node = mts_node(material);
     const auto [known, is_new] =
         ids.try_emplace(node.name, static_cast<std::uint16_t>(names.size()));
     if (is_new) names.push_back(node.name);

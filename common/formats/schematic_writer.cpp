@@ -18,7 +18,6 @@
 namespace runstone {
 namespace {
 
-constexpr std::int32_t kSchemVersion = 3;
 constexpr std::int32_t kSchemSideMax = 65'535;
 constexpr std::int32_t kLitematicVersion = 6, kLitematicSubVersion = 1;
 constexpr std::uint64_t kArrayCountMax = std::numeric_limits<std::int32_t>::max();
@@ -84,27 +83,36 @@ std::uint64_t varint_bytes_of(const FileBuild& file, const FileBlocks& blocks) {
   return bytes;
 }
 
-void write_schem_head(NbtWriter& out, const FileBuild& file) {
+void write_schem_head(NbtWriter& out, const FileBuild& file, SchemVersion version) {
   const BuildInfo& info = file.info;
   const VoxelPos sides = file.build->sides();
   const auto side = [](std::int32_t v) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(v));
   };
-  out.i32("Version", kSchemVersion);
+  out.i32("Version", static_cast<std::int32_t>(version));
   out.i32("DataVersion", kSchematicDataVersion);
   out.compound("Metadata");
   if (!info.name.empty()) out.string("Name", info.name);
   if (!info.author.empty()) out.string("Author", info.author);
   if (info.created_us > 0) out.i64("Date", milliseconds_of(info));
-  out.compound("WorldEdit");
-  out.int_array("Origin", std::array{info.origin.x, info.origin.y, info.origin.z});
-  out.end();
+  const std::array origin{info.origin.x, info.origin.y, info.origin.z};
+  // WorldEdit pastes at the place of the player plus this.
+  constexpr std::array<std::int32_t, 3> kFromPlayer{};
+  if (version == SchemVersion::three) {
+    out.compound("WorldEdit");
+    out.int_array("Origin", origin);
+    out.end();
+  } else {
+    out.i32("WEOffsetX", kFromPlayer[0]);
+    out.i32("WEOffsetY", kFromPlayer[1]);
+    out.i32("WEOffsetZ", kFromPlayer[2]);
+  }
   out.end();
   out.i16("Width", side(sides.x));
   out.i16("Height", side(sides.y));
   out.i16("Length", side(sides.z));
-  // WorldEdit pastes at the place of the player plus this.
-  out.int_array("Offset", std::array<std::int32_t, 3>{});
+  // In version 2, WorldEdit has the place in the world here.
+  out.int_array("Offset", version == SchemVersion::three ? kFromPlayer : origin);
 }
 
 /// Appends `count` cells, each as the same bytes. Returns false if the file cannot be written.
@@ -198,6 +206,11 @@ class NumberPacker {
 }  // namespace
 
 Result<void> write_schem(const FileBuild& file, const FormatSink& sink) {
+  return write_schem_with(file, {}, sink);
+}
+
+Result<void> write_schem_with(const FileBuild& file, const FileWriting& writing,
+                              const FormatSink& sink) {
   const FileBlocks blocks = blocks_of(file, false);
   if (const auto checked = check_size(file, blocks); !checked) return checked;
   const VoxelPos sides = file.build->sides();
@@ -212,15 +225,20 @@ Result<void> write_schem(const FileBuild& file, const FormatSink& sink) {
   }
   NbtFileWriter out(sink);
   NbtWriter& nbt = out.nbt();
-  nbt.compound("");
+  const bool is_nested = writing.schem == SchemVersion::three;
+  if (is_nested) nbt.compound("");
   nbt.compound("Schematic");
-  write_schem_head(nbt, file);
-  nbt.compound("Blocks");
+  write_schem_head(nbt, file, writing.schem);
+  if (is_nested)
+    nbt.compound("Blocks");
+  else
+    nbt.i32("PaletteMax", static_cast<std::int32_t>(blocks.blocks.size()));
   nbt.compound("Palette");
   for (std::size_t i = 0; i < blocks.blocks.size(); ++i)
     nbt.i32(schematic_text_of(blocks.blocks[i]), static_cast<std::int32_t>(i));
   nbt.end();
-  nbt.array("Data", NbtType::byte_array, static_cast<std::int32_t>(data_bytes));
+  nbt.array(is_nested ? "Data" : "BlockData", NbtType::byte_array,
+            static_cast<std::int32_t>(data_bytes));
   Bytes cell;
   const auto walked = walk_cells(*file.build, AxisOrder::xzy,
                                  [&](std::uint32_t count, std::uint16_t number) -> Result<void> {
@@ -231,7 +249,7 @@ Result<void> write_schem(const FileBuild& file, const FormatSink& sink) {
                                  });
   if (!walked) return walked;
   nbt.list("BlockEntities", NbtType::compound, 0);
-  for (int open = 0; open < 3; ++open) nbt.end();
+  for (int open = 0; open < (is_nested ? 3 : 1); ++open) nbt.end();
   if (!out.finish()) return cannot_write();
   return {};
 }

@@ -27,7 +27,7 @@ struct ConvertOptions {
   bool keep_all = true;
   bool lists = false;
   ModelReading read_model;
-  ModelWriting model;  // that is written
+  FileWriting writing;
 };
 
 Result<FileBuild, std::string> read(const ConvertOptions& options, std::ostream& out) {
@@ -62,12 +62,14 @@ Result<void, std::string> map_materials(const ConvertOptions& options, FileBuild
 Result<void, std::string> convert(const ConvertOptions& options, std::ostream& out) {
   if (!options.out.empty()) {
     if (auto why = file_refusal(options.out, true); !why.empty()) return failure(std::move(why));
+    if (auto why = choice_refusal(options.out, options.writing); !why.empty())
+      return failure(std::move(why));
   }
   auto build = read(options, out);
   if (!build) return failure(build.error());
   if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
   if (!options.out.empty()) {
-    const auto written = write_build_to_file(options.out, *build, options.model);
+    const auto written = write_build_to_file(options.out, *build, options.writing);
     if (!written) return failure(written.error());
   }
   const BuildSides& sides = build->info.sides;
@@ -116,20 +118,27 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
       "--only-cubes", [&options] { options.keep_all = false; },
       "leave out blocks that are no whole cubes, such as plants and torches");
   add_model_options(app, options.read_model);
-  app.add_flag("--close-t-junctions", options.model.closes_t_junctions,
+  app.add_flag("--close-t-junctions", options.writing.model.closes_t_junctions,
                "models: let each edge of a triangle end where an edge of its neighbour ends");
   app.add_flag_callback(
-      "--split", [&options] { options.model.is_welded = false; },
+      "--split", [&options] { options.writing.model.is_welded = false; },
       "models: give each rectangle vertices of its own");
-  app.add_flag("--quantise", options.model.is_quantised,
+  app.add_flag("--quantise", options.writing.model.is_quantised,
                "models: write a .glb with small vertices, for readers of KHR_mesh_quantization");
-  app.add_option("--metres-per-voxel", options.model.metres_per_voxel,
+  app.add_option("--metres-per-voxel", options.writing.model.metres_per_voxel,
                  "models: side of a voxel; default 1")
       ->check(CLI::Range(1e-6, 1e6));
-  app.add_option("--levels", options.model.levels,
+  app.add_option("--levels", options.writing.model.levels,
                  "models: levels of detail besides the full one, 0..8, each with voxels twice as "
                  "wide; in a .glb or .gltf by MSFT_lod, otherwise as files such as castle.lod1.obj")
       ->check(CLI::Range(0U, kModelLevelsMax));
+  app.add_option_function<std::string>(
+         "--schem",
+         [&options](const std::string& text) {
+           if (const auto version = parse_schem_version(text)) options.writing.schem = *version;
+         },
+         "version of an OUT.schem, 2 or 3; default 3, which WorldEdit reads since 7.3")
+      ->check(CLI::IsMember({"2", "3"}));
   app.footer("docs/formats.md lists the formats, and what each of them keeps.");
   try {
     app.parse(argc, argv);

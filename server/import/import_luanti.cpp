@@ -201,7 +201,9 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
     return failure(ImportError{found->map,
                                "has no blocks: start Luanti once with this world, so that there "
                                "is ground, or give the folder of another world"});
-  auto report = Importer(found->map, **map, *format, options, sink).run();
+  Format nodes = *format;
+  if (!options.keep_param2) nodes.material_of = material_of_luanti_node;
+  auto report = Importer(found->map, **map, nodes, options, sink).run();
   if (report) report->has_seed_map = found->has_seed_map;
   return report;
 }

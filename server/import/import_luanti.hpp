@@ -29,11 +29,14 @@ struct LuantiImportOptions {
   bool keep_all = false;
   /// Chooses materials, if it is not null. It must outlive the import.
   const MaterialMap* map = nullptr;
+  /// True: names have the param2 as material_of_luanti_world_node() says. False: a material for each
+  /// name of a node. The benchmarks measure worlds so, as their figures were measured.
+  bool keep_param2 = true;
 };
 
 struct LuantiImportSink {
-  /// The import calls it once, before the first chunk. Id 0 is air. The names that occur follow in
-  /// ascending order of bytes.
+  /// The import calls it once, before the first chunk. Id 0 is air. The nodes that occur
+  /// follow, ascending by the bytes of the name and then of the state.
   std::function<void(const MaterialTable&)> materials;
   /// The import calls it for each chunk that is not all empty, ascending by (z, y, x). The chunk is
   /// in its cheapest axis order. If it returns false, the import ends with an error.

@@ -47,6 +47,8 @@ std::string name_of_build(const ExportOptions& options, const std::string& place
 
 Result<int, std::string> export_box(const ExportOptions& options, std::ostream& out) {
   if (auto why = file_refusal(options.file, true); !why.empty()) return failure(std::move(why));
+  if (auto why = choice_refusal(options.file, options.writing); !why.empty())
+    return failure(std::move(why));
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
@@ -68,7 +70,7 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
   }();
   if (!build) return failure(options.common.world + ": " + build.error());
   build->info.name = name_of_build(options, options.file);
-  const auto bytes = write_build_to_file(options.file, *build);
+  const auto bytes = write_build_to_file(options.file, *build, options.writing);
   if (!bytes) return failure(bytes.error());
   const BuildSides& sides = build->info.sides;
   print_world(out, store);
@@ -156,6 +158,15 @@ void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
       },
       "X,Y,Z,X,Y,Z: export this box of the world as a build, in the format of the ending");
   command_line.text("--name", options.name, "name of the build; default: the name of the file");
+  command_line.parsed(
+      "--schem",
+      [&options](const std::string& text) -> std::string {
+        const auto version = parse_schem_version(text);
+        if (!version) return "2 or 3";
+        options.writing.schem = *version;
+        return "";
+      },
+      "with --box: version of a FILE.schem, 2 or 3; default 3, which WorldEdit reads since 7.3");
   command_line.number("--memory", options.memory_mib, 1, 65'536,
                       "MiB that the runs of a box may take; default 1024");
 }

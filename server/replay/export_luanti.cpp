@@ -66,10 +66,10 @@ Result<std::uint64_t, std::string> export_luanti(const WorldAt& world, WorldRead
                                                  LuantiWorldWriter& writer,
                                                  const ChunkProgress& progress) {
   RUNSTONE_ASSERT(luanti_box_refusal(box).empty() && chunk_edge % kLuantiBlockEdge == 0);
-  const auto node_of = [&](Material material) -> std::string {
-    if (material == kEmpty) return "air";
-    if (!materials.knows(material)) return luanti_node_name("material " + std::to_string(material));
-    return luanti_node_name(materials[material].name);
+  const auto node_of = [&](Material material) -> LuantiNode {
+    if (material == kEmpty) return {"air"};
+    if (!materials.knows(material)) return luanti_node_of("material " + std::to_string(material));
+    return luanti_node_of(materials[material].name);
   };
   const ChunkCoord first = chunk_of(box.min, chunk_edge);
   const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, chunk_edge);

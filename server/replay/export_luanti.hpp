@@ -16,7 +16,7 @@ namespace runstone {
 std::string luanti_box_refusal(const VoxelBox& box);
 
 /// Writes the voxels of a box of a world, at their places, as blocks of Luanti. Voxels outside the
-/// box are air, and blocks of air are left out. Nodes have the names of luanti_node_name(). Returns
+/// box are air, and blocks of air are left out. Nodes are those of luanti_node_of(). Returns
 /// the number of voxels that are not empty. Requires a box that luanti_box_refusal() accepts. Fails
 /// with one line if the world cannot be read, the block cannot be written, or `progress` returns
 /// false. Memory: a chunk. Cost: that of WorldAt::voxels() for each chunk, and O(voxels of the

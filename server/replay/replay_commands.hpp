@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
+#include "common/formats/file_writing.hpp"
 #include "server/history/named_moment.hpp"
 #include "server/replay/subcommand_options.hpp"
 #include "server/replay/timelapse.hpp"
@@ -53,10 +54,11 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
 struct ExportOptions {
   CommonOptions common;
   std::string file;
-  std::string luanti;               // folder of a Luanti world to make instead of a file
-  std::optional<NamedMoment> at;    // last edit of the file; default: the end of the log
-  std::optional<VoxelBox> box;      // of the world; nullopt: the log is exported
-  std::string name;                 // of the build; empty: the name of the file
+  std::string luanti;             // folder of a Luanti world to make instead of a file
+  std::optional<NamedMoment> at;  // last edit of the file; default: the end of the log
+  std::optional<VoxelBox> box;    // of the world; nullopt: the log is exported
+  std::string name;               // of the build; empty: the name of the file
+  FileWriting writing;
   std::uint64_t memory_mib = 1024;  // of the runs of a box, at most
 };
 

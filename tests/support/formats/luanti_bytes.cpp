@@ -91,7 +91,14 @@ Bytes luanti_old_row(const LuantiBlockFields& fields, std::uint8_t version, cons
   return out;
 }
 
-std::vector<std::string> luanti_nodes(ByteView row) {
+namespace {
+
+struct LuantiPlanes {
+  std::vector<std::string> names;
+  Bytes param2;
+};
+
+LuantiPlanes luanti_planes(ByteView row) {
   ZSTD_DStream* stream = ZSTD_createDStream();
   RUNSTONE_ASSERT(stream != nullptr && row[0] == 29);
   Bytes plain(4 << 20);
@@ -116,9 +123,18 @@ std::vector<std::string> luanti_nodes(ByteView row) {
     at += size;
   }
   at += 2;  // widths
-  std::vector<std::string> out;
-  for (int node = 0; node < 4096; ++node) out.push_back(names.at(u16()));
+  LuantiPlanes out;
+  for (int node = 0; node < 4096; ++node) out.names.push_back(names.at(u16()));
+  at += 4096;  // light
+  out.param2.assign(plain.begin() + static_cast<std::ptrdiff_t>(at),
+                    plain.begin() + static_cast<std::ptrdiff_t>(at + 4096));
   return out;
 }
+
+}  // namespace
+
+std::vector<std::string> luanti_nodes(ByteView row) { return luanti_planes(row).names; }
+
+Bytes luanti_params(ByteView row) { return luanti_planes(row).param2; }
 
 }  // namespace runstone::test

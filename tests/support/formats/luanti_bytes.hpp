@@ -36,5 +36,7 @@ Bytes luanti_old_row(const LuantiBlockFields& fields, std::uint8_t version,
 /// Reads a row node by node: the name of every node, in node order. It is an oracle for whole
 /// worlds. Requires a valid row.
 std::vector<std::string> luanti_nodes(ByteView row);
+/// Reads the param2 of every node of a row.
+Bytes luanti_params(ByteView row);
 
 }  // namespace runstone::test

@@ -27,8 +27,9 @@ void make_edited_world(const std::string& folder, std::uint16_t edge) {
   WorldMeta meta = sample_meta();
   meta.chunk_edge = edge;
   meta.generator = {"terrain", 1, 77, ""};
-  for (const char* name : {"default:dirt", "minecraft:oak_stairs[facing=east]", "é ~", "ignore",
-                           "runstone:red__bricks", "my flower"})
+  for (const char* name :
+       {"default:dirt", "minecraft:oak_stairs[facing=east]", "é ~", "ignore",
+        "runstone:red__bricks", "my flower", "stairs:stair_wood[param2=20]", "é ~[param2=1]"})
     REQUIRE(
         meta.materials.add({name, {1, 2, 3, 255}, Visibility::opaque, std::nullopt}).has_value());
   auto store = create_world(folder, meta);
@@ -36,13 +37,13 @@ void make_edited_world(const std::string& folder, std::uint16_t edge) {
   REQUIRE((*store)->raise_epoch().has_value());
   SplitMix64 rng(7);
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
-  std::vector<EditRecord> records = sample_records(rng, 1, 1, 60);
+  std::vector<EditRecord> records = sample_records(rng, 1, 1, 90);
   const auto count = static_cast<std::uint32_t>(meta.materials.size());
   for (EditRecord& record : records) {
     // A paste has materials of its own. Half of the others have one of the names above.
     if (!std::holds_alternative<Paste>(record.edit.shape))
       record.edit.material =
-          static_cast<Material>(rng.below(2) == 0 ? count - 1 - rng.below(6) : rng.below(count));
+          static_cast<Material>(rng.below(2) == 0 ? count - 1 - rng.below(8) : rng.below(count));
   }
   REQUIRE((*store)->append(players, records).has_value());
 }
@@ -118,6 +119,8 @@ TEST_CASE("a box of a world is exported as a Luanti world and imported with the 
         std::string::npos);
   CHECK(names.contains("runstone:red__bricks"));  // or the test shows little
   CHECK(names.contains("\xc3\xa9 ~"));
+  CHECK(names.contains("\xc3\xa9 ~[param2=1]"));
+  CHECK(names.contains("stairs:stair_wood[param2=20]"));
 }
 
 TEST_CASE("an export as a Luanti world refuses what Luanti cannot hold, and makes no folder",

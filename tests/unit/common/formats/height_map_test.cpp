@@ -153,6 +153,11 @@ TEST_CASE("bad height maps are refused", "[formats]") {
   CHECK(map_error(huge).code == ErrorCode::limit_exceeded);
   huge[16] = 0xff;
   CHECK(map_error(huge).code == ErrorCode::limit_exceeded);
+  // A text that states 84 MB, of which the file has none. (The fuzz corpus has it, too.)
+  Bytes long_text = good;
+  const Bytes chunk = {5, 5, 5, 7, 't', 'E', 'X', 't'};
+  long_text.insert(long_text.begin() + 33, chunk.begin(), chunk.end());
+  CHECK(map_error(long_text).code == ErrorCode::bad_value);
   CHECK(lengths_without_error(kHeightMap, good).empty());
   for (std::size_t i = 0; i < good.size(); ++i) {
     Bytes flipped = good;

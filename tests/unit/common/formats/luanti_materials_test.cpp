@@ -2,6 +2,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/formats/luanti_block.hpp"
+#include "common/formats/material_match.hpp"
 
 using namespace runstone;
 
@@ -75,6 +76,32 @@ TEST_CASE("unknown names get a shade of the colour of their kind", "[formats]") 
   const auto colour = material_of("mod:xyzzy", false).colour;
   const std::array<int, 4> pinned{colour[0], colour[1], colour[2], colour[3]};
   CHECK(pinned == std::array<int, 4>{140, 201, 113, 255});
+}
+
+TEST_CASE("the param2 of a node of a world stays in its name if it is a direction or a colour",
+          "[formats]") {
+  const auto name_of = [](std::string_view name, const char* states, bool keep_all = false) {
+    return material_of_luanti_world_node({std::string(name), states}, keep_all).name;
+  };
+  CHECK(name_of("stairs:stair_cobble", "param2=3") == "stairs:stair_cobble[param2=3]");
+  CHECK(name_of("stairs:stair_cobble", "") == "stairs:stair_cobble");
+  CHECK(name_of("default:chest", "param2=23") == "default:chest[param2=23]");
+  CHECK(name_of("default:acacia_tree", "param2=255") == "default:acacia_tree[param2=255]");
+  CHECK(name_of("runstone:red__bricks", "param2=3") == "red bricks[param2=3]");
+  CHECK(name_of("stairs:stair_leaves", "param2=1") == "stairs:stair_leaves[param2=1]");
+  CHECK(name_of("default:torch", "param2=1", true) == "default:torch[param2=1]");
+  CHECK(name_of("default:torch", "param2=1") == "default:torch");  // is empty
+  for (const char* name :
+       {"default:water_flowing", "default:lava_flowing", "default:leaves", "default:pine_needles",
+        "default:blueberry_bush_leaves_with_berries", "default:sand_with_kelp"})
+    CHECK(name_of(name, "param2=7") == name);
+  CHECK(name_of("air", "param2=7") == "air");
+  // The names of a build that is placed are the same.
+  CHECK(world_name_of({{"default:chest"}, "param2=3"}) == "default:chest[param2=3]");
+  const MaterialInfo one =
+      material_of_luanti_world_node({"stairs:stair_cobble", "param2=3"}, false);
+  CHECK(one.colour == material_of("stairs:stair_cobble", false).colour);
+  CHECK(one.look == material_of("stairs:stair_cobble", false).look);
 }
 
 TEST_CASE("every name becomes a row that a table accepts", "[formats]") {

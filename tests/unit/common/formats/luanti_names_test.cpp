@@ -54,13 +54,27 @@ TEST_CASE("random names lead back from Luanti, and to a material of the same nam
         default_material_table()[*default_material_table().find("stone")].colour);
 }
 
+TEST_CASE("a name that ends with a param2 is a node with it", "[formats]") {
+  CHECK(luanti_node_of("default:chest[param2=3]") == LuantiNode{"default:chest", 3});
+  CHECK(luanti_node_of("red bricks[param2=255]") == LuantiNode{"runstone:red__bricks", 255});
+  CHECK(luanti_node_of("a[b][param2=1]") == LuantiNode{luanti_node_name("a[b]"), 1});
+  for (const char* name :
+       {"default:chest", "a[param2=0]", "a[param2=03]", "a[param2=256]", "a[param2=]", "a[param2=3",
+        "[param2=3]", "a[param2=3] ", "a[b=c,param2=3]", "air[param2=3]", "ignore[param2=3]",
+        "a[param2=-1]", "minecraft:oak_stairs[facing=east]"})
+    CHECK(luanti_node_of(name) == LuantiNode{luanti_node_name(name)});
+}
+
 TEST_CASE("a written block of Luanti is read with the same nodes", "[formats]") {
   SplitMix64 rng(4);
   for (int round = 0; round < 30; ++round) {
     const RunChunk voxels =
         random_chunk(rng, Extent::cube(16), random_order(rng), round == 0 ? 1 : 40);
     const auto node_of = [](Material material) {
-      return material == kEmpty ? std::string("air") : "m:n" + std::to_string(material);
+      // Several materials are one node with another param2.
+      return material == kEmpty ? LuantiNode{"air"}
+                                : LuantiNode{"m:n" + std::to_string(material / 3),
+                                             static_cast<std::uint8_t>(material % 3 * 100)};
     };
     const Bytes block = encode_luanti_block(voxels, node_of);
     CHECK(block[0] == 28);
@@ -71,15 +85,16 @@ TEST_CASE("a written block of Luanti is read with the same nodes", "[formats]") 
     for (std::size_t i = 0; i < expected.runs.size(); ++i) {
       CHECK(piece->voxels.runs.end(i) == expected.runs.end(i));
       const ForeignBlock& node = piece->blocks[piece->voxels.runs.material(i) - 1U];
-      CHECK(node.name == node_of(expected.runs.material(i)));
-      CHECK(node.states.empty());
+      const LuantiNode written = node_of(expected.runs.material(i));
+      CHECK(node.name == written.name);
+      CHECK(node.states == (written.param2 == 0 ? "" : "param2=" + std::to_string(written.param2)));
     }
   }
 }
 
 TEST_CASE("the bytes of a written block are those that Luanti's format says", "[formats]") {
   const Bytes block = encode_luanti_block(uniform_chunk(Extent::cube(16), kEmpty),
-                                          [](Material) { return std::string("air"); });
+                                          [](Material) { return LuantiNode{"air"}; });
   CHECK(Bytes(block.begin(), block.begin() + 6) == Bytes{28, 0, 0xff, 0xff, 2, 2});
   const Bytes ending = {0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0,  0, 1,
                         0, 0, 0, 3,    'a',  'i',  'r',  10, 0, 0};

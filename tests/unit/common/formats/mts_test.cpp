@@ -140,6 +140,25 @@ TEST_CASE("a build written as .mts is read with equal voxels, names and states",
   }
 }
 
+TEST_CASE("the param2 in the name of a world's material becomes the param2 of a node",
+          "[formats]") {
+  const auto build = file_build({3, 1, 1},
+                                {file_material("default:chest", "", {1, 2, 3, 255}),
+                                 file_material("default:chest[param2=3]", "", {1, 2, 3, 255}),
+                                 file_material("default:stone[1]", "", {1, 2, 3, 255})},
+                                [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
+  const auto bytes = written(write_mts, build);
+  REQUIRE(bytes.has_value());
+  const auto read = read_foreign_build({"", "", read_mts, material_of_look, nullptr}, *bytes, {});
+  REQUIRE(read.has_value());
+  REQUIRE(read->materials.size() == 3);
+  CHECK(read->materials[0].row.name == "default:chest");
+  CHECK(read->materials[0].states.empty());
+  CHECK(read->materials[1].row.name == "default:chest");
+  CHECK(read->materials[1].states == "param2=3");
+  CHECK(read->materials[2].row.name == "default:stone[1]");
+}
+
 TEST_CASE("builds that are longer than a schematic are not written", "[formats]") {
   const auto build = file_build({65'536, 1, 1}, {file_material("a", "", {1, 2, 3, 255})},
                                 [](VoxelPos) { return std::uint16_t{1}; });

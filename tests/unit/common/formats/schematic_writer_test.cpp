@@ -24,12 +24,17 @@ namespace {
 using SchemWriter = Result<void> (*)(const FileBuild&, const FormatSink&);
 using SchemReader = Result<ForeignInfo> (*)(ByteView, const PieceSink&);
 
+Result<void> write_schem_2(const FileBuild& file, const FormatSink& sink) {
+  return write_schem_with(file, {.schem = SchemVersion::two}, sink);
+}
+
 struct SchemFormat {
   const char* name;
   SchemWriter write;
   SchemReader read;
 };
 constexpr SchemFormat kSchemFormats[] = {{"schem", write_schem, read_schematic},
+                                         {"schem of version 2", write_schem_2, read_schematic},
                                          {"litematic", write_litematic, read_litematic}};
 
 /// A cell: -1 is untouched, and other values are places in the list of materials.
@@ -289,6 +294,26 @@ TEST_CASE("the first bytes of a written schematic are those of the format", "[fo
   CHECK(plain == wanted.get());
 }
 
+TEST_CASE("a schematic of version 2 has its entries in the outermost compound",
+          "[formats][golden]") {
+  SplitMix64 random(3);
+  FileBuild file =
+      schem_file_build(random, {2, 1, 1}, {0, -1}, {schem_material("minecraft:stone")}, 64);
+  file.info.origin = {-7, 64, 9};
+  Bytes plain;
+  REQUIRE(inflate_all(schem_bytes(write_schem_2, file), 0, DeflateForm::gzip, 10'000, &plain)
+              .has_value());
+  NbtBytes wanted;
+  wanted.open("Schematic").i32("Version", 2).i32("DataVersion", 2975);
+  wanted.open("Metadata").text("Name", "castle \xed\xa0\xbc\xed\xbf\xb0");
+  wanted.i32("WEOffsetX", 0).i32("WEOffsetY", 0).i32("WEOffsetZ", 0).close();
+  wanted.i16("Width", 2).i16("Height", 1).i16("Length", 1).ints("Offset", {-7, 64, 9});
+  wanted.i32("PaletteMax", 2).open("Palette").i32("minecraft:stone", 0);
+  wanted.i32("minecraft:structure_void", 1).close().bytes("BlockData", {0, 1});
+  wanted.list("BlockEntities", 10, 0).close();
+  CHECK(plain == wanted.get());
+}
+
 TEST_CASE("a build that a schematic cannot hold is refused before anything is written",
           "[formats]") {
   const auto uniform = [](VoxelPos sides) {
@@ -313,6 +338,7 @@ TEST_CASE("a build that a schematic cannot hold is refused before anything is wr
     return written.error().code;
   };
   CHECK(error_of(write_schem, uniform({65'536, 1, 1})) == ErrorCode::limit_exceeded);
+  CHECK(error_of(write_schem_2, uniform({65'536, 1, 1})) == ErrorCode::limit_exceeded);
   CHECK(error_of(write_schem, uniform({2048, 1024, 1024})) == ErrorCode::limit_exceeded);
   CHECK(error_of(write_litematic, uniform({2048, 1024, 1024})) == ErrorCode::limit_exceeded);
   const auto failed = write_schem(uniform({8, 8, 8}), [](ByteView) { return false; });

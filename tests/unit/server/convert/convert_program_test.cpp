@@ -68,7 +68,8 @@ TEST_CASE("a build keeps its cells through the files of other programs", "[conve
   const FileBuild build = make_rsb(first);
   const std::string ending = GENERATE(as<std::string>(), ".schem", ".litematic", ".rsb");
   const std::string there = folder / ("there" + ending), back = folder / "back.rsb";
-  const Outcome done = convert({first, there});
+  const bool is_older = ending == ".schem" && GENERATE(false, true);
+  const Outcome done = is_older ? convert({first, there, "--schem", "2"}) : convert({first, there});
   INFO(done.err);
   REQUIRE(done.code == 0);
   CHECK(done.out.find("40 x 9 x 21 voxels, " + std::to_string(solid_cells(build)) +
@@ -145,6 +146,24 @@ TEST_CASE("runstone-convert refuses choices of models that are out of range", "[
   CHECK(refusal({"--voxels", "5", "--voxels-per-metre", "2"}).find("excludes") !=
         std::string::npos);
   CHECK(refusal({"--hollow", "--surface", "none"}).find("neither its inside") != std::string::npos);
+}
+
+TEST_CASE("runstone-convert writes the chosen version of a .schem, and of no other file",
+          "[convert]") {
+  const TempFolder folder;
+  const std::string file = folder / "house.rsb", out = folder / "house.schem";
+  make_rsb(file);
+  REQUIRE(convert({file, out}).code == 0);
+  const Bytes today = bytes_of(out);
+  REQUIRE(convert({file, out, "--schem", "3"}).code == 0);
+  CHECK(bytes_of(out) == today);
+  REQUIRE(convert({file, out, "--schem", "2"}).code == 0);
+  CHECK(bytes_of(out) != today);
+  CHECK(convert({file, out, "--schem", "1"}).code != 0);
+  const Outcome refused = convert({file, folder / "house.vox", "--schem", "2"});
+  CHECK(refused.code == 1);
+  CHECK(refused.err.find("house.vox: is no .schem") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "house.vox"));
 }
 
 TEST_CASE("runstone-convert maps materials, and names the rows that fit none", "[convert]") {

@@ -21,7 +21,7 @@ namespace {
 
 const std::string kWorld = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
 
-/// Calls f(block, name of every node) for each row of a map, without any code of the importer.
+/// Calls f(block, name of every node, with its param2 if that is not 0) for each row of a map, without any code of the importer.
 void each_block(const std::string& folder,
                 const std::function<void(ChunkCoord, const std::vector<std::string>&)>& f) {
   sqlite3* db = nullptr;
@@ -38,7 +38,14 @@ void each_block(const std::string& folder,
                         static_cast<std::int32_t>(shifted / 4096 % 4096 - 2048),
                         static_cast<std::int32_t>(shifted / 4096 / 4096 - 2048)};
     const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(rows, 1));
-    f(at, luanti_nodes({data, static_cast<std::size_t>(sqlite3_column_bytes(rows, 1))}));
+    const ByteView row{data, static_cast<std::size_t>(sqlite3_column_bytes(rows, 1))};
+    std::vector<std::string> nodes = luanti_nodes(row);
+    const Bytes params = luanti_params(row);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (params[i] != 0 && nodes[i] != "air")
+        nodes[i] += "[param2=" + std::to_string(params[i]) + "]";
+    }
+    f(at, nodes);
   }
   sqlite3_finalize(rows);
   sqlite3_close(db);
@@ -141,6 +148,28 @@ TEST_CASE("every voxel of an imported world is its node", "[server][import]") {
   CHECK(solid == 691702);
   CHECK(world.report.voxels[0] ==
         world.chunks.size() * static_cast<std::uint64_t>(edge * edge * edge) - solid);
+}
+
+TEST_CASE("the param2 of nodes makes few materials", "[server][import]") {
+  const Imported world = import(kWorld, 32);
+  const MaterialTable& table = world.report.materials;
+  std::map<std::string, std::uint64_t> found;
+  for (std::size_t id = 0; id < table.size(); ++id) {
+    const std::string& name = table[static_cast<Material>(id)].name;
+    if (name.find('[') != std::string::npos) found[name] = world.report.voxels[id];
+  }
+  CHECK(found == std::map<std::string, std::uint64_t>{{"default:acacia_tree[param2=1]", 26},
+                                                      {"default:acacia_tree[param2=2]", 26},
+                                                      {"default:acacia_tree[param2=3]", 25},
+                                                      {"default:chest[param2=2]", 2},
+                                                      {"stairs:stair_cobble[param2=3]", 20}});
+  const LuantiImportSink sink{
+      [](const MaterialTable&) {}, [](const ChunkKey&, RunChunk&&) { return true; }, {}};
+  const auto without = import_luanti(kWorld, {.edge = 32, .keep_param2 = false}, sink);
+  REQUIRE(without.has_value());
+  CHECK(without->materials.size() + 5 - 1 == table.size());
+  CHECK(without->runs <= world.report.runs);
+  CHECK(world.report.runs < without->runs + 200);
 }
 
 TEST_CASE("plants are imported on request", "[server][import]") {
