@@ -121,6 +121,10 @@ class LayerReader {
 
   template <class Runs>
   void read_fast(const Runs& runs, std::uint32_t at) {
+    // Each line has a voxel in the layer. With more runs than this in a line, a search for the
+    // voxel costs less than reading the runs.
+    constexpr std::size_t kRunsPerLine = 8;
+    if (runs.size() > kRunsPerLine * e_.m * e_.s) return search_fast(runs, at);
     // One bit per line. A line is marked if it is the first whose voxel `at` lies behind the end of
     // a run with another index.
     using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
@@ -132,17 +136,67 @@ class LayerReader {
     const ToIndex to_index = to_index_;
     const std::size_t last = runs.size() - 1;
     PaletteIndex index = to_index(runs.material(0));
-    for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = index >> k & 1;
+    // The word of the present lines is in registers: a change in memory would wait for the one
+    // before it.
+    std::array<Row64, kPlanes> word;
+    std::uint32_t word_at = 0;
+    for (unsigned k = 0; k < kPlanes; ++k) word[k] = index >> k & 1;
     for (std::size_t i = 0; i < last; ++i) {
       const PaletteIndex next = to_index(runs.material(i + 1));
       if (next == index) continue;  // most neighbouring runs have the same index
       const std::uint32_t line = line_of(runs.end(i) + ahead);
       const PaletteIndex change = index ^ next;
       index = next;
-      for (unsigned k = 0; k < kPlanes; ++k)
-        marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
+      if (line / 64 != word_at) {
+        for (unsigned k = 0; k < kPlanes; ++k) marks[k][word_at] = word[k];
+        word.fill(0);
+        word_at = line / 64;
+      }
+      for (unsigned k = 0; k < kPlanes; ++k) word[k] ^= Row64{change >> k & 1} << (line % 64);
     }
-    for (unsigned k = 0; k < kPlanes; ++k) cut_rows(marks[k].data(), planes_[k]);
+    for (unsigned k = 0; k < kPlanes; ++k) {
+      marks[k][word_at] = word[k];
+      cut_rows(marks[k].data(), planes_[k]);
+    }
+  }
+  /// Does what read_fast() does by a search for the run of each voxel of the layer. In one layer of
+  /// the slowest axis, each search begins at the run of the voxel before. The searches in different
+  /// layers do not wait for each other.
+  template <class Runs>
+  void search_fast(const Runs& runs, std::uint32_t at) {
+    std::array<std::uint32_t, kSideMax> run;  // by layer: that of the voxel of the present line
+    RunCursor cursor(runs);
+    for (std::uint32_t s = 0; s < e_.s; ++s) {
+      cursor.jump(s * e_.layer() + at);
+      run[s] = static_cast<std::uint32_t>(cursor.run());
+    }
+    const ToIndex to_index = to_index_;
+    for (std::uint32_t m = 0; m < e_.m; ++m) {
+      for (std::uint32_t s = 0; s < e_.s; ++s) {
+        run[s] = run_ahead(runs, run[s], s * e_.layer() + m * e_.f + at);
+        const PaletteIndex index = to_index(runs.material(run[s]));
+        for (unsigned k = 0; k < kPlanes; ++k) planes_[k][s] |= Row{index >> k & 1} << m;
+      }
+    }
+  }
+  /// Returns the run that covers `voxel`. Requires that it is none of the runs before `run`, and at
+  /// most e_.f runs behind it. It searches without an unpredictable branch.
+  template <class Runs>
+  std::uint32_t run_ahead(const Runs& runs, std::uint32_t run, std::uint32_t voxel) const {
+    const auto ends = [&](std::uint32_t i) -> std::uint32_t { return runs.end(i) <= voxel; };
+    // A search of up to 32 runs reads runs up to run + 31.
+    constexpr std::uint32_t kStep = 32;
+    while (run + kStep < runs.size()) {
+      if (ends(run + kStep - 1) != 0) {
+        run += kStep;
+        continue;
+      }
+      run += 8 * (ends(run + 7) + ends(run + 15) + ends(run + 23));
+      run += 2 * (ends(run + 1) + ends(run + 3) + ends(run + 5));
+      return run + ends(run);
+    }
+    while (ends(run) != 0) ++run;
+    return run;
   }
   /// Turns marks of change, one bit per line, into rows of e_.m bits.
   void cut_rows(Row64* marks, Rows& rows) const {
@@ -221,7 +275,8 @@ void read_layer_rows(const RunChunk& chunk, LayerPlace place, RowRange wanted,
   if (!chunk.is_uniform()) {
     // A voxel of a row that is looked up costs several times as much as a run that is read.
     constexpr std::size_t kRunsPerVoxel = 8;
-    if (kRunsPerVoxel * wanted.count() * side_of(chunk, place.bit_axis) > chunk.runs.size()) {
+    if (wanted.count() == side_of(chunk, place.row_axis()) ||
+        kRunsPerVoxel * wanted.count() * side_of(chunk, place.bit_axis) > chunk.runs.size()) {
       LayerReader<kPlanes, Row, ToIndex>(chunk, place, planes, to_index);
     } else {
       chunk.runs.visit(

@@ -74,34 +74,40 @@ class LayerMesher {
 
   /// Returns true if sweeps over the touched parts cost less than a sweep over the whole chunk.
   /// Both costs are estimated from counts. The unit is the cost of a run or a quad in a whole mesh:
-  /// about 6 ns on the machine where the constants were fitted. On a slower machine all terms grow
-  /// alike. Kept borders make both cheaper, and count as borders that are read.
+  /// about 4 ns on the machine where the constants were fitted, to medians of edits by brush. On a
+  /// slower machine all terms grow alike. Kept borders make both cheaper, and count as borders that
+  /// are read.
   bool pays(const TouchedLayers& touched) const {
-    constexpr std::uint64_t kOfPart = 150;  // to begin a sweep
-    constexpr std::uint64_t kOfLayer = 3;   // the seams of a layer
+    constexpr std::uint64_t kOfSweep = 100;  // to begin and end a sweep
+    constexpr std::uint64_t kOfLayer = 3;    // the seams of a layer
     // So many runs of a neighbour are read in one unit.
     constexpr std::uint64_t kBorderRuns = 8;
     if (chunk_.is_uniform() && visibility_[chunk_.runs.material(0)] == Visibility::empty)
       return false;
-    std::uint64_t around = 0, around_read = 0, layers = 0;
+    std::uint64_t around = 0, around_read = 0, layers = 0, layers_of_chunk = 0;
     const auto sides = chunk_.extent.sides();
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       const auto direction = static_cast<Direction>(d);
       const LayerSet& faces = touched.faces[d];
       layers += faces.count();
+      layers_of_chunk += sides[d / 2];
       if (neighbours_[d] == nullptr) continue;
       const std::size_t runs = neighbours_[d]->runs.size();
       around += runs;
       if (faces[is_positive(direction) ? sides[d / 2] - 1u : 0u]) around_read += runs;
     }
-    const std::uint64_t runs = chunk_.runs.size(), work = runs + mesh_.quad_count();
+    const std::uint64_t runs = chunk_.runs.size(), quads = mesh_.quad_count();
     std::uint64_t cost = around_read / kBorderRuns;
     for_each_part(touched.slow, [&](std::uint32_t begin, std::uint32_t end) {
       const std::uint64_t read =
           runs_of(begin == 0 ? 0 : begin - 1, std::min(end + 1, e_.s)).count();
-      cost += work * read / runs + kOfPart + kOfLayer * layers;
+      // A part has all quads of its layers on the slow sides, a third of the sides. On the others it
+      // has those of the touched layers.
+      const std::uint64_t quads_read = quads * read / runs;
+      cost += kOfSweep + kOfLayer * layers + read + quads_read / 3 +
+              quads_read * 2 * layers / (3 * layers_of_chunk);
     });
-    return cost < work + around / kBorderRuns;
+    return cost < kOfSweep + runs + quads + around / kBorderRuns;
   }
 
   /// Replaces the quads of the touched layers in the mesh. Requires the mesh of the chunk before
