@@ -67,8 +67,10 @@ void FolderImport::take_batch(FolderBatch batch, const std::string& error) {
 
 void FolderImport::save_next() {
   if (saved_of_batch_ == batch_.builds.size()) {
+    const bool has_written = !batch_.builds.empty();
     batch_.builds.clear();
     if (batch_.next == files_) return end("");
+    if (!has_written) return read_batch();
     next_batch_us_ = call_.now.steady_us + kFolderPauseUs;
     stage_ = Stage::between;
     return;
