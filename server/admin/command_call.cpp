@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "server/admin/command_table.hpp"
+#include "server/admin/folder_import.hpp"
 #include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_reason.hpp"
 #include "server/names/name_reference.hpp"
@@ -96,6 +97,8 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
 }
 
 void CommandServices::tick(const Clocks& now) {
+  if (folder_import) folder_import->tick(now);
+  if (folder_import && folder_import->is_over()) folder_import = nullptr;
   for (Waiting& each : std::exchange(waiting, {})) {
     const Order& order = world.order();
     if (order.durable() >= each.needed &&

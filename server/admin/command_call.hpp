@@ -22,6 +22,8 @@
 
 namespace runstone {
 
+class FolderImport;
+
 /// Who gives a command.
 struct CommandCaller {
   AuthorId author = 0;  // 0: console or control
@@ -64,9 +66,10 @@ struct CommandServices {
     std::uint64_t needed_name_change = 0;
   };
   std::vector<Waiting> waiting = {};
+  std::shared_ptr<FolderImport> folder_import = nullptr;  // the last one
 
-  /// Lets the commands go on that wait for the disk. Call it on every tick, and when the log became
-  /// durable or failed.
+  /// Lets the commands go on that wait for the disk, and the import of a folder. Call it on every
+  /// tick, and when the log became durable or failed.
   void tick(const Clocks& now);
 };
 

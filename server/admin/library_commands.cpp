@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "common/build_files/build_files.hpp"
 #include "common/formats/mapped_build.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/folder_import.hpp"
 #include "server/admin/place_words.hpp"
 #include "server/mapping/material_map_file.hpp"
 
@@ -108,7 +112,8 @@ void show_build(const CommandCall& call, const Sequence& number) {
 }
 
 Result<std::string, std::string> parse_build_file(WordReader& reader) {
-  return reader.result(reader.take_only("one file comes after it, in quotes if it has blanks"));
+  return reader.result(
+      reader.take_only("one file or folder comes after it, in quotes if it has blanks"));
 }
 
 /// Orders the addition of a build whose file is in the store.
@@ -138,12 +143,38 @@ void save_read_build(const CommandCall& call, const BuildFile& file) {
   }
 }
 
-void import_build(const CommandCall& call, const std::string& file) {
-  const std::uint64_t bytes_max = call.world().order().library().limits().file_bytes_max;
+void begin_folder_import(const CommandCall& call,
+                         const std::shared_ptr<const BuildFolder>& folder) {
+  std::shared_ptr<FolderImport>& running = call.services.folder_import;
+  if (running && !running->is_over()) {
+    return call.refuse("builds import: " + running->path() +
+                       " is being imported: wait, or end that with `builds cancel`");
+  }
+  running = std::make_shared<FolderImport>(call, folder);
+}
+
+void import_build(const CommandCall& call, const std::string& place) {
+  using Found = std::variant<BuildFile, std::shared_ptr<const BuildFolder>>;
+  const LibraryLimits& limits = call.world().order().library().limits();
   call.on_worker(
       "builds import: ",
-      [file, bytes_max](WorldReader&) { return read_build_file(file, bytes_max); },
-      [call](const BuildFile& read) { save_read_build(call, read); });
+      [place, bytes_max = limits.file_bytes_max, files_max = limits.builds_max,
+       should_continue = call.services.rollback.should_continue()](
+          WorldReader& reader) -> Result<Found, std::string> {
+        std::error_code ignored;
+        if (std::filesystem::is_directory(place, ignored)) {
+          auto folder = list_build_folder(reader, place, files_max, should_continue);
+          if (!folder) return failure(folder.error());
+          return Found(std::make_shared<const BuildFolder>(*std::move(folder)));
+        }
+        auto file = read_build_file(place, bytes_max);
+        if (!file) return failure(file.error());
+        return Found(*std::move(file));
+      },
+      [call](const Found& found) {
+        if (const auto* file = std::get_if<BuildFile>(&found)) return save_read_build(call, *file);
+        begin_folder_import(call, *std::get_if<1>(&found));
+      });
 }
 
 struct ExportedBuild {
@@ -275,7 +306,15 @@ void import_file(const CommandCall& call, const PlacedFile& wanted) {
       });
 }
 
+/// Ends the import of a folder if the console gives the command, and what is being placed.
 void cancel_placing(const CommandCall& call) {
+  const auto& import = call.services.folder_import;
+  if (call.caller.author == 0 && import && !import->is_over()) {
+    import->cancel();
+    const std::string text = "ended: the import of " + import->path() + "; what it added stays";
+    if (call.services.placing.is_idle()) return call.answer(text);
+    call.report(text);
+  }
   call.services.placing.cancel(call.caller.author, call.now, call.reply);
 }
 
@@ -302,7 +341,8 @@ constexpr std::array<CommandRow, 9> kLibraryRows = {{
      "builds show NUMBER        all that the library knows of a build",
      parsed_by<parse_build_number, show_build>()},
     {"builds import FILE", kLocal,
-     "builds import FILE        add a build from an .rsb file to the library",
+     "builds import FILE        add a build from an .rsb file to the library, or all builds of a\n"
+     "                          folder of such files",
      parsed_by<parse_build_file, import_build>()},
     {"builds export NUMBER FILE", kLocal,
      "builds export NUMBER FILE write a build of the library to an .rsb file",
@@ -322,7 +362,8 @@ constexpr std::array<CommandRow, 9> kLibraryRows = {{
      "                          [colours FILE], a PNG with the colours of a height map",
      parsed_by<parse_import_file, import_file>()},
     {"builds cancel", needs(Right::administer),
-     "builds cancel             end what you place, and take it back; the console ends all",
+     "builds cancel             end what you place, and take it back; the console ends all, and the\n"
+     "                          import of a folder, of which it keeps what was added",
      alone<cancel_placing>()},
     {"builds remove", needs(Right::build, Right::administer),
      "builds remove NUMBER      remove a build from the library: your own one, or any if you may\n"

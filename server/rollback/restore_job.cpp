@@ -80,7 +80,7 @@ bool RestoreJob::is_careful(const ChunkKey& key) const {
 
 std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
   if (!world.order().accepts_edits()) return std::nullopt;
-  if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks)
+  if (state_ != State::applying || is_working_ || planned_.size() >= limits_.slice_chunks)
     return std::nullopt;
   RestoreWork work;
   work.selection = order_.selection;

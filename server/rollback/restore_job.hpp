@@ -81,7 +81,8 @@ class RestoreJob {
 
   explicit RestoreJob(RestoreOrder order, RestoreLimits limits = {});
 
-  /// Returns the next work for a worker, or nullopt while some is under way or none can begin yet.
+  /// Returns the next work for a worker, or nullopt while some is under way, while a whole slice is
+  /// planned, or if none can begin yet.
   /// Call computed() or work_failed() with its outcome.
   std::optional<RestoreWork> next_work(const WorldServer& world);
   void computed(std::vector<RestoredChunk> chunks);

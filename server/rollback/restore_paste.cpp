@@ -41,6 +41,11 @@ class Paster {
     const auto end = std::partition_point(begin, differences.end(),
                                           [&](const Difference& d) { return d.first < last; });
     const std::span<const Difference> mine(begin, end);
+    // A filled chunk is one difference, so its lines need not be looked at.
+    if (mine.size() == 1 && mine[0].first <= first && mine[0].last >= last) {
+      out_.push_back({FillBox{box(part)}, mask_, mine[0].restored});
+      return;
+    }
     const Part tight = bounds(mine, part);
     if (tight.first.f >= tight.last.f) return;
     if (const auto material = only_material(mine, tight)) {

@@ -34,6 +34,14 @@ std::string progress_text(const RestoreJob::Progress& p, TimeUs elapsed_us) {
   return text;
 }
 
+/// Returns true if nobody but the author is connected. Then nobody else's edits need the time between
+/// two slices.
+bool is_alone(const WorldServer& world, AuthorId author) {
+  if (world.session_count() == 0) return true;
+  const auto online = world.people().online();
+  return world.session_count() == 1 && !online.empty() && online.front().author == author;
+}
+
 std::string name_of(Cause cause) { return cause == Cause::undo ? "undo" : "redo"; }
 
 }  // namespace
@@ -425,12 +433,20 @@ RollbackService::Job& RollbackService::start_job(RestoreOrder order, std::string
 void RollbackService::step(Job& job, const Clocks& now) {
   // tick() is also called whenever a worker has answered, so the interval bounds the rate of
   // writes.
-  if (!job.wrote_us || now.steady_us - *job.wrote_us >= kSliceIntervalUs) {
+  const bool is_due = !job.wrote_us || now.steady_us - *job.wrote_us >= kSliceIntervalUs ||
+                      is_alone(world_, job.job.order().author);
+  // A worker plans the next chunks while a slice is written.
+  begin_work(job);
+  if (is_due) {
     const std::uint64_t written = job.job.progress().edits;
     job.job.step(world_, now);
     if (job.job.progress().edits != written) job.wrote_us = now.steady_us;
   }
   if (job.preview) job.preview->rollback = job.job.progress().first;
+  begin_work(job);
+}
+
+void RollbackService::begin_work(Job& job) {
   auto work = job.job.next_work(world_);
   if (!work) return;
   const auto self =

@@ -129,6 +129,8 @@ class RollbackService {
   void when_durable(const Clocks& now, const CommandReply& reply, std::function<void()> begin);
   Job& start_job(RestoreOrder order, std::string name, CommandReply reply);
   void step(Job& job, const Clocks& now);
+  /// Has a worker plan the next chunks of the job, unless one does so already.
+  void begin_work(Job& job);
   /// Answers the callers of previews that take long with the progress.
   void report_previews(const Clocks& now);
   /// Answers once that an undo or redo waits, and now and then how far it is.

@@ -145,7 +145,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "builds list \"colour\": name, author, tag, before or count");
   CHECK(mistake("builds list count 51") == "count \"51\": a number from 1 to 50");
   CHECK(mistake("builds import mill mill.rsb") ==
-        "builds import: one file comes after it, in quotes if it has blanks");
+        "builds import: one file or folder comes after it, in quotes if it has blanks");
   CHECK(mistake("builds export 7 mill mill.rsb") ==
         "builds export: the number of a build and a file come after it");
   CHECK(mistake("builds place 7") ==

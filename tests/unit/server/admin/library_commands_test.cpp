@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/admin/build_file.hpp"
+#include "server/admin/build_folder.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/store/build_table.hpp"
 #include "tests/support/formats/rsb_bytes.hpp"
@@ -17,8 +18,9 @@ namespace {
 
 /// A world whose log writer writes files of builds when the test says.
 struct LibraryBench : CommandBench {
-  LibraryBench()
-      : services{bench.server,
+  explicit LibraryBench(const WorldConfig& world_config = config())
+      : CommandBench(world_config),
+        services{bench.server,
                  service,
                  *this,
                  placing,
@@ -28,16 +30,23 @@ struct LibraryBench : CommandBench {
     author = join(kBuilder);
   }
   CommandAnswer give(const std::string& line, const CommandCaller& caller = {}) {
+    begin(line, caller);
+    for (int i = 0; i < 1000 && (answers.empty() || !answers.back().is_done); ++i) step();
+    return answer();
+  }
+  /// Gives a command, and forgets the answers to those before.
+  void begin(const std::string& line, const CommandCaller& caller = {}) {
     answers.clear();
     give_command({services, caller, bench.now(), reply()}, line);
-    for (int i = 0; i < 10 && (answers.empty() || !answers.back().is_done); ++i) {
-      while (work()) {
-      }
-      save_file();
-      write_log();
-      services.tick(bench.now());
+  }
+  /// Does the work that is due, writes one file and the log, and ticks.
+  void step() {
+    while (work()) {
     }
-    return answer();
+    save_file();
+    write_log();
+    bench.time_us += 100'000;
+    services.tick(bench.now());
   }
   /// The player of the session kBuilder.
   CommandCaller builder() const {
@@ -169,6 +178,114 @@ TEST_CASE("an import that cannot be written adds nothing", "[admin][library]") {
   bench.save_error = "disk is full";
   CHECK(bench.give("builds import " + file).text == "builds import: disk is full");
   CHECK(bench.give("builds list").text == "no build fits\nthe library has 0 builds");
+}
+
+TEST_CASE("a folder is imported in the order of its names", "[admin][library]") {
+  LibraryBench bench;
+  const std::string files = bench.folder / "files";
+  std::filesystem::create_directories(files + "/more.rsb");
+  constexpr std::size_t kFiles = kFolderBatchFiles + 20;  // two batches
+  for (std::size_t i = 0; i < kFiles; ++i) {
+    const std::string number = std::to_string(1000 + i);
+    bench.make_file("files/" + number + (i == 3 ? ".RSB" : ".rsb"), bench.info("Build " + number));
+  }
+  std::ofstream(files + "/readme.txt") << "x";
+  std::ofstream(files + "/1001.rsb") << "no build";
+
+  CommandAnswer answer = bench.give("builds import " + files);
+  CHECK_FALSE(answer.is_ok);
+  CHECK(answer.text.starts_with("added: 275 builds of 277 files in " + files +
+                                "; left out: 1 that are no .rsb files\nrefused: 2 files\n  " +
+                                files + "/1001.rsb: "));
+  CHECK(answer.text.find("\n  " + files + "/more.rsb: ") != std::string::npos);
+  CHECK(bench.give("builds list count 1").text.starts_with("275 \"Build 1275\""));
+  CHECK(bench.give("builds list before 4 count 1").text.starts_with("3 \"Build 1003\""));
+  CHECK(bench.store->check().has_value());
+
+  std::filesystem::remove(files + "/1001.rsb");
+  std::filesystem::remove(files + "/more.rsb");
+  bench.make_file("files/0.rsb", bench.info("First"));
+  answer = bench.give("builds import " + files);
+  CHECK(answer.is_ok);
+  CHECK(answer.text == "added: 1 build of 276 files in " + files +
+                           "; left out: 275 that the library has already; left out: 1 that are no "
+                           ".rsb files");
+}
+
+TEST_CASE("the answer about a folder shows the first files that were refused", "[admin][library]") {
+  LibraryBench bench;
+  const std::string files = bench.folder / "files";
+  std::filesystem::create_directories(files);
+  CHECK(bench.give("builds import " + files).text ==
+        "builds import: " + files + ": has no .rsb file");
+  for (int i = 0; i < 9; ++i) std::ofstream(files + "/" + std::to_string(i) + ".rsb") << "no build";
+  std::ofstream(files + "/\x1b.rsb") << "no build";
+  const CommandAnswer answer = bench.give("builds import " + files);
+  CHECK_FALSE(answer.is_ok);
+  CHECK(
+      answer.text.find("refused: 10 files\n  file 1 of the folder: its name is no printable UTF-8 "
+                       "text\n  " +
+                       files + "/0.rsb: ") != std::string::npos);
+  CHECK(answer.text.find("/3.rsb: ") != std::string::npos);
+  CHECK(answer.text.find("/4.rsb: ") == std::string::npos);
+  CHECK(answer.text.ends_with("\n  and 5 more"));
+}
+
+TEST_CASE("the import of a folder waits for the log writer, and ends where the library is full",
+          "[admin][library]") {
+  WorldConfig world_config = config();
+  world_config.library.builds_max = 3;
+  LibraryBench bench(world_config);
+  const std::string files = bench.folder / "files";
+  std::filesystem::create_directories(files);
+  for (int i = 0; i < 3; ++i)
+    bench.make_file("files/" + std::to_string(i) + ".rsb",
+                    bench.info("Build " + std::to_string(i)));
+  REQUIRE(bench.give("builds import " + bench.make_file("mill.rsb", bench.info("Mill"))).is_ok);
+
+  bench.is_writer_busy = true;
+  bench.begin("builds import " + files);
+  for (int i = 0; i < 30; ++i) bench.step();
+  CHECK(bench.answers.back().text == "builds import: 0 of 3 files");
+  bench.begin("builds import " + files);
+  for (int i = 0; i < 3; ++i) bench.step();
+  CHECK(bench.answer().text ==
+        "builds import: " + files + " is being imported: wait, or end that with `builds cancel`");
+  bench.is_writer_busy = false;
+  for (int i = 0; i < 10; ++i) bench.step();
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text ==
+        "added: 2 builds of 3 files in " + files +
+            "\nended before the end of the folder: the library of this world has 3 builds, and no "
+            "more are allowed (builds_max): remove some");
+
+  bench.make_file("files/3.rsb", bench.info("Build 3"));
+  CHECK(bench.give("builds import " + files).text ==
+        "builds import: " + files +
+            ": has more than 3 .rsb files, and the library of this world takes no more builds "
+            "(builds_max): divide it");
+}
+
+TEST_CASE("the console cancels the import of a folder, and what was added stays",
+          "[admin][library]") {
+  LibraryBench bench;
+  const std::string files = bench.folder / "files";
+  std::filesystem::create_directories(files);
+  for (int i = 0; i < 5; ++i)
+    bench.make_file("files/" + std::to_string(i) + ".rsb",
+                    bench.info("Build " + std::to_string(i)));
+  bench.begin("builds import " + files);
+  for (int i = 0; i < 4; ++i) bench.step();
+  CHECK_FALSE(bench.give("builds cancel", bench.builder()).is_ok);
+  CHECK(bench.give("builds cancel").text ==
+        "ended: the import of " + files + "; what it added stays");
+  for (int i = 0; i < 10; ++i) bench.step();
+  CHECK(bench.answer().text.ends_with("\nended before the end of the folder: cancelled"));
+  const std::size_t added = bench.bench.environment.records.size();
+  CHECK(added > 0);
+  CHECK(added < 5);
+  CHECK(bench.give("builds import " + files).is_ok);
+  CHECK(bench.give("builds list").text.ends_with("\nthe library has 5 builds"));
 }
 
 TEST_CASE("players list builds, and remove only their own ones", "[admin][library]") {

@@ -101,6 +101,35 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   }
 }
 
+TEST_CASE("a job plans further chunks while it has less than a slice", "[rollback]") {
+  JobBench b;
+  RestoreOrder order = JobBench::order(0);
+  Selection selection;
+  for (std::int32_t x = 0; x < 8; ++x) selection.chunks[{0, {x, 0, 0}}] = {1};
+  order.selection = std::make_shared<const Selection>(std::move(selection));
+  RestoreLimits limits;
+  limits.slice_chunks = 3;
+  limits.work_chunks = 2;
+  RestoreJob job(order, limits);
+  const auto plan = [&] {
+    const auto work = job.next_work(b.bench.server);
+    if (!work) return false;
+    CHECK(work->items.size() == 2);
+    CHECK_FALSE(job.next_work(b.bench.server).has_value());
+    std::vector<RestoredChunk> chunks;
+    for (const auto& item : work->items) chunks.push_back(b.planned(item.key, 1));
+    job.computed(std::move(chunks));
+    return true;
+  };
+  CHECK(plan());
+  CHECK(plan());
+  CHECK_FALSE(plan());
+  job.step(b.bench.server, b.bench.now());
+  CHECK(job.progress().chunks_done == 3);
+  CHECK(plan());
+  CHECK_FALSE(plan());
+}
+
 TEST_CASE("fills of a job that continue each other are one edit", "[rollback]") {
   JobBench bench;
   const auto filled = [&](const ChunkKey& key, Material material) {

@@ -436,6 +436,36 @@ TEST_CASE("an action of several edits is undone and redone as one", "[rollback][
   CHECK_FALSE(run(Cause::undo));
 }
 
+TEST_CASE("the slices of an undo leave time for others, if there are others", "[rollback][undo]") {
+  RollbackBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  const bool is_alone = GENERATE(true, false);
+  CAPTURE(is_alone);
+  if (!is_alone) bench.join(kGriefer);
+  constexpr std::int32_t kChunks = 10, kSide = kChunks * kEdge;
+  std::vector<EditDescriptor> fills;
+  for (std::int32_t z = 0; z < kSide; z += 2 * kEdge)
+    fills.push_back({FillBox{{{0, 0, z}, {kSide, kSide, z + 2 * kEdge}}}, {}, 1});
+  bench.edit_as_one(kBuilder, fills);
+  bench.write_log();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  while (bench.work()) bench.service.tick(bench.bench.now());  // no time passes
+  std::size_t undone = 0;
+  for (const EditRecord& record : bench.bench.environment.records) {
+    if (record.cause == Cause::undo)
+      undone += volume_of(std::get<FillBox>(record.edit.shape).box) / (kEdge * kEdge * kEdge);
+  }
+  if (is_alone) {
+    CHECK(undone == kChunks * kChunks * kChunks);
+  } else {
+    CHECK(undone > 0);
+    CHECK(undone < kChunks * kChunks * kChunks);
+  }
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.digests().empty());
+}
+
 TEST_CASE("an undo skips an edit that others have built over entirely", "[rollback][undo]") {
   RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);
