@@ -46,6 +46,21 @@ Result<LibraryQuery, std::string> parse_builds_list(WordReader& reader) {
   return reader.result(query);
 }
 
+/// Returns the command that lists the builds of the query with lower numbers. Words of a command have
+/// no quotes in them.
+std::string next_page_command(const LibraryQuery& query, Sequence before) {
+  std::string line = "builds list";
+  for (const auto& [word, text] :
+       {std::pair{" name ", &query.name}, {" author ", &query.author}, {" tag ", &query.tag}}) {
+    if (text->empty()) continue;
+    const bool has_blank = text->find(' ') != std::string::npos;
+    line += word + (has_blank ? '"' + *text + '"' : *text);
+  }
+  line += " before " + std::to_string(before);
+  if (query.count_max != kBuildsListed) line += " count " + std::to_string(query.count_max);
+  return line;
+}
+
 /// Returns the lines of the builds that were found, one more of which was looked for than is listed.
 std::string found_builds_text(const LibraryQuery& query, const std::vector<StoredBuild>& found,
                               const LibraryTotal& total) {
@@ -55,7 +70,7 @@ std::string found_builds_text(const LibraryQuery& query, const std::vector<Store
     text += build_line(found[i].number(), found[i].build()) + "\n";
   if (listed == 0) text += "no build fits\n";
   if (found.size() > listed)
-    text += "more: builds list before " + std::to_string(found[listed - 1].number()) + "\n";
+    text += "more: " + next_page_command(query, found[listed - 1].number()) + "\n";
   return text + "the library has " + std::to_string(total.builds) +
          (total.builds == 1 ? " build" : " builds");
 }

@@ -124,7 +124,12 @@ TEST_CASE("a build is imported, listed, shown, exported and removed", "[admin][l
   answer = bench.give("builds list name OLD tag mill author ZO");
   CHECK(answer.text.starts_with("1 \"Old Mill\""));
   answer = bench.give("builds list count 1");
-  CHECK(answer.text.find("\nmore: builds list before 2\n") != std::string::npos);
+  CHECK(answer.text.find("\nmore: builds list before 2 count 1\n") != std::string::npos);
+  answer = bench.give("builds list count 1 tag wood name \"D M\"");
+  CHECK(answer.text.find("\nmore:") == std::string::npos);
+  answer = bench.give("builds list count 1 tag wood author \"zo\xc3\xab\"");
+  CHECK(answer.text.find("\nmore: builds list author zo\xc3\xab tag wood before 2 count 1\n") !=
+        std::string::npos);
   CHECK(bench.give("builds list before 2").text.starts_with("1 \"Old Mill\""));
   CHECK(bench.give("builds list tag stone").text == "no build fits\nthe library has 2 builds");
 
