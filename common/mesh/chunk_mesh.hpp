@@ -1,5 +1,6 @@
-// ChunkMesh: the quads of one chunk in two draw passes, kept per direction and layer. After an edit
-// only the layers in which a voxel changed (DirtyLayers) and the layers beside them are replaced.
+// ChunkMesh: the quads of one chunk in two draw passes. Those of cubes are kept per direction and
+// layer: after an edit only the layers in which a voxel changed (DirtyLayers) and the layers beside
+// them are replaced. Those of shapes are made anew.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -31,14 +32,30 @@ struct QuadLayers {
   }
 };
 
+/// The quads of the voxels that are no cubes, whose face is not 0, in two draw passes. They ascend
+/// by direction; their order is deterministic. A quad of width or height above 1 stands for equal
+/// faces in a row, which join: the first begins at u0 and v0, and the last ends at u1 and v1.
+struct ShapeQuads {
+  std::vector<Quad> opaque, transparent;
+  void clear() {
+    opaque.clear();
+    transparent.clear();
+  }
+};
+
 struct ChunkMesh {
   QuadLayers opaque;
   QuadLayers transparent;
-  std::size_t quad_count() const { return opaque.quads.size() + transparent.quads.size(); }
+  ShapeQuads shapes;
+  std::size_t quad_count() const {
+    return opaque.quads.size() + transparent.quads.size() + shapes.opaque.size() +
+           shapes.transparent.size();
+  }
   bool empty() const { return quad_count() == 0; }
   void clear() {
     opaque.clear();
     transparent.clear();
+    shapes.clear();
   }
 };
 
