@@ -1,0 +1,57 @@
+// FaceLists: the quads of shapes before they are joined across lines and layers, by draw pass,
+// direction and the axes along which they join. Internal to the mesher of shapes.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/core/coords.hpp"
+#include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/quad.hpp"
+#include "common/runs/axis_order.hpp"
+
+namespace runstone::shape_mesh {
+
+/// Returns the lowest bit of a quad's coordinate along an axis.
+constexpr unsigned place_shift(Axis axis) { return 7 * static_cast<unsigned>(axis); }
+/// Returns the lowest bit of a quad's size along an axis. Requires another axis than that of the
+/// direction.
+constexpr unsigned size_shift(Direction d, Axis axis) {
+  return axis == u_axis_of(axis_of(d)) ? 21 : 28;
+}
+
+/// The two axes across the strips of a direction, along which strips are joined. Strips lie along
+/// the fastest axis. Faces across the fastest axis are single voxels, and are joined along both.
+struct JoinAxes {
+  Axis first{}, second{};
+  bool has_second = false;
+};
+constexpr JoinAxes join_axes(AxisOrder order, Direction d) {
+  const auto axes = axes_of(order);
+  if (axis_of(d) == axes[0]) return {axes[1], axes[2], true};
+  return {axis_of(d) == axes[1] ? axes[2] : axes[1], Axis{}, false};
+}
+
+/// The axes of JoinAxes along which a face joins.
+enum Joins : std::uint8_t { kJoinsNone = 0, kJoinsFirst = 1, kJoinsSecond = 2, kJoinsBoth = 3 };
+
+class FaceLists {
+ public:
+  using OfDirection = std::array<std::vector<Quad>, 4>;       // by Joins
+  using OfPass = std::array<OfDirection, kDirectionCount>;    // by direction
+  OfPass& pass(bool is_transparent) { return passes_[is_transparent ? 1 : 0]; }
+  std::size_t size() const;
+  void clear();
+  /// Joins the quads and replaces `out` by them, ascending by direction. Requires lists in the order
+  /// of the walk: each list ascends by layer, line and place. Cost: O(quads).
+  void finish(AxisOrder order, ShapeQuads& out);
+
+ private:
+  void join(std::vector<Quad>& quads, Direction d, Axis along);
+
+  std::array<OfPass, 2> passes_;
+  std::vector<std::uint32_t> table_;  // of join(): number of a quad + 1, by a hash of its place
+};
+
+}  // namespace runstone::shape_mesh

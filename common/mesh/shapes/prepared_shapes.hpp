@@ -1,0 +1,78 @@
+// PreparedShapes: the faces of the shapes of one chunk in the form that the walk over its runs
+// reads, and which of them a neighbour hides. Internal to the mesher of shapes.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/core/coords.hpp"
+#include "common/mesh/shapes/face_lists.hpp"
+#include "common/runs/axis_order.hpp"
+#include "common/shapes/shape_table.hpp"
+
+namespace runstone::shape_mesh {
+
+struct PreparedFace {
+  std::uint64_t bits = 0;  // direction and face of a quad
+  Joins joins = kJoinsNone;
+  bool joins_fast = false;     // along the fastest axis
+  std::uint16_t number = 0;    // in ShapeFaces::faces()
+};
+
+/// The faces of one direction: those inside the voxel, then those on its border, which neighbours
+/// can hide.
+struct FacesOfDirection {
+  std::uint32_t first = 0, border = 0, end = 0;
+};
+
+struct PreparedShape {
+  std::uint16_t number = 0;  // of the shape, from 1
+  std::array<FacesOfDirection, kDirectionCount> faces;
+};
+
+/// The faces on a border are read in groups of this many, one bit each.
+inline constexpr std::uint32_t kGroupFaces = 64;
+
+class PreparedShapes {
+ public:
+  /// Begins a chunk. Requires that `shapes` outlives the use. Cost: O(shapes).
+  void begin(const ShapeTable& shapes, AxisOrder order);
+
+  /// Returns the shape of this number, valid until the next call. Cost: O(1); at the first call of
+  /// a chunk O(faces).
+  const PreparedShape& prepare(std::uint16_t number);
+  std::span<const PreparedFace> faces(std::uint32_t first, std::uint32_t end) const {
+    return std::span(faces_).subspan(first, end - first);
+  }
+  /// Returns the faces of a group that the side of a neighbour's shape fills: bit i stands for face
+  /// `first` + i. Requires faces on the border in direction d of the shape `own`, at most
+  /// kGroupFaces. Cost: O(1); O(256 x faces) for a pair that was not among the last ones.
+  std::uint64_t covered(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
+                        std::uint32_t end) {
+    // Faces have numbers below 2^10 within a shape, and `first` ascends with them, so that the first
+    // face of a group names the group.
+    const std::uint64_t key = std::uint64_t{first} << 32 | std::uint64_t{own} << 16 | other;
+    Memo& memo = memos_[(key * 0x9e37'79b9'7f4a'7c15) >> (64 - kMemoBits)];
+    if (memo.key != key) memo = {key, cover(own, other, d, first, end)};
+    return memo.covered;
+  }
+
+ private:
+  static constexpr unsigned kMemoBits = 8;
+  struct Memo {
+    std::uint64_t key = 0;  // 0: none, because numbers of shapes are above 0
+    std::uint64_t covered = 0;
+  };
+  std::uint64_t cover(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
+                      std::uint32_t end) const;
+
+  const ShapeTable* shapes_ = nullptr;
+  AxisOrder order_{};
+  std::vector<std::uint16_t> index_;  // by number of the shape: in prepared_, plus 1
+  std::vector<PreparedShape> prepared_;
+  std::vector<PreparedFace> faces_;
+  std::array<Memo, std::size_t{1} << kMemoBits> memos_;
+};
+
+}  // namespace runstone::shape_mesh

@@ -1,0 +1,273 @@
+#include "common/mesh/shapes/shape_mesher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <utility>
+
+#include "common/mesh/rdm/side_axes.hpp"
+#include "common/mesh/shapes/beyond_border.hpp"
+#include "common/mesh/shapes/face_lists.hpp"
+#include "common/mesh/shapes/prepared_shapes.hpp"
+#include "common/runs/run_cursor.hpp"
+
+namespace runstone {
+
+struct ShapeScratch::State {
+  shape_mesh::PreparedShapes prepared;
+  shape_mesh::BeyondBorder beyond;
+  shape_mesh::FaceLists lists;
+};
+
+ShapeScratch::ShapeScratch() : state_(std::make_unique<State>()) {}
+ShapeScratch::~ShapeScratch() = default;
+ShapeScratch::ShapeScratch(ShapeScratch&&) noexcept = default;
+ShapeScratch& ShapeScratch::operator=(ShapeScratch&&) noexcept = default;
+
+namespace shape_mesh {
+namespace {
+
+/// The part of a run of a shape that lies in one line.
+struct Piece {
+  std::size_t run;
+  std::uint32_t first, length;  // voxels of the flattened chunk
+  std::uint32_t f, m, s;        // of the first one
+  std::uint64_t place;          // its coordinates in the bits of a quad
+  Material material;
+};
+
+/// The walk over the runs of one chunk. A cursor for each neighbouring line, before and behind along
+/// the middle and the slowest axis, moves on in step.
+template <class Runs>
+class ShapeWalk {
+ public:
+  ShapeWalk(Runs runs, const RunChunk& chunk, const VisibilityTable& visibility,
+            const ShapeTable& shapes, ShapeScratch::State& state)
+      : runs_(runs),
+        e_(ordered(chunk.extent, chunk.order)),
+        visibility_(visibility),
+        shapes_(shapes),
+        state_(state),
+        cursors_{RunCursor<Runs>(runs), RunCursor<Runs>(runs), RunCursor<Runs>(runs),
+                 RunCursor<Runs>(runs)} {
+    const auto axes = axes_of(chunk.order);
+    for (std::size_t rank = 0; rank < 3; ++rank) {
+      shift_[rank] = place_shift(axes[rank]);
+      for (const bool positive : {false, true})
+        directions_[rank * 2 + (positive ? 1 : 0)] = rdm::direction_of(axes[rank], positive);
+    }
+    for (std::size_t i = 2; i < directions_.size(); ++i)
+      size_shift_[i] = size_shift(directions_[i], axes[0]);
+  }
+
+  /// Adds the faces of all shapes from run `first` on.
+  void walk(std::size_t first) {
+    std::uint32_t begin = first == 0 ? 0 : runs_.end(first - 1);
+    for (std::size_t run = first; run < runs_.size(); ++run) {
+      const std::uint32_t end = runs_.end(run);
+      const Material material = runs_.material(run);
+      const std::uint16_t number = shapes_.number(material);
+      if (number != 0 && visibility_[material] != Visibility::empty) {
+        lists_ = &state_.lists.pass(visibility_[material] == Visibility::transparent);
+        if (!add_run(run, begin, end, material, state_.prepared.prepare(number))) return;
+      }
+      begin = end;
+    }
+  }
+
+ private:
+  /// The pieces between two looks at kShapeQuadsMax.
+  static constexpr unsigned kBudgetPieces = 16;
+
+  /// Adds the faces of one run. Returns false if the chunk has kShapeQuadsMax.
+  bool add_run(std::size_t run, std::uint32_t begin, std::uint32_t end, Material material,
+               const PreparedShape& shape) {
+    std::uint32_t line = begin / e_.f;
+    std::uint32_t f = begin - line * e_.f, s = line / e_.m, m = line - s * e_.m;
+    for (std::uint32_t at = begin; at < end;) {
+      if (++pieces_ % kBudgetPieces == 0 && state_.lists.size() >= kShapeQuadsMax) return false;
+      const std::uint32_t length = std::min(end - at, e_.f - f);
+      const std::uint64_t place = std::uint64_t{f} << shift_[0] | std::uint64_t{m} << shift_[1] |
+                                  std::uint64_t{s} << shift_[2];
+      add_piece({run, at, length, f, m, s, place, material}, shape);
+      at += length;
+      f = 0;
+      if (++m == e_.m) {
+        m = 0;
+        ++s;
+      }
+    }
+    return true;
+  }
+
+  void add_piece(const Piece& piece, const PreparedShape& shape) {
+    for (std::size_t side = 0; side < directions_.size(); ++side) {
+      const Direction d = directions_[side];
+      const FacesOfDirection& of = shape.faces[static_cast<std::size_t>(d)];
+      for (const PreparedFace& face : state_.prepared.faces(of.first, of.border))
+        add(piece, side, face, 0, piece.length);
+      for (std::uint32_t first = of.border; first < of.end; first += kGroupFaces) {
+        const std::uint32_t end = std::min(of.end, first + kGroupFaces);
+        if (side < 2) {
+          add_along(piece, shape, side, first, end);
+        } else {
+          add_beside(piece, shape, side, first, end);
+        }
+      }
+    }
+  }
+
+  /// Returns a bit for each face of a group that a voxel of this material before it hides.
+  std::uint64_t hidden(const Piece& piece, const PreparedShape& shape, Material other, Direction d,
+                       std::uint32_t first, std::uint32_t end) {
+    if (other == kEmpty) return 0;
+    const std::uint16_t number = shapes_.number(other);
+    const bool is_opaque = visibility_[other] == Visibility::opaque;
+    if (number == 0) return is_opaque ? ~std::uint64_t{0} : 0;
+    if (!is_opaque && other != piece.material) return 0;
+    return state_.prepared.covered(shape.number, number, d, first, end);
+  }
+
+  /// Adds the faces on the border along the fastest axis: the next voxel is one of the piece, but at
+  /// its end.
+  void add_along(const Piece& piece, const PreparedShape& shape, std::size_t side,
+                 std::uint32_t first, std::uint32_t end) {
+    const Direction d = directions_[side];
+    const bool is_last = side == 1;
+    Material other = kEmpty;
+    if (is_last) {
+      const std::uint32_t last = piece.f + piece.length;
+      other = last == e_.f ? state_.beyond.at(d, piece.place + place_step(piece.length - 1))
+                           : runs_.material(piece.run + 1);
+    } else {
+      other = piece.f == 0 ? state_.beyond.at(d, piece.place) : runs_.material(piece.run - 1);
+    }
+    const std::uint64_t all = bits_of(end - first);
+    const std::uint64_t at_end = all & ~hidden(piece, shape, other, d, first, end);
+    const std::uint64_t within =
+        piece.length == 1 ? 0 : all & ~hidden(piece, shape, piece.material, d, first, end);
+    const std::uint32_t end_at = is_last ? piece.length - 1 : 0;
+    for_each_bit(at_end | within, [&](unsigned i) {
+      const bool shows_end = (at_end >> i & 1) != 0, shows_within = (within >> i & 1) != 0;
+      const std::uint32_t from = shows_within ? (!shows_end && end_at == 0 ? 1 : 0) : end_at;
+      const std::uint32_t to =
+          shows_within ? piece.length - (!shows_end && end_at != 0 ? 1 : 0) : end_at + 1;
+      add(piece, side, state_.prepared.faces(first + i, first + i + 1)[0], from, to);
+    });
+  }
+
+  /// Adds the faces on the border along the middle and the slowest axis.
+  void add_beside(const Piece& piece, const PreparedShape& shape, std::size_t side,
+                  std::uint32_t first, std::uint32_t end) {
+    Strips strips{*this, piece, side, first, bits_of(end - first), 0, {}};
+    const Direction d = directions_[side];
+    const bool is_slow = side >= 4, is_positive = (side & 1) != 0;
+    const std::uint32_t at = is_slow ? piece.s : piece.m;
+    if (at == (is_positive ? (is_slow ? e_.s : e_.m) - 1 : 0)) {
+      Material before = kEmpty;
+      for (std::uint32_t i = 0; i < piece.length; ++i) {
+        const Material other = state_.beyond.at(d, piece.place + place_step(i));
+        if (i == 0 || other != before) strips.turn(i, hidden(piece, shape, other, d, first, end));
+        before = other;
+      }
+    } else {
+      const std::uint32_t step = is_slow ? e_.layer() : e_.f;
+      const std::uint32_t begin = is_positive ? piece.first + step : piece.first - step;
+      cursors_[side - 2].seek(begin);
+      // A copy, because the next group of faces begins here again.
+      RunCursor<Runs> cursor = cursors_[side - 2];
+      for (std::uint32_t i = 0;;) {
+        strips.turn(i, hidden(piece, shape, cursor.material(), d, first, end));
+        i = cursor.end() - begin;
+        if (i >= piece.length) break;
+        cursor.next();
+      }
+    }
+    strips.turn(piece.length, ~std::uint64_t{0});
+  }
+
+  /// The faces of one group that are visible at present, and where each became so.
+  struct Strips {
+    ShapeWalk& walk;
+    const Piece& piece;
+    std::size_t side;
+    std::uint32_t first;
+    std::uint64_t all;
+    std::uint64_t open;
+    std::array<std::uint8_t, kGroupFaces> since;
+
+    /// From place i of the piece on, the faces of these bits are hidden and the others are not.
+    void turn(std::uint32_t i, std::uint64_t hidden) {
+      const std::uint64_t now = all & ~hidden;
+      for_each_bit(open & ~now, [&](unsigned face) {
+        walk.add(piece, side, walk.state_.prepared.faces(first + face, first + face + 1)[0],
+                 since[face], i);
+      });
+      for_each_bit(now & ~open,
+                   [&](unsigned face) { since[face] = static_cast<std::uint8_t>(i); });
+      open = now;
+    }
+  };
+
+  /// Adds a face of the voxels [from, to) of a piece.
+  void add(const Piece& piece, std::size_t side, const PreparedFace& face, std::uint32_t from,
+           std::uint32_t to) {
+    std::vector<Quad>& list = (*lists_)[static_cast<std::size_t>(directions_[side])][face.joins];
+    std::uint64_t bits =
+        face.bits | std::uint64_t{piece.material} << 38 | (piece.place + place_step(from));
+    if (face.joins_fast) {
+      list.push_back({bits | std::uint64_t{to - from - 1} << size_shift_[side]});
+      return;
+    }
+    for (std::uint32_t i = from; i < to; ++i, bits += place_step(1)) list.push_back({bits});
+  }
+
+  std::uint64_t place_step(std::uint32_t voxels) const { return std::uint64_t{voxels} << shift_[0]; }
+  static std::uint64_t bits_of(std::uint32_t count) { return ~std::uint64_t{0} >> (64 - count); }
+  template <class F>
+  static void for_each_bit(std::uint64_t bits, F&& f) {
+    for (; bits != 0; bits &= bits - 1) f(static_cast<unsigned>(std::countr_zero(bits)));
+  }
+
+  Runs runs_;
+  const OrderedExtent e_;
+  const VisibilityTable& visibility_;
+  const ShapeTable& shapes_;
+  ShapeScratch::State& state_;
+  FaceLists::OfPass* lists_ = nullptr;
+  unsigned pieces_ = 0;
+  std::array<unsigned, 3> shift_{};       // of coordinates, by rank of the axis
+  std::array<unsigned, 6> size_shift_{};  // of the size along the fastest axis, by side
+  std::array<Direction, 6> directions_{};  // of the sides: by rank, the negative one first
+  std::array<RunCursor<Runs>, 4> cursors_;  // of the sides from 2 on
+};
+
+template <class Runs>
+std::size_t find_shape(Runs runs, const ShapeTable& shapes) {
+  std::size_t run = 0;
+  while (run < runs.size() && shapes.is_cube(runs.material(run))) ++run;
+  return run;
+}
+
+}  // namespace
+}  // namespace shape_mesh
+
+void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
+                 const VisibilityTable& visibility, const ShapeTable& shapes, ShapeScratch& scratch,
+                 ShapeQuads& out) {
+  out.clear();
+  if (shapes.empty()) return;
+  chunk.runs.visit([&]<class Runs>(Runs runs) {
+    const std::size_t first = shape_mesh::find_shape(runs, shapes);
+    if (first == runs.size()) return;
+    ShapeScratch::State& state = scratch.state();
+    state.prepared.begin(shapes, chunk.order);
+    state.beyond.begin(chunk, neighbours);
+    state.lists.clear();
+    shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
+    state.lists.finish(chunk.order, out);
+  });
+}
+
+}  // namespace runstone
