@@ -49,9 +49,10 @@ TEST_CASE("changing the axis order keeps every voxel, the digest and the counted
 TEST_CASE("every extent reorders from every order into every order", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 1};
   CAPTURE(Catch::rngSeed());
-  for (int shape = 0; shape < test::kVoxelPatternCount; ++shape) {
+  for (int shape = 0; shape < test::kShapeCount; ++shape) {
     for (const AxisOrder order : kAxisOrders) {
-      check_orders(test::random_chunk(rng, {8, 9, 10}, order, 3, static_cast<test::VoxelPattern>(shape)));
+      check_orders(
+          test::random_chunk(rng, {8, 9, 10}, order, 3, static_cast<test::ChunkShape>(shape)));
     }
   }
 }
@@ -60,9 +61,10 @@ TEST_CASE("the axis order changes between the narrow and the wide form's limits 
           "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   CAPTURE(Catch::rngSeed());
-  check_orders(test::random_chunk(rng, {71, 71, 13}, AxisOrder::zxy, 4, test::VoxelPattern::noise));
-  check_orders(test::random_chunk(rng, {32, 32, 64}, AxisOrder::yzx, 4, test::VoxelPattern::speckled));
-  check_orders(test::random_chunk(rng, {8, 128, 65}, AxisOrder::xyz, 4, test::VoxelPattern::columns));
+  check_orders(test::random_chunk(rng, {71, 71, 13}, AxisOrder::zxy, 4, test::ChunkShape::noise));
+  check_orders(
+      test::random_chunk(rng, {32, 32, 64}, AxisOrder::yzx, 4, test::ChunkShape::speckled));
+  check_orders(test::random_chunk(rng, {8, 128, 65}, AxisOrder::xyz, 4, test::ChunkShape::columns));
 }
 
 TEST_CASE("a layer reads as the oracle's voxels, along every axis and either way round",
