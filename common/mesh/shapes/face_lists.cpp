@@ -57,6 +57,7 @@ void FaceLists::finish(AxisOrder order, ShapeQuads& out) {
     std::vector<Quad>& to = is_transparent ? out.transparent : out.opaque;
     to.clear();
     OfPass& lists = pass(is_transparent);
+    std::size_t count = 0;
     for (std::size_t i = 0; i < lists.size(); ++i) {
       const auto d = static_cast<Direction>(i);
       const JoinAxes axes = join_axes(order, d);
@@ -64,8 +65,12 @@ void FaceLists::finish(AxisOrder order, ShapeQuads& out) {
         std::vector<Quad>& quads = lists[i][joins];
         if ((joins & kJoinsFirst) != 0) join(quads, d, axes.first);
         if ((joins & kJoinsSecond) != 0) join(quads, d, axes.second);
-        to.insert(to.end(), quads.begin(), quads.end());
+        count += quads.size();
       }
+    }
+    to.reserve(count);
+    for (const OfDirection& direction : lists) {
+      for (const std::vector<Quad>& quads : direction) to.insert(to.end(), quads.begin(), quads.end());
     }
   }
 }

@@ -243,6 +243,9 @@ class ShapeWalk {
   std::array<RunCursor<Runs>, 4> cursors_;  // of the sides from 2 on
 };
 
+/// Lists of more quads are freed, so that no scratch keeps the memory of a chunk of the worst case.
+constexpr std::size_t kScratchQuadsMax = 65'536;
+
 template <class Runs>
 std::size_t find_shape(Runs runs, const ShapeTable& shapes) {
   std::size_t run = 0;
@@ -267,6 +270,7 @@ void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
     state.lists.clear();
     shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
     state.lists.finish(chunk.order, out);
+    if (state.lists.size() > shape_mesh::kScratchQuadsMax) state.lists = {};
   });
 }
 
