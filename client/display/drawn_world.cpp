@@ -19,8 +19,7 @@ DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& m
                        unsigned workers)
     : screen_(screen),
       edge_(edge),
-      pool_(mesh_materials_of(materials), workers, steady_now_ns,
-            [this] { results_.release(); }) {
+      pool_(mesh_materials_of(materials), workers, steady_now_ns, [this] { results_.release(); }) {
   screen_.set_materials(materials);
 }
 

@@ -16,8 +16,8 @@ namespace {
 
 /// Returns the first material that differs between two tables, or that one of them lacks.
 std::size_t first_difference(std::span<const MaterialInfo> a, std::span<const MaterialInfo> b) {
-  return static_cast<std::size_t>(
-      std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+  return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first -
+                                  a.begin());
 }
 
 }  // namespace

@@ -47,9 +47,9 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Then 
       std::count_if(materials.rows().begin(), materials.rows().end(),
                     [](const MaterialInfo& row) { return !row.shape.is_cube(); }));
   if (!visibility_ || materials_ != materials.size() || shapes_ != shapes) {
-    visibility_ = std::make_shared<const TileVisibility>(
-        VisibilityTable(half_filled_visibilities(materials)),
-        VisibilityTable(cube_visibilities(materials)));
+    visibility_ =
+        std::make_shared<const TileVisibility>(VisibilityTable(half_filled_visibilities(materials)),
+                                               VisibilityTable(cube_visibilities(materials)));
     materials_ = materials.size();
     shapes_ = shapes;
   }

@@ -117,10 +117,10 @@ class TileSource::Making {
       runs[i] = &children[i].chunk->voxels;
       version = std::max(version, children[i].chunk->version);
     }
-    return tile_of_voxels(
-        key,
-        build_tile(runs, static_cast<unsigned>(source_.edge_), kTileOrder, visibility_.cells, scratch_),
-        version, is_approximate, is_damaged);
+    return tile_of_voxels(key,
+                          build_tile(runs, static_cast<unsigned>(source_.edge_), kTileOrder,
+                                     visibility_.cells, scratch_),
+                          version, is_approximate, is_damaged);
   }
 
   StoreResult<Child> child_of(const ChunkKey& key) {

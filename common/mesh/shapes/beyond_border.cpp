@@ -24,8 +24,8 @@ Material BeyondBorder::look_up(Direction d, std::uint8_t u, std::uint8_t v) {
   if (chunk.is_uniform()) return chunk.runs.material(0);
   const Axis axis = axis_of(d), u_axis = u_axis_of(axis), v_axis = v_axis_of(axis);
   const auto sides = chunk.extent.sides();
-  const auto layer = static_cast<std::uint8_t>(
-      is_positive(d) ? 0 : sides[static_cast<std::size_t>(axis)] - 1);
+  const auto layer =
+      static_cast<std::uint8_t>(is_positive(d) ? 0 : sides[static_cast<std::size_t>(axis)] - 1);
   if (side.lookups++ < kLookups) {
     std::array<std::uint8_t, 3> at{};
     at[static_cast<std::size_t>(axis)] = layer;

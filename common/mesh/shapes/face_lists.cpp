@@ -7,18 +7,14 @@ namespace runstone::shape_mesh {
 std::size_t FaceLists::size() const {
   std::size_t out = 0;
   for (const OfPass& pass : passes_) {
-    for (const OfDirection& direction : pass) {
-      for (const std::vector<Quad>& quads : direction) out += quads.size();
-    }
+    for (const std::vector<Quad>& quads : pass) out += quads.size();
   }
   return out;
 }
 
 void FaceLists::clear() {
   for (OfPass& pass : passes_) {
-    for (OfDirection& direction : pass) {
-      for (std::vector<Quad>& quads : direction) quads.clear();
-    }
+    for (std::vector<Quad>& quads : pass) quads.clear();
   }
 }
 
@@ -58,20 +54,18 @@ void FaceLists::finish(AxisOrder order, ShapeQuads& out) {
     to.clear();
     OfPass& lists = pass(is_transparent);
     std::size_t count = 0;
-    for (std::size_t i = 0; i < lists.size(); ++i) {
+    for (std::size_t i = 0; i < kDirectionCount; ++i) {
       const auto d = static_cast<Direction>(i);
       const JoinAxes axes = join_axes(order, d);
       for (const Joins joins : {kJoinsNone, kJoinsFirst, kJoinsSecond, kJoinsBoth}) {
-        std::vector<Quad>& quads = lists[i][joins];
+        std::vector<Quad>& quads = lists[list_of(d, joins)];
         if ((joins & kJoinsFirst) != 0) join(quads, d, axes.first);
         if ((joins & kJoinsSecond) != 0) join(quads, d, axes.second);
         count += quads.size();
       }
     }
     to.reserve(count);
-    for (const OfDirection& direction : lists) {
-      for (const std::vector<Quad>& quads : direction) to.insert(to.end(), quads.begin(), quads.end());
-    }
+    for (const std::vector<Quad>& quads : lists) to.insert(to.end(), quads.begin(), quads.end());
   }
 }
 

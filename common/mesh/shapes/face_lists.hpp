@@ -38,8 +38,11 @@ enum Joins : std::uint8_t { kJoinsNone = 0, kJoinsFirst = 1, kJoinsSecond = 2, k
 
 class FaceLists {
  public:
-  using OfDirection = std::array<std::vector<Quad>, 4>;       // by Joins
-  using OfPass = std::array<OfDirection, kDirectionCount>;    // by direction
+  /// Of one draw pass, by list_of().
+  using OfPass = std::array<std::vector<Quad>, 4 * kDirectionCount>;
+  static constexpr std::size_t list_of(Direction d, Joins joins) {
+    return 4 * static_cast<std::size_t>(d) + joins;
+  }
   OfPass& pass(bool is_transparent) { return passes_[is_transparent ? 1 : 0]; }
   std::size_t size() const;
   void clear();

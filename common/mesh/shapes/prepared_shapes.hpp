@@ -14,22 +14,27 @@
 namespace runstone::shape_mesh {
 
 struct PreparedFace {
-  std::uint64_t bits = 0;  // direction and face of a quad
-  Joins joins = kJoinsNone;
-  bool joins_fast = false;     // along the fastest axis
-  std::uint16_t number = 0;    // in ShapeFaces::faces()
+  std::uint64_t bits = 0;    // direction and face of a quad
+  std::uint8_t list = 0;     // FaceLists::list_of()
+  bool joins_fast = false;   // along the fastest axis
+  std::uint16_t number = 0;  // in ShapeFaces::faces()
 };
 
-/// The faces of one direction: those inside the voxel, then those on its border, which neighbours
+/// The faces of one side of the voxel: those inside of it, then those on its border, which neighbours
 /// can hide.
-struct FacesOfDirection {
-  std::uint32_t first = 0, border = 0, end = 0;
+struct FacesOfSide {
+  std::uint16_t inner = 0, border = 0;
 };
 
 struct PreparedShape {
   std::uint16_t number = 0;  // of the shape, from 1
-  std::array<FacesOfDirection, kDirectionCount> faces;
+  std::uint32_t first = 0;   // the first of its faces, which lie in the order of the sides
+  std::array<FacesOfSide, kDirectionCount> sides;
 };
+
+/// The sides of a voxel by the rank of their axis, the negative one first.
+using Sides = std::array<Direction, kDirectionCount>;
+Sides sides_of(AxisOrder order);
 
 /// The faces on a border are read in groups of this many, one bit each.
 inline constexpr std::uint32_t kGroupFaces = 64;
@@ -39,15 +44,13 @@ class PreparedShapes {
   /// Begins a chunk. Requires that `shapes` outlives the use. Cost: O(shapes).
   void begin(const ShapeTable& shapes, AxisOrder order);
 
-  /// Returns the shape of this number, valid until the next call. Cost: O(1); at the first call of
+  /// Returns the shape of this number. It and the faces are valid until the next call. Cost: O(1); at the first call of
   /// a chunk O(faces).
   const PreparedShape& prepare(std::uint16_t number);
-  std::span<const PreparedFace> faces(std::uint32_t first, std::uint32_t end) const {
-    return std::span(faces_).subspan(first, end - first);
-  }
+  const PreparedFace* faces(std::uint32_t first) const { return faces_.data() + first; }
   /// Returns the faces of a group that the side of a neighbour's shape fills: bit i stands for face
   /// `first` + i. Requires faces on the border in direction d of the shape `own`, at most
-  /// kGroupFaces. Cost: O(1); O(256 x faces) for a pair that was not among the last ones.
+  /// kGroupFaces. Cost: O(1); O(faces) for a pair that was not among the last ones.
   std::uint64_t covered(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
                         std::uint32_t end) {
     // Faces have numbers below 2^10 within a shape, and `first` ascends with them, so that the first
@@ -65,12 +68,22 @@ class PreparedShapes {
     std::uint64_t covered = 0;
   };
   std::uint64_t cover(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
-                      std::uint32_t end) const;
+                      std::uint32_t end);
+
+  /// The cells of a side: bit u of row v.
+  using SideRows = std::array<std::uint16_t, kShapeUnits>;
+  struct OtherShape {
+    std::array<SideRows, kDirectionCount> sides;  // by direction
+  };
+  const OtherShape& rows_of(std::uint16_t number);
 
   const ShapeTable* shapes_ = nullptr;
   AxisOrder order_{};
+  Sides sides_{};
   std::vector<std::uint16_t> index_;  // by number of the shape: in prepared_, plus 1
   std::vector<PreparedShape> prepared_;
+  std::vector<std::uint16_t> other_index_;  // by number of the shape: in others_, plus 1
+  std::vector<OtherShape> others_;
   std::vector<PreparedFace> faces_;
   std::array<Memo, std::size_t{1} << kMemoBits> memos_;
 };

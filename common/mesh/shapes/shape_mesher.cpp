@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/mesh/rdm/side_axes.hpp"
 #include "common/mesh/shapes/beyond_border.hpp"
 #include "common/mesh/shapes/face_lists.hpp"
 #include "common/mesh/shapes/prepared_shapes.hpp"
@@ -50,13 +49,10 @@ class ShapeWalk {
         shapes_(shapes),
         state_(state),
         cursors_{RunCursor<Runs>(runs), RunCursor<Runs>(runs), RunCursor<Runs>(runs),
-                 RunCursor<Runs>(runs)} {
+                 RunCursor<Runs>(runs)},
+        directions_(sides_of(chunk.order)) {
     const auto axes = axes_of(chunk.order);
-    for (std::size_t rank = 0; rank < 3; ++rank) {
-      shift_[rank] = place_shift(axes[rank]);
-      for (const bool positive : {false, true})
-        directions_[rank * 2 + (positive ? 1 : 0)] = rdm::direction_of(axes[rank], positive);
-    }
+    for (std::size_t rank = 0; rank < 3; ++rank) shift_[rank] = place_shift(axes[rank]);
     for (std::size_t i = 2; i < directions_.size(); ++i)
       size_shift_[i] = size_shift(directions_[i], axes[0]);
   }
@@ -102,20 +98,74 @@ class ShapeWalk {
   }
 
   void add_piece(const Piece& piece, const PreparedShape& shape) {
-    for (std::size_t side = 0; side < directions_.size(); ++side) {
-      const Direction d = directions_[side];
-      const FacesOfDirection& of = shape.faces[static_cast<std::size_t>(d)];
-      for (const PreparedFace& face : state_.prepared.faces(of.first, of.border))
-        add(piece, side, face, 0, piece.length);
-      for (std::uint32_t first = of.border; first < of.end; first += kGroupFaces) {
-        const std::uint32_t end = std::min(of.end, first + kGroupFaces);
+    std::uint32_t at = shape.first;
+    for (std::size_t side = 0; side < shape.sides.size(); ++side) {
+      const FacesOfSide of = shape.sides[side];
+      for (const std::uint32_t end = at + of.inner; at < end; ++at)
+        add(piece, side, *state_.prepared.faces(at), 0, piece.length);
+      if (of.border == 0) continue;
+      const std::uint32_t border_end = at + of.border;
+      if (piece.length == 1) {
+        add_border(piece, shape, side, at, border_end);
+        at = border_end;
+        continue;
+      }
+      for (; at < border_end; at = std::min(border_end, at + kGroupFaces)) {
+        const std::uint32_t end = std::min(border_end, at + kGroupFaces);
         if (side < 2) {
-          add_along(piece, shape, side, first, end);
+          add_along(piece, shape, side, at, end);
         } else {
-          add_beside(piece, shape, side, first, end);
+          add_beside(piece, shape, side, at, end);
         }
       }
     }
+  }
+
+  /// Adds the faces on one border of a single voxel.
+  void add_border(const Piece& piece, const PreparedShape& shape, std::size_t side,
+                  std::uint32_t first, std::uint32_t end) {
+    const Material other = material_beside(piece, side);
+    for (std::uint32_t at = first; at < end; at += kGroupFaces) {
+      const std::uint32_t group_end = std::min(end, at + kGroupFaces);
+      const std::uint64_t shown =
+          bits_of(group_end - at) & ~hidden(piece, shape, other, directions_[side], at, group_end);
+      for_each_bit(shown,
+                   [&](unsigned i) { add(piece, side, *state_.prepared.faces(at + i), 0, 1); });
+    }
+  }
+
+  /// Returns the material beside a piece of a single voxel, or of the first or last voxel of a
+  /// longer one along the fastest axis.
+  Material material_beside(const Piece& piece, std::size_t side) {
+    const Direction d = directions_[side];
+    switch (side) {
+      case 0:
+        return piece.f == 0 ? state_.beyond.at(d, piece.place) : runs_.material(piece.run - 1);
+      case 1:
+        return piece.f + piece.length == e_.f
+                   ? state_.beyond.at(d, piece.place + place_step(piece.length - 1))
+                   : runs_.material(piece.run + 1);
+      default:
+        if (is_at_border(piece, side)) return state_.beyond.at(d, piece.place);
+        return cursor_at(side, beside(piece, side)).material();
+    }
+  }
+
+  bool is_at_border(const Piece& piece, std::size_t side) const {
+    const std::uint32_t at = side >= 4 ? piece.s : piece.m;
+    return at == ((side & 1) == 0 ? 0 : (side >= 4 ? e_.s : e_.m) - 1);
+  }
+  /// Returns the voxel beside the first one of a piece, across the middle or the slowest axis.
+  std::uint32_t beside(const Piece& piece, std::size_t side) const {
+    const std::uint32_t step = side >= 4 ? e_.layer() : e_.f;
+    return (side & 1) != 0 ? piece.first + step : piece.first - step;
+  }
+  const RunCursor<Runs>& cursor_at(std::size_t side, std::uint32_t voxel) {
+    RunCursor<Runs>& cursor = cursors_[side - 2];
+    // Often one of the next runs covers it, which the search of seek() would pass.
+    for (unsigned i = 0; i < 4 && cursor.end() <= voxel; ++i) cursor.next();
+    if (cursor.end() <= voxel) cursor.seek(voxel);
+    return cursor;
   }
 
   /// Returns a bit for each face of a group that a voxel of this material before it hides.
@@ -135,14 +185,7 @@ class ShapeWalk {
                  std::uint32_t first, std::uint32_t end) {
     const Direction d = directions_[side];
     const bool is_last = side == 1;
-    Material other = kEmpty;
-    if (is_last) {
-      const std::uint32_t last = piece.f + piece.length;
-      other = last == e_.f ? state_.beyond.at(d, piece.place + place_step(piece.length - 1))
-                           : runs_.material(piece.run + 1);
-    } else {
-      other = piece.f == 0 ? state_.beyond.at(d, piece.place) : runs_.material(piece.run - 1);
-    }
+    const Material other = material_beside(piece, side);
     const std::uint64_t all = bits_of(end - first);
     const std::uint64_t at_end = all & ~hidden(piece, shape, other, d, first, end);
     const std::uint64_t within =
@@ -153,18 +196,16 @@ class ShapeWalk {
       const std::uint32_t from = shows_within ? (!shows_end && end_at == 0 ? 1 : 0) : end_at;
       const std::uint32_t to =
           shows_within ? piece.length - (!shows_end && end_at != 0 ? 1 : 0) : end_at + 1;
-      add(piece, side, state_.prepared.faces(first + i, first + i + 1)[0], from, to);
+      add(piece, side, *state_.prepared.faces(first + i), from, to);
     });
   }
 
   /// Adds the faces on the border along the middle and the slowest axis.
   void add_beside(const Piece& piece, const PreparedShape& shape, std::size_t side,
                   std::uint32_t first, std::uint32_t end) {
-    Strips strips{*this, piece, side, first, bits_of(end - first), 0, {}};
+    Strips strips(*this, piece, side, first, bits_of(end - first));
     const Direction d = directions_[side];
-    const bool is_slow = side >= 4, is_positive = (side & 1) != 0;
-    const std::uint32_t at = is_slow ? piece.s : piece.m;
-    if (at == (is_positive ? (is_slow ? e_.s : e_.m) - 1 : 0)) {
+    if (is_at_border(piece, side)) {
       Material before = kEmpty;
       for (std::uint32_t i = 0; i < piece.length; ++i) {
         const Material other = state_.beyond.at(d, piece.place + place_step(i));
@@ -172,11 +213,9 @@ class ShapeWalk {
         before = other;
       }
     } else {
-      const std::uint32_t step = is_slow ? e_.layer() : e_.f;
-      const std::uint32_t begin = is_positive ? piece.first + step : piece.first - step;
-      cursors_[side - 2].seek(begin);
+      const std::uint32_t begin = beside(piece, side);
       // A copy, because the next group of faces begins here again.
-      RunCursor<Runs> cursor = cursors_[side - 2];
+      RunCursor<Runs> cursor = cursor_at(side, begin);
       for (std::uint32_t i = 0;;) {
         strips.turn(i, hidden(piece, shape, cursor.material(), d, first, end));
         i = cursor.end() - begin;
@@ -189,23 +228,25 @@ class ShapeWalk {
 
   /// The faces of one group that are visible at present, and where each became so.
   struct Strips {
+    Strips(ShapeWalk& of, const Piece& of_piece, std::size_t of_side, std::uint32_t first_face,
+           std::uint64_t all_faces)
+        : walk(of), piece(of_piece), side(of_side), first(first_face), all(all_faces) {}
+
     ShapeWalk& walk;
     const Piece& piece;
     std::size_t side;
     std::uint32_t first;
     std::uint64_t all;
-    std::uint64_t open;
-    std::array<std::uint8_t, kGroupFaces> since;
+    std::uint64_t open = 0;
+    std::array<std::uint8_t, kGroupFaces> since;  // of the open ones
 
     /// From place i of the piece on, the faces of these bits are hidden and the others are not.
     void turn(std::uint32_t i, std::uint64_t hidden) {
       const std::uint64_t now = all & ~hidden;
       for_each_bit(open & ~now, [&](unsigned face) {
-        walk.add(piece, side, walk.state_.prepared.faces(first + face, first + face + 1)[0],
-                 since[face], i);
+        walk.add(piece, side, *walk.state_.prepared.faces(first + face), since[face], i);
       });
-      for_each_bit(now & ~open,
-                   [&](unsigned face) { since[face] = static_cast<std::uint8_t>(i); });
+      for_each_bit(now & ~open, [&](unsigned face) { since[face] = static_cast<std::uint8_t>(i); });
       open = now;
     }
   };
@@ -213,7 +254,7 @@ class ShapeWalk {
   /// Adds a face of the voxels [from, to) of a piece.
   void add(const Piece& piece, std::size_t side, const PreparedFace& face, std::uint32_t from,
            std::uint32_t to) {
-    std::vector<Quad>& list = (*lists_)[static_cast<std::size_t>(directions_[side])][face.joins];
+    std::vector<Quad>& list = (*lists_)[face.list];
     std::uint64_t bits =
         face.bits | std::uint64_t{piece.material} << 38 | (piece.place + place_step(from));
     if (face.joins_fast) {
@@ -223,7 +264,9 @@ class ShapeWalk {
     for (std::uint32_t i = from; i < to; ++i, bits += place_step(1)) list.push_back({bits});
   }
 
-  std::uint64_t place_step(std::uint32_t voxels) const { return std::uint64_t{voxels} << shift_[0]; }
+  std::uint64_t place_step(std::uint32_t voxels) const {
+    return std::uint64_t{voxels} << shift_[0];
+  }
   static std::uint64_t bits_of(std::uint32_t count) { return ~std::uint64_t{0} >> (64 - count); }
   template <class F>
   static void for_each_bit(std::uint64_t bits, F&& f) {
@@ -237,10 +280,10 @@ class ShapeWalk {
   ShapeScratch::State& state_;
   FaceLists::OfPass* lists_ = nullptr;
   unsigned pieces_ = 0;
-  std::array<unsigned, 3> shift_{};       // of coordinates, by rank of the axis
-  std::array<unsigned, 6> size_shift_{};  // of the size along the fastest axis, by side
-  std::array<Direction, 6> directions_{};  // of the sides: by rank, the negative one first
+  std::array<unsigned, 3> shift_{};         // of coordinates, by rank of the axis
+  std::array<unsigned, 6> size_shift_{};    // of the size along the fastest axis, by side
   std::array<RunCursor<Runs>, 4> cursors_;  // of the sides from 2 on
+  const Sides directions_;
 };
 
 /// Lists of more quads are freed, so that no scratch keeps the memory of a chunk of the worst case.

@@ -77,13 +77,17 @@ ShapeWorld random_world(SplitMix64& rng) {
   }
   Shape grid;
   for (std::uint8_t box = 0; box < 32; ++box) {
-    const auto at = static_cast<std::uint8_t>(box % 8 * 2), row = static_cast<std::uint8_t>(box / 8 * 4);
-    grid.boxes.push_back({{at, 0, row}, {static_cast<std::uint8_t>(at + 1), 16,
-                                         static_cast<std::uint8_t>(row + 3)}});
+    const auto at = static_cast<std::uint8_t>(box % 8 * 2),
+               row = static_cast<std::uint8_t>(box / 8 * 4);
+    grid.boxes.push_back(
+        {{at, 0, row},
+         {static_cast<std::uint8_t>(at + 1), 16, static_cast<std::uint8_t>(row + 3)}});
   }
   // A second set of bars across the first leaves many small rectangles above.
   for (std::uint8_t box = 0; box < 16; ++box)
-    grid.boxes[box] = {{0, box, box}, {16, static_cast<std::uint8_t>(box + 1), static_cast<std::uint8_t>(box + 1)}};
+    grid.boxes[box] = {
+        {0, box, box},
+        {16, static_cast<std::uint8_t>(box + 1), static_cast<std::uint8_t>(box + 1)}};
   out.shapes.back() = std::move(grid);
   out.visibilities.back() = Visibility::opaque;
   for (const Shape& shape : out.shapes) {
@@ -115,9 +119,8 @@ ShapeScene random_shape_scene(SplitMix64& rng) {
     const Extent beside{static_cast<std::uint8_t>(sides[0]), static_cast<std::uint8_t>(sides[1]),
                         static_cast<std::uint8_t>(sides[2])};
     out.neighbours[i] =
-        rng.below(4) == 0
-            ? uniform_chunk(beside, static_cast<Material>(rng.below(kShapeMaterials)))
-            : chunk_of_shapes(rng, beside);
+        rng.below(4) == 0 ? uniform_chunk(beside, static_cast<Material>(rng.below(kShapeMaterials)))
+                          : chunk_of_shapes(rng, beside);
   }
   return out;
 }
@@ -204,9 +207,8 @@ FaceCounts covered_by(const std::vector<Quad>& quads, const ShapeWorld& world) {
 }
 
 bool ascends_by_direction(const std::vector<Quad>& quads) {
-  return std::is_sorted(quads.begin(), quads.end(), [](Quad a, Quad b) {
-    return unpack(a).direction < unpack(b).direction;
-  });
+  return std::is_sorted(quads.begin(), quads.end(),
+                        [](Quad a, Quad b) { return unpack(a).direction < unpack(b).direction; });
 }
 
 TEST_CASE("random shapes mesh to the faces that show, each once", "[mesh][shapes][property]") {

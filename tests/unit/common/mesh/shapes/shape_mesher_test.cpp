@@ -21,14 +21,14 @@ const VisibilityTable& shape_visibility() {
 }
 
 const ShapeTable& shape_table() {
-  static const ShapeTable table(std::vector<Shape>{
-      {},
-      {},
-      shape_of_boxes({{{0, 0, 0}, {16, 8, 16}}}),
-      shape_of_boxes({{{0, 0, 7}, {16, 16, 9}}}),
-      shape_of_boxes({{{2, 0, 2}, {14, 14, 14}}}, ShapeForm::crossed),
-      shape_of_boxes({{{0, 0, 0}, {16, 16, 16}}}),
-      shape_of_boxes({{{0, 8, 0}, {16, 16, 16}}})});
+  static const ShapeTable table(
+      std::vector<Shape>{{},
+                         {},
+                         shape_of_boxes({{{0, 0, 0}, {16, 8, 16}}}),
+                         shape_of_boxes({{{0, 0, 7}, {16, 16, 9}}}),
+                         shape_of_boxes({{{2, 0, 2}, {14, 14, 14}}}, ShapeForm::crossed),
+                         shape_of_boxes({{{0, 0, 0}, {16, 16, 16}}}),
+                         shape_of_boxes({{{0, 8, 0}, {16, 16, 16}}})});
   return table;
 }
 
@@ -89,7 +89,8 @@ TEST_CASE("a row of slabs is one quad on top, along every axis", "[mesh][shapes]
   }
 }
 
-TEST_CASE("a tower of slabs does not join where slabs are half as high as a voxel", "[mesh][shapes]") {
+TEST_CASE("a tower of slabs does not join where slabs are half as high as a voxel",
+          "[mesh][shapes]") {
   for (const AxisOrder order : kAxisOrders) {
     CAPTURE(order);
     const ShapeQuads tower = shapes_in(chunk_of(order, {{{{2, 3, 4}, {3, 13, 5}}, kSlab}}));
@@ -119,22 +120,22 @@ TEST_CASE("an opaque cube hides the border of a shape, and a shape hides what it
           "[mesh][shapes]") {
   for (const AxisOrder order : kAxisOrders) {
     CAPTURE(order);
-    const ShapeQuads on_rock =
-        shapes_in(chunk_of(order, {{{{2, 3, 4}, {3, 4, 5}}, kRock}, {{{2, 4, 4}, {3, 5, 5}}, kSlab}}));
+    const ShapeQuads on_rock = shapes_in(
+        chunk_of(order, {{{{2, 3, 4}, {3, 4, 5}}, kRock}, {{{2, 4, 4}, {3, 5, 5}}, kSlab}}));
     CHECK(facing(on_rock.opaque, Direction::neg_y).empty());
     CHECK(on_rock.opaque.size() == 5);
     // A rock above a slab does not touch its upper face.
-    const ShapeQuads below_rock =
-        shapes_in(chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kRock}, {{{2, 3, 4}, {3, 4, 5}}, kSlab}}));
+    const ShapeQuads below_rock = shapes_in(
+        chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kRock}, {{{2, 3, 4}, {3, 4, 5}}, kSlab}}));
     CHECK(below_rock.opaque.size() == 6);
     // The side of a slab is hidden by a full shape, but not by an upper slab. That of the full shape
     // is not hidden by the slab.
-    const ShapeQuads beside_full =
-        shapes_in(chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kFull}, {{{3, 4, 4}, {4, 5, 5}}, kSlab}}));
+    const ShapeQuads beside_full = shapes_in(
+        chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kFull}, {{{3, 4, 4}, {4, 5, 5}}, kSlab}}));
     CHECK(beside_full.opaque.size() == 11);
     CHECK(facing(beside_full.opaque, Direction::neg_x).size() == 1);
-    const ShapeQuads beside_upper =
-        shapes_in(chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kUpper}, {{{3, 4, 4}, {4, 5, 5}}, kSlab}}));
+    const ShapeQuads beside_upper = shapes_in(
+        chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kUpper}, {{{3, 4, 4}, {4, 5, 5}}, kSlab}}));
     CHECK(beside_upper.opaque.size() == 12);
   }
 }
@@ -202,9 +203,10 @@ TEST_CASE("a checkerboard of shapes shows every face of each", "[mesh][shapes]")
 TEST_CASE("a chunk of more faces than a chunk may show has the first ones", "[mesh][shapes]") {
   Shape bars;
   for (std::uint8_t i = 0; i < 32; ++i) {
-    const auto x = static_cast<std::uint8_t>(i % 8 * 2 + 1), z = static_cast<std::uint8_t>(i / 8 * 4 + 1);
-    bars.boxes.push_back({{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 15,
-                                      static_cast<std::uint8_t>(z + 1)}});
+    const auto x = static_cast<std::uint8_t>(i % 8 * 2 + 1),
+               z = static_cast<std::uint8_t>(i / 8 * 4 + 1);
+    bars.boxes.push_back(
+        {{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 15, static_cast<std::uint8_t>(z + 1)}});
   }
   const ShapeTable shapes(std::vector<Shape>{{}, bars});
   const VisibilityTable visibility(std::vector<Visibility>{Visibility::empty, Visibility::opaque});
