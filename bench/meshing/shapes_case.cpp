@@ -55,7 +55,7 @@ ShapesTiming measure_shapes(unsigned repetitions) {
   with_shapes.shapes = ShapeTable(shapes);
   const VoxelWorld world{"village", std::make_shared<const VisibilityTable>(rows), std::nullopt,
                          village_column, nullptr};
-  const std::vector<Volume> volumes = volumes_in(world, {{0, 0, 0}, {128, 32, 128}}, 32);
+  const std::vector<Volume> volumes = volumes_in(world, {{0, -2, 0}, {128, 30, 128}}, 32);
   ShapesTiming out;
   out.chunks = volumes.size();
   out.share = share_of_shapes(volumes, with_shapes.shapes);

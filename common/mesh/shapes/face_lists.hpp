@@ -36,24 +36,45 @@ constexpr JoinAxes join_axes(AxisOrder order, Direction d) {
 /// The axes of JoinAxes along which a face joins.
 enum Joins : std::uint8_t { kJoinsNone = 0, kJoinsFirst = 1, kJoinsSecond = 2, kJoinsBoth = 3 };
 
+/// The number of a face's list within its draw pass: by direction, then by Joins.
+constexpr std::size_t list_of(Direction d, Joins joins) {
+  return 4 * static_cast<std::size_t>(d) + joins;
+}
+inline constexpr std::size_t kListCount = 4 * kDirectionCount;
+
 class FaceLists {
  public:
-  /// Of one draw pass, by list_of().
-  using OfPass = std::array<std::vector<Quad>, 4 * kDirectionCount>;
-  static constexpr std::size_t list_of(Direction d, Joins joins) {
-    return 4 * static_cast<std::size_t>(d) + joins;
+  /// The lists of one draw pass. A caller that has room writes to *end[list]++.
+  struct Pass {
+    std::array<std::vector<Quad>, kListCount> buffers;  // their sizes are capacities
+    std::array<Quad*, kListCount> end{};
+  };
+  Pass& pass(bool is_transparent) { return passes_[is_transparent ? 1 : 0]; }
+
+  /// Empties all lists.
+  void begin();
+  /// Makes room for `count` more quads in each list. Returns false, and makes none, if the lists
+  /// have kShapeQuadsMax quads. Cost: O(1) amortised.
+  bool make_room(std::size_t count) {
+    if (count > room_ && !grow(count)) return false;
+    room_ -= count;
+    return true;
   }
-  OfPass& pass(bool is_transparent) { return passes_[is_transparent ? 1 : 0]; }
-  std::size_t size() const;
-  void clear();
   /// Joins the quads and replaces `out` by them, ascending by direction. Requires lists in the order
   /// of the walk: each list ascends by layer, line and place. Cost: O(quads).
   void finish(AxisOrder order, ShapeQuads& out);
+  /// Returns the quads for which there is memory.
+  std::size_t capacity() const;
 
  private:
-  void join(std::vector<Quad>& quads, Direction d, Axis along);
+  /// The quads between two looks at the number of all quads, at most.
+  static constexpr std::size_t kRoomMax = 65'536;
+  bool grow(std::size_t count);
+  /// Returns the number of quads that are left of those from `first` to `end`.
+  std::size_t join(Quad* first, const Quad* end, Direction d, Axis along);
 
-  std::array<OfPass, 2> passes_;
+  std::array<Pass, 2> passes_;
+  std::size_t room_ = 0;              // in each list
   std::vector<std::uint32_t> table_;  // of join(): number of a quad + 1, by a hash of its place
 };
 

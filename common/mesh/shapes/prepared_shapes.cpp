@@ -21,7 +21,7 @@ PreparedFace prepare_face(const ShapeFace& face, std::size_t number, AxisOrder o
   PreparedFace out;
   out.bits = std::uint64_t{number + 1} << 54 |
              std::uint64_t{static_cast<std::uint8_t>(face.direction)} << 35;
-  out.list = static_cast<std::uint8_t>(FaceLists::list_of(face.direction, joins));
+  out.list = static_cast<std::uint8_t>(list_of(face.direction, joins));
   out.joins_fast = joins_along(face, axes_of(order)[0]);
   out.number = static_cast<std::uint16_t>(number);
   return out;
@@ -73,6 +73,7 @@ const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
     out.sides[side].inner = append(false);
     out.sides[side].border = append(true);
   }
+  out.count = static_cast<std::uint32_t>(faces.size());
   prepared_.push_back(out);
   index = static_cast<std::uint16_t>(prepared_.size());
   return prepared_.back();

@@ -15,7 +15,7 @@ namespace runstone::shape_mesh {
 
 struct PreparedFace {
   std::uint64_t bits = 0;    // direction and face of a quad
-  std::uint8_t list = 0;     // FaceLists::list_of()
+  std::uint8_t list = 0;     // list_of()
   bool joins_fast = false;   // along the fastest axis
   std::uint16_t number = 0;  // in ShapeFaces::faces()
 };
@@ -29,6 +29,7 @@ struct FacesOfSide {
 struct PreparedShape {
   std::uint16_t number = 0;  // of the shape, from 1
   std::uint32_t first = 0;   // the first of its faces, which lie in the order of the sides
+  std::uint32_t count = 0;   // of its faces
   std::array<FacesOfSide, kDirectionCount> sides;
 };
 

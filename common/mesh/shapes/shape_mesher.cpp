@@ -31,7 +31,8 @@ namespace {
 struct Piece {
   std::size_t run;
   std::uint32_t first, length;  // voxels of the flattened chunk
-  std::uint32_t f, m, s;        // of the first one
+  std::uint32_t f;              // of the first one, along the fastest axis
+  unsigned borders;             // bit per side across the other axes: it is that of the chunk
   std::uint64_t place;          // its coordinates in the bits of a quad
   Material material;
 };
@@ -55,6 +56,7 @@ class ShapeWalk {
     for (std::size_t rank = 0; rank < 3; ++rank) shift_[rank] = place_shift(axes[rank]);
     for (std::size_t i = 2; i < directions_.size(); ++i)
       size_shift_[i] = size_shift(directions_[i], axes[0]);
+    steps_ = {0, 0, 0 - e_.f, e_.f, 0 - e_.layer(), e_.layer()};
   }
 
   /// Adds the faces of all shapes from run `first` on.
@@ -73,20 +75,19 @@ class ShapeWalk {
   }
 
  private:
-  /// The pieces between two looks at kShapeQuadsMax.
-  static constexpr unsigned kBudgetPieces = 16;
-
   /// Adds the faces of one run. Returns false if the chunk has kShapeQuadsMax.
   bool add_run(std::size_t run, std::uint32_t begin, std::uint32_t end, Material material,
                const PreparedShape& shape) {
     std::uint32_t line = begin / e_.f;
     std::uint32_t f = begin - line * e_.f, s = line / e_.m, m = line - s * e_.m;
     for (std::uint32_t at = begin; at < end;) {
-      if (++pieces_ % kBudgetPieces == 0 && state_.lists.size() >= kShapeQuadsMax) return false;
       const std::uint32_t length = std::min(end - at, e_.f - f);
+      if (!state_.lists.make_room(std::size_t{length} * shape.count)) return false;
       const std::uint64_t place = std::uint64_t{f} << shift_[0] | std::uint64_t{m} << shift_[1] |
                                   std::uint64_t{s} << shift_[2];
-      add_piece({run, at, length, f, m, s, place, material}, shape);
+      const unsigned borders = (m == 0 ? 4U : 0U) | (m + 1 == e_.m ? 8U : 0U) |
+                               (s == 0 ? 16U : 0U) | (s + 1 == e_.s ? 32U : 0U);
+      add_piece({run, at, length, f, borders, place, material}, shape);
       at += length;
       f = 0;
       if (++m == e_.m) {
@@ -98,39 +99,58 @@ class ShapeWalk {
   }
 
   void add_piece(const Piece& piece, const PreparedShape& shape) {
+    if (piece.length == 1) return add_voxel(piece, shape);
     std::uint32_t at = shape.first;
     for (std::size_t side = 0; side < shape.sides.size(); ++side) {
       const FacesOfSide of = shape.sides[side];
       for (const std::uint32_t end = at + of.inner; at < end; ++at)
         add(piece, side, *state_.prepared.faces(at), 0, piece.length);
-      if (of.border == 0) continue;
-      const std::uint32_t border_end = at + of.border;
-      if (piece.length == 1) {
-        add_border(piece, shape, side, at, border_end);
-        at = border_end;
-        continue;
-      }
-      for (; at < border_end; at = std::min(border_end, at + kGroupFaces)) {
+      for (const std::uint32_t border_end = at + of.border; at < border_end;) {
         const std::uint32_t end = std::min(border_end, at + kGroupFaces);
         if (side < 2) {
           add_along(piece, shape, side, at, end);
         } else {
           add_beside(piece, shape, side, at, end);
         }
+        at = end;
       }
     }
   }
 
-  /// Adds the faces on one border of a single voxel.
-  void add_border(const Piece& piece, const PreparedShape& shape, std::size_t side,
-                  std::uint32_t first, std::uint32_t end) {
-    const Material other = material_beside(piece, side);
-    for (std::uint32_t at = first; at < end; at += kGroupFaces) {
-      const std::uint32_t group_end = std::min(end, at + kGroupFaces);
-      const std::uint64_t shown =
-          bits_of(group_end - at) & ~hidden(piece, shape, other, directions_[side], at, group_end);
-      for_each_bit(shown,
-                   [&](unsigned i) { add(piece, side, *state_.prepared.faces(at + i), 0, 1); });
+  /// Adds the faces of a single voxel.
+  void add_voxel(const Piece& piece, const PreparedShape& shape) {
+    const std::uint64_t base = std::uint64_t{piece.material} << 38 | piece.place;
+    Quad** const ends = lists_->end.data();
+    const PreparedFace* face = state_.prepared.faces(shape.first);
+    for (std::size_t side = 0; side < shape.sides.size(); ++side) {
+      const FacesOfSide of = shape.sides[side];
+      const PreparedFace* const border = face + of.inner;
+      const PreparedFace* const end = border + of.border;
+      for (; face < border; ++face) *ends[face->list]++ = {base | face->bits};
+      if (face == end) continue;
+      const Material other = material_beside(piece, side);
+      const std::uint16_t number = shapes_.number(other);
+      const bool is_opaque = visibility_[other] == Visibility::opaque;
+      if (number == 0 ? is_opaque : is_opaque || other == piece.material) {
+        if (number != 0) add_uncovered(base, shape, number, side, face, end);
+        face = end;
+        continue;
+      }
+      for (; face < end; ++face) *ends[face->list]++ = {base | face->bits};
+    }
+  }
+
+  /// Adds the faces on the border of a single voxel that a shape beside it does not fill.
+  void add_uncovered(std::uint64_t base, const PreparedShape& shape, std::uint16_t number,
+                     std::size_t side, const PreparedFace* face, const PreparedFace* end) {
+    while (face < end) {
+      const auto first = static_cast<std::uint32_t>(face - state_.prepared.faces(0));
+      const auto count = std::min(static_cast<std::uint32_t>(end - face), kGroupFaces);
+      const std::uint64_t covered =
+          state_.prepared.covered(shape.number, number, directions_[side], first, first + count);
+      for_each_bit(bits_of(count) & ~covered,
+                   [&](unsigned i) { *lists_->end[face[i].list]++ = {base | face[i].bits}; });
+      face += count;
     }
   }
 
@@ -151,14 +171,13 @@ class ShapeWalk {
     }
   }
 
+  /// Requires a side across the middle or the slowest axis, as beside() does.
   bool is_at_border(const Piece& piece, std::size_t side) const {
-    const std::uint32_t at = side >= 4 ? piece.s : piece.m;
-    return at == ((side & 1) == 0 ? 0 : (side >= 4 ? e_.s : e_.m) - 1);
+    return (piece.borders >> side & 1) != 0;
   }
-  /// Returns the voxel beside the first one of a piece, across the middle or the slowest axis.
+  /// Returns the voxel beside the first one of a piece.
   std::uint32_t beside(const Piece& piece, std::size_t side) const {
-    const std::uint32_t step = side >= 4 ? e_.layer() : e_.f;
-    return (side & 1) != 0 ? piece.first + step : piece.first - step;
+    return piece.first + steps_[side];
   }
   const RunCursor<Runs>& cursor_at(std::size_t side, std::uint32_t voxel) {
     RunCursor<Runs>& cursor = cursors_[side - 2];
@@ -254,14 +273,14 @@ class ShapeWalk {
   /// Adds a face of the voxels [from, to) of a piece.
   void add(const Piece& piece, std::size_t side, const PreparedFace& face, std::uint32_t from,
            std::uint32_t to) {
-    std::vector<Quad>& list = (*lists_)[face.list];
     std::uint64_t bits =
         face.bits | std::uint64_t{piece.material} << 38 | (piece.place + place_step(from));
+    Quad*& end = lists_->end[face.list];
     if (face.joins_fast) {
-      list.push_back({bits | std::uint64_t{to - from - 1} << size_shift_[side]});
+      *end++ = {bits | std::uint64_t{to - from - 1} << size_shift_[side]};
       return;
     }
-    for (std::uint32_t i = from; i < to; ++i, bits += place_step(1)) list.push_back({bits});
+    for (std::uint32_t i = from; i < to; ++i, bits += place_step(1)) *end++ = {bits};
   }
 
   std::uint64_t place_step(std::uint32_t voxels) const {
@@ -278,9 +297,9 @@ class ShapeWalk {
   const VisibilityTable& visibility_;
   const ShapeTable& shapes_;
   ShapeScratch::State& state_;
-  FaceLists::OfPass* lists_ = nullptr;
-  unsigned pieces_ = 0;
+  FaceLists::Pass* lists_ = nullptr;
   std::array<unsigned, 3> shift_{};         // of coordinates, by rank of the axis
+  std::array<std::uint32_t, 6> steps_{};    // to the voxel beside one, by side; the fastest axis: 0
   std::array<unsigned, 6> size_shift_{};    // of the size along the fastest axis, by side
   std::array<RunCursor<Runs>, 4> cursors_;  // of the sides from 2 on
   const Sides directions_;
@@ -310,10 +329,10 @@ void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
     ShapeScratch::State& state = scratch.state();
     state.prepared.begin(shapes, chunk.order);
     state.beyond.begin(chunk, neighbours);
-    state.lists.clear();
+    state.lists.begin();
     shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
     state.lists.finish(chunk.order, out);
-    if (state.lists.size() > shape_mesh::kScratchQuadsMax) state.lists = {};
+    if (state.lists.capacity() > shape_mesh::kScratchQuadsMax) state.lists = {};
   });
 }
 
