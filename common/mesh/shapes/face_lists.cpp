@@ -23,7 +23,7 @@ std::size_t FaceLists::capacity() const {
 }
 
 bool FaceLists::grow(std::size_t count) {
-  constexpr std::size_t kLeast = 256;
+  constexpr std::size_t kLeast = 2'048;
   std::size_t all = 0;
   room_ = std::max(count, kRoomMax);
   for (Pass& pass : passes_) {

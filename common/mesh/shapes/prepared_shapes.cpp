@@ -23,6 +23,8 @@ PreparedFace prepare_face(const ShapeFace& face, std::size_t number, AxisOrder o
              std::uint64_t{static_cast<std::uint8_t>(face.direction)} << 35;
   out.list = static_cast<std::uint8_t>(list_of(face.direction, joins));
   out.joins_fast = joins_along(face, axes_of(order)[0]);
+  if (out.joins_fast)
+    out.size_shift = static_cast<std::uint8_t>(size_shift(face.direction, axes_of(order)[0]));
   out.number = static_cast<std::uint16_t>(number);
   return out;
 }
@@ -38,6 +40,9 @@ Sides sides_of(AxisOrder order) {
 
 void PreparedShapes::begin(const ShapeTable& shapes, AxisOrder order) {
   shapes_ = &shapes;
+  const bool is_bounded = faces_.size() <= kKeptFacesMax && others_.size() <= kKeptOthersMax;
+  if (serial_ == shapes.serial() && order_ == order && is_bounded) return;
+  serial_ = shapes.serial();
   order_ = order;
   sides_ = sides_of(order);
   index_.assign(shapes.shapes().size() + 1, 0);
@@ -55,23 +60,22 @@ const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
   out.number = number;
   out.first = static_cast<std::uint32_t>(faces_.size());
   const std::span<const ShapeFace> faces = shapes_->shapes()[number - 1U].faces.faces();
+  const auto append = [&](std::size_t f) { faces_.push_back(prepare_face(faces[f], f, order_)); };
   std::array<std::size_t, kDirectionCount + 1> first{};  // of each direction: the faces ascend
-  for (std::size_t i = 0, next = 0; i < kDirectionCount; ++i) {
-    while (next < faces.size() && faces[next].direction == static_cast<Direction>(i)) ++next;
-    first[i + 1] = next;
+  for (std::size_t i = 0, f = 0; i < kDirectionCount; ++i) {
+    for (; f < faces.size() && faces[f].direction == static_cast<Direction>(i); ++f) {
+      if (!is_on_border(faces[f])) append(f);
+    }
+    first[i + 1] = f;
   }
+  out.inner = static_cast<std::uint16_t>(faces_.size() - out.first);
   for (std::size_t side = 0; side < sides_.size(); ++side) {
     const auto d = static_cast<std::size_t>(sides_[side]);
-    const auto append = [&](bool on_border) {
-      const std::size_t before = faces_.size();
-      for (std::size_t f = first[d]; f < first[d + 1]; ++f) {
-        if (is_on_border(faces[f]) == on_border)
-          faces_.push_back(prepare_face(faces[f], f, order_));
-      }
-      return static_cast<std::uint16_t>(faces_.size() - before);
-    };
-    out.sides[side].inner = append(false);
-    out.sides[side].border = append(true);
+    const std::size_t before = faces_.size();
+    for (std::size_t f = first[d]; f < first[d + 1]; ++f) {
+      if (is_on_border(faces[f])) append(f);
+    }
+    out.border[side] = static_cast<std::uint16_t>(faces_.size() - before);
   }
   out.count = static_cast<std::uint32_t>(faces.size());
   prepared_.push_back(out);

@@ -14,23 +14,20 @@
 namespace runstone::shape_mesh {
 
 struct PreparedFace {
-  std::uint64_t bits = 0;    // direction and face of a quad
-  std::uint8_t list = 0;     // list_of()
-  bool joins_fast = false;   // along the fastest axis
-  std::uint16_t number = 0;  // in ShapeFaces::faces()
+  std::uint64_t bits = 0;       // direction and face of a quad
+  std::uint8_t list = 0;        // list_of()
+  std::uint8_t size_shift = 0;  // of the size along the fastest axis, if the face joins along it
+  bool joins_fast = false;      // along the fastest axis
+  std::uint16_t number = 0;     // in ShapeFaces::faces()
 };
 
-/// The faces of one side of the voxel: those inside of it, then those on its border, which neighbours
-/// can hide.
-struct FacesOfSide {
-  std::uint16_t inner = 0, border = 0;
-};
-
+/// The faces of a shape: those inside of the voxel, then those on its borders, side by side, which
+/// neighbours can hide.
 struct PreparedShape {
-  std::uint16_t number = 0;  // of the shape, from 1
-  std::uint32_t first = 0;   // the first of its faces, which lie in the order of the sides
-  std::uint32_t count = 0;   // of its faces
-  std::array<FacesOfSide, kDirectionCount> sides;
+  std::uint16_t number = 0;                             // of the shape, from 1
+  std::uint16_t inner = 0;                              // faces inside
+  std::array<std::uint16_t, kDirectionCount> border{};  // faces on each side
+  std::uint32_t first = 0, count = 0;                   // of all faces
 };
 
 /// The sides of a voxel by the rank of their axis, the negative one first.
@@ -42,11 +39,13 @@ inline constexpr std::uint32_t kGroupFaces = 64;
 
 class PreparedShapes {
  public:
-  /// Begins a chunk. Requires that `shapes` outlives the use. Cost: O(shapes).
+  /// Begins a chunk. Requires that `shapes` outlives the use. What was prepared for the chunk before
+  /// stays if it had the same shapes and axis order, within a bound of memory. Cost: O(1), or
+  /// O(shapes).
   void begin(const ShapeTable& shapes, AxisOrder order);
 
-  /// Returns the shape of this number. It and the faces are valid until the next call. Cost: O(1); at the first call of
-  /// a chunk O(faces).
+  /// Returns the shape of this number. It and the faces are valid until the next call.
+  /// Cost: O(1); at the first call O(faces).
   const PreparedShape& prepare(std::uint16_t number);
   const PreparedFace* faces(std::uint32_t first) const { return faces_.data() + first; }
   /// Returns the faces of a group that the side of a neighbour's shape fills: bit i stands for face
@@ -63,7 +62,7 @@ class PreparedShapes {
   }
 
  private:
-  static constexpr unsigned kMemoBits = 8;
+  static constexpr unsigned kMemoBits = 10;
   struct Memo {
     std::uint64_t key = 0;  // 0: none, because numbers of shapes are above 0
     std::uint64_t covered = 0;
@@ -78,7 +77,11 @@ class PreparedShapes {
   };
   const OtherShape& rows_of(std::uint16_t number);
 
+  /// With more faces, or more shapes beside them, a chunk begins anew.
+  static constexpr std::size_t kKeptFacesMax = 16'384, kKeptOthersMax = 1'024;
+
   const ShapeTable* shapes_ = nullptr;
+  std::uint64_t serial_ = 0;  // of the shapes
   AxisOrder order_{};
   Sides sides_{};
   std::vector<std::uint16_t> index_;  // by number of the shape: in prepared_, plus 1

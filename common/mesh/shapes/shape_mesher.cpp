@@ -14,7 +14,7 @@
 namespace runstone {
 
 struct ShapeScratch::State {
-  shape_mesh::PreparedShapes prepared;
+  std::array<shape_mesh::PreparedShapes, kAxisOrderCount> by_order;
   shape_mesh::BeyondBorder beyond;
   shape_mesh::FaceLists lists;
 };
@@ -49,13 +49,12 @@ class ShapeWalk {
         visibility_(visibility),
         shapes_(shapes),
         state_(state),
+        prepared_(state.by_order[static_cast<std::size_t>(chunk.order)]),
         cursors_{RunCursor<Runs>(runs), RunCursor<Runs>(runs), RunCursor<Runs>(runs),
                  RunCursor<Runs>(runs)},
         directions_(sides_of(chunk.order)) {
     const auto axes = axes_of(chunk.order);
     for (std::size_t rank = 0; rank < 3; ++rank) shift_[rank] = place_shift(axes[rank]);
-    for (std::size_t i = 2; i < directions_.size(); ++i)
-      size_shift_[i] = size_shift(directions_[i], axes[0]);
     steps_ = {0, 0, 0 - e_.f, e_.f, 0 - e_.layer(), e_.layer()};
   }
 
@@ -68,7 +67,7 @@ class ShapeWalk {
       const std::uint16_t number = shapes_.number(material);
       if (number != 0 && visibility_[material] != Visibility::empty) {
         lists_ = &state_.lists.pass(visibility_[material] == Visibility::transparent);
-        if (!add_run(run, begin, end, material, state_.prepared.prepare(number))) return;
+        if (!add_run(run, begin, end, material, prepared_.prepare(number))) return;
       }
       begin = end;
     }
@@ -101,11 +100,10 @@ class ShapeWalk {
   void add_piece(const Piece& piece, const PreparedShape& shape) {
     if (piece.length == 1) return add_voxel(piece, shape);
     std::uint32_t at = shape.first;
-    for (std::size_t side = 0; side < shape.sides.size(); ++side) {
-      const FacesOfSide of = shape.sides[side];
-      for (const std::uint32_t end = at + of.inner; at < end; ++at)
-        add(piece, side, *state_.prepared.faces(at), 0, piece.length);
-      for (const std::uint32_t border_end = at + of.border; at < border_end;) {
+    for (const std::uint32_t end = at + shape.inner; at < end; ++at)
+      add(piece, *prepared_.faces(at), 0, piece.length);
+    for (std::size_t side = 0; side < shape.border.size(); ++side) {
+      for (const std::uint32_t border_end = at + shape.border[side]; at < border_end;) {
         const std::uint32_t end = std::min(border_end, at + kGroupFaces);
         if (side < 2) {
           add_along(piece, shape, side, at, end);
@@ -121,12 +119,11 @@ class ShapeWalk {
   void add_voxel(const Piece& piece, const PreparedShape& shape) {
     const std::uint64_t base = std::uint64_t{piece.material} << 38 | piece.place;
     Quad** const ends = lists_->end.data();
-    const PreparedFace* face = state_.prepared.faces(shape.first);
-    for (std::size_t side = 0; side < shape.sides.size(); ++side) {
-      const FacesOfSide of = shape.sides[side];
-      const PreparedFace* const border = face + of.inner;
-      const PreparedFace* const end = border + of.border;
-      for (; face < border; ++face) *ends[face->list]++ = {base | face->bits};
+    const PreparedFace* face = prepared_.faces(shape.first);
+    for (const PreparedFace* const end = face + shape.inner; face < end; ++face)
+      *ends[face->list]++ = {base | face->bits};
+    for (std::size_t side = 0; side < shape.border.size(); ++side) {
+      const PreparedFace* const end = face + shape.border[side];
       if (face == end) continue;
       const Material other = material_beside(piece, side);
       const std::uint16_t number = shapes_.number(other);
@@ -144,10 +141,10 @@ class ShapeWalk {
   void add_uncovered(std::uint64_t base, const PreparedShape& shape, std::uint16_t number,
                      std::size_t side, const PreparedFace* face, const PreparedFace* end) {
     while (face < end) {
-      const auto first = static_cast<std::uint32_t>(face - state_.prepared.faces(0));
+      const auto first = static_cast<std::uint32_t>(face - prepared_.faces(0));
       const auto count = std::min(static_cast<std::uint32_t>(end - face), kGroupFaces);
       const std::uint64_t covered =
-          state_.prepared.covered(shape.number, number, directions_[side], first, first + count);
+          prepared_.covered(shape.number, number, directions_[side], first, first + count);
       for_each_bit(bits_of(count) & ~covered,
                    [&](unsigned i) { *lists_->end[face[i].list]++ = {base | face[i].bits}; });
       face += count;
@@ -195,7 +192,7 @@ class ShapeWalk {
     const bool is_opaque = visibility_[other] == Visibility::opaque;
     if (number == 0) return is_opaque ? ~std::uint64_t{0} : 0;
     if (!is_opaque && other != piece.material) return 0;
-    return state_.prepared.covered(shape.number, number, d, first, end);
+    return prepared_.covered(shape.number, number, d, first, end);
   }
 
   /// Adds the faces on the border along the fastest axis: the next voxel is one of the piece, but at
@@ -215,14 +212,14 @@ class ShapeWalk {
       const std::uint32_t from = shows_within ? (!shows_end && end_at == 0 ? 1 : 0) : end_at;
       const std::uint32_t to =
           shows_within ? piece.length - (!shows_end && end_at != 0 ? 1 : 0) : end_at + 1;
-      add(piece, side, *state_.prepared.faces(first + i), from, to);
+      add(piece, *prepared_.faces(first + i), from, to);
     });
   }
 
   /// Adds the faces on the border along the middle and the slowest axis.
   void add_beside(const Piece& piece, const PreparedShape& shape, std::size_t side,
                   std::uint32_t first, std::uint32_t end) {
-    Strips strips(*this, piece, side, first, bits_of(end - first));
+    Strips strips(*this, piece, first, bits_of(end - first));
     const Direction d = directions_[side];
     if (is_at_border(piece, side)) {
       Material before = kEmpty;
@@ -247,13 +244,11 @@ class ShapeWalk {
 
   /// The faces of one group that are visible at present, and where each became so.
   struct Strips {
-    Strips(ShapeWalk& of, const Piece& of_piece, std::size_t of_side, std::uint32_t first_face,
-           std::uint64_t all_faces)
-        : walk(of), piece(of_piece), side(of_side), first(first_face), all(all_faces) {}
+    Strips(ShapeWalk& of, const Piece& of_piece, std::uint32_t first_face, std::uint64_t all_faces)
+        : walk(of), piece(of_piece), first(first_face), all(all_faces) {}
 
     ShapeWalk& walk;
     const Piece& piece;
-    std::size_t side;
     std::uint32_t first;
     std::uint64_t all;
     std::uint64_t open = 0;
@@ -263,7 +258,7 @@ class ShapeWalk {
     void turn(std::uint32_t i, std::uint64_t hidden) {
       const std::uint64_t now = all & ~hidden;
       for_each_bit(open & ~now, [&](unsigned face) {
-        walk.add(piece, side, *walk.state_.prepared.faces(first + face), since[face], i);
+        walk.add(piece, *walk.prepared_.faces(first + face), since[face], i);
       });
       for_each_bit(now & ~open, [&](unsigned face) { since[face] = static_cast<std::uint8_t>(i); });
       open = now;
@@ -271,13 +266,12 @@ class ShapeWalk {
   };
 
   /// Adds a face of the voxels [from, to) of a piece.
-  void add(const Piece& piece, std::size_t side, const PreparedFace& face, std::uint32_t from,
-           std::uint32_t to) {
+  void add(const Piece& piece, const PreparedFace& face, std::uint32_t from, std::uint32_t to) {
     std::uint64_t bits =
         face.bits | std::uint64_t{piece.material} << 38 | (piece.place + place_step(from));
     Quad*& end = lists_->end[face.list];
     if (face.joins_fast) {
-      *end++ = {bits | std::uint64_t{to - from - 1} << size_shift_[side]};
+      *end++ = {bits | std::uint64_t{to - from - 1} << face.size_shift};
       return;
     }
     for (std::uint32_t i = from; i < to; ++i, bits += place_step(1)) *end++ = {bits};
@@ -297,16 +291,16 @@ class ShapeWalk {
   const VisibilityTable& visibility_;
   const ShapeTable& shapes_;
   ShapeScratch::State& state_;
+  PreparedShapes& prepared_;
   FaceLists::Pass* lists_ = nullptr;
   std::array<unsigned, 3> shift_{};         // of coordinates, by rank of the axis
   std::array<std::uint32_t, 6> steps_{};    // to the voxel beside one, by side; the fastest axis: 0
-  std::array<unsigned, 6> size_shift_{};    // of the size along the fastest axis, by side
   std::array<RunCursor<Runs>, 4> cursors_;  // of the sides from 2 on
   const Sides directions_;
 };
 
 /// Lists of more quads are freed, so that no scratch keeps the memory of a chunk of the worst case.
-constexpr std::size_t kScratchQuadsMax = 65'536;
+constexpr std::size_t kScratchQuadsMax = std::size_t{1} << 19;
 
 template <class Runs>
 std::size_t find_shape(Runs runs, const ShapeTable& shapes) {
@@ -327,7 +321,7 @@ void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
     const std::size_t first = shape_mesh::find_shape(runs, shapes);
     if (first == runs.size()) return;
     ShapeScratch::State& state = scratch.state();
-    state.prepared.begin(shapes, chunk.order);
+    state.by_order[static_cast<std::size_t>(chunk.order)].begin(shapes, chunk.order);
     state.beyond.begin(chunk, neighbours);
     state.lists.begin();
     shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
