@@ -126,6 +126,12 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options,
   };
   worlds->measure_each(options.edges, measure, result.skipped, progress);
   result.targets = mesh_targets(result.rows, edits);
+  const bool has_town =
+      options.worlds.empty() ||
+      std::find(options.worlds.begin(), options.worlds.end(), "town") != options.worlds.end();
+  if (has_town && std::find(options.edges.begin(), options.edges.end(), 32U) != options.edges.end())
+    result.targets.push_back(
+        shapes_target(measure_shapes(static_cast<unsigned>(options.repetitions))));
   return result;
 }
 

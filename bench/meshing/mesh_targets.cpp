@@ -214,6 +214,18 @@ Target storage(const std::vector<MeshRow>& rows) {
 
 }  // namespace
 
+Target shapes_target(const ShapesTiming& shapes) {
+  const double ratio = shapes.shapes_ns / shapes.cubes_ns;
+  const std::string what =
+      fmt::format("a village of {:.0f} % shapes, {} chunks of 32³: against all of it as cubes",
+                  100 * shapes.share, shapes.chunks);
+  const std::string measured =
+      fmt::format("{:.2f}x ({:.1f} and {:.1f} µs a chunk; {} quads, {} of shapes, and {})", ratio,
+                  shapes.shapes_ns / 1000, shapes.cubes_ns / 1000, shapes.quads,
+                  shapes.quads_of_shapes, shapes.cube_quads);
+  return judged(what, "at most 2x", measured, ratio <= 2);
+}
+
 std::vector<Target> mesh_targets(const std::vector<MeshRow>& rows, const EditTiming& edits) {
   constexpr const char* kDecode = "decode + binary greedy";
   constexpr const char* kMask = "binary greedy with its mask ready";

@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "client/render/drawn_materials.hpp"
 #include "common/core/assert.hpp"
-#include "common/mesh/visibility.hpp"
 #include "common/os/steady_clock.hpp"
 #include "common/runs/layer_diff.hpp"
 
@@ -19,8 +19,7 @@ DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& m
                        unsigned workers)
     : screen_(screen),
       edge_(edge),
-      pool_(VisibilityTable(visibilities(materials)), workers, steady_now_ns,
-            [this] { results_.release(); }) {
+      pool_(mesh_materials_of(materials), workers, steady_now_ns, [this] { results_.release(); }) {
   screen_.set_materials(materials);
 }
 

@@ -5,16 +5,19 @@
 #include <utility>
 
 #include "client/display/eye_chunk.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "common/core/assert.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/mesh/mesh_materials.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
 
 namespace {
 
-bool begins_with(std::span<const MaterialInfo> rows, std::span<const MaterialInfo> first) {
-  return rows.size() >= first.size() && std::equal(first.begin(), first.end(), rows.begin());
+/// Returns the first material that differs between two tables, or that one of them lacks.
+std::size_t first_difference(std::span<const MaterialInfo> a, std::span<const MaterialInfo> b) {
+  return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first -
+                                  a.begin());
 }
 
 }  // namespace
@@ -33,21 +36,24 @@ MeshPipeline::MeshPipeline(const Replica& replica, DrawQueue* draw_queue, bool w
 
 void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
-  const std::size_t known = materials_.size();
-  const bool has_grown = pool_ && begins_with(materials.rows(), materials_.rows());
+  // The rows of a world only become more, or get a shape. Chunks without a material that differs
+  // look the same.
+  const std::size_t known = first_difference(materials.rows(), materials_.rows());
+  const bool has_grown = pool_ && known > 0 && materials.size() >= materials_.size();
   materials_ = materials;
   changed_ = true;
   if (draw_queue_) draw_queue_->set_materials(materials_);
-  const VisibilityTable visibility(visibilities(materials_));
-  far_planner_.set_visibility(visibility, has_grown ? static_cast<Material>(known) : Material{0});
+  const MeshMaterialsPtr meshed = mesh_materials_of(materials_);
+  far_planner_.set_visibility(meshed->cubes,
+                              has_grown ? static_cast<Material>(known) : Material{0});
   if (has_grown) {
-    pool_->set_visibility(visibility);
+    pool_->set_materials(meshed);
     return planner_.mesh_again_from(static_cast<Material>(known));
   }
   planner_.forget_meshes();
   pool_.reset();
   open_job_bytes_.clear();
-  pool_ = std::make_unique<MeshPool>(visibility, workers_, steady_now_ns, wake_);
+  pool_ = std::make_unique<MeshPool>(meshed, workers_, steady_now_ns, wake_);
 }
 
 void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us) {

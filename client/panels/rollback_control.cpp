@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "client/render/drawn_materials.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -44,7 +45,7 @@ std::string preview_command(const RollbackChoice& choice, const WorldPos& eye,
 }
 
 void RollbackControl::set_materials(const MaterialTable& materials) {
-  ghosts_.set_visibility(VisibilityTable(visibilities(materials)));
+  ghosts_.set_materials(mesh_materials_of(materials));
 }
 
 std::string RollbackControl::refuse(std::string why) {

@@ -1,14 +1,13 @@
 #include "client/play/others_previews.hpp"
 
 #include "client/display/player_body.hpp"
-#include "common/mesh/visibility.hpp"
+#include "client/render/drawn_materials.hpp"
 
 namespace runstone {
 
 void OthersPreviews::set_materials(const MaterialTable& materials) {
-  materials_ = materials;
-  const VisibilityTable visibility(visibilities(materials_));
-  for (auto& [author, preview] : previews_) preview.set_visibility(visibility);
+  materials_ = mesh_materials_of(materials);
+  for (auto& [author, preview] : previews_) preview.set_materials(materials_);
 }
 
 bool OthersPreviews::step(const Replica& replica,
@@ -19,7 +18,7 @@ bool OthersPreviews::step(const Replica& replica,
   for (const auto& [author, other] : shared) {
     if (previews_.size() >= kShownMax && !previews_.contains(author)) continue;
     const auto [it, is_new] = previews_.try_emplace(author);
-    if (is_new) it->second.set_visibility(VisibilityTable(visibilities(materials_)));
+    if (is_new) it->second.set_materials(materials_);
     it->second.set(other.edits);
   }
   std::size_t left = kChunksPerStep;

@@ -12,6 +12,7 @@
 #include "client/session/shared_previews.hpp"
 #include "client/tools/edit_preview.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -34,7 +35,7 @@ class OthersPreviews {
   void append_ghosts(std::vector<GhostChunk>& out) const;
 
  private:
-  MaterialTable materials_;
+  MeshMaterialsPtr materials_ = std::make_shared<const MeshMaterials>();
   std::map<AuthorId, EditPreview> previews_;
 };
 

@@ -38,7 +38,7 @@ DayLight light_inside(const MaterialInfo& material, const DayLight& outside,
     out.sun_colour *= tint;
     out.ambient_up *= tint;
     out.ambient_down *= tint;
-  } else if (material.visibility == Visibility::opaque) {
+  } else if (material.visibility == Visibility::opaque && material.shape.is_cube()) {
     // As bright as it is at night, whatever the hour: it is as dark as a cave.
     set_fog(out, colour * kSolidGleam / outside.exposure + 0.5F * outside.dark, kSolidFog);
   }

@@ -12,6 +12,8 @@ LightPass light_pass(const MaterialInfo& material) {
   if (material.body == MaterialBody::liquid) return LightPass::liquid;
   // Leaves are often opaque to the mesher, but a wood is not as dark as a cave.
   if (material.name.find("leaves") != std::string::npos) return LightPass::leaves;
+  // A shape hides no face of the cubes beside it, which would be black without light.
+  if (!material.shape.is_cube()) return LightPass::open;
   return material.visibility == Visibility::opaque ? LightPass::opaque : LightPass::open;
 }
 

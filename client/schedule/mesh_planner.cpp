@@ -16,7 +16,9 @@ ChunkKey beside(const ChunkKey& key, Direction d) { return {key.lod, neighbour(k
 std::size_t mesh_bytes(const MeshPtr& mesh) {
   if (!mesh || mesh->empty()) return 0;
   return sizeof(ChunkMesh) +
-         (mesh->opaque.quads.capacity() + mesh->transparent.quads.capacity()) * sizeof(Quad);
+         (mesh->opaque.quads.capacity() + mesh->transparent.quads.capacity() +
+          mesh->shapes.opaque.capacity() + mesh->shapes.transparent.capacity()) *
+             sizeof(Quad);
 }
 
 template <class Act>

@@ -63,9 +63,9 @@ struct MeshJob {
   Urgency urgency = Urgency::terrain;  // of the changes that the mesh shows
 };
 
-/// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its
-/// own runs determine it: a run that alternates with air has three faces on average. Runs of the
-/// neighbours can cut faces at the border further.
+/// Returns a bound of the quads of cubes that meshing a chunk with these runs makes, in bytes, as far
+/// as its own runs determine it: a run that alternates with air has three faces on average. Runs of
+/// the neighbours can cut faces at the border further. A run of a shape has more quads.
 inline std::size_t mesh_bytes_about(const MeshJob& job) {
   return sizeof(ChunkMesh) + 3 * sizeof(Quad) * job.chunk->runs.size();
 }

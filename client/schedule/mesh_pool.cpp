@@ -39,14 +39,14 @@ DirtyLayers layers_of(const MeshJob& job) {
 
 }  // namespace
 
-MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake)
+MeshPool::MeshPool(MeshMaterialsPtr materials, unsigned workers, ClockNs clock, Wake wake)
     : clock_(std::move(clock)),
       wake_(std::move(wake)),
       // The capacity is large enough that no worker is idle until the main thread pushes again, and
       // small enough that new work does not queue behind old work.
       capacity_(workers == 0 ? 1 : workers * 8),
       tiles_max_(workers == 0 ? 1 : workers * kTilesPerWorker),
-      visibility_(std::make_shared<const VisibilityTable>(std::move(visibility))) {
+      materials_(std::move(materials)) {
   for (unsigned i = 0; i < workers; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -59,10 +59,9 @@ MeshPool::~MeshPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void MeshPool::set_visibility(VisibilityTable visibility) {
-  auto next = std::make_shared<const VisibilityTable>(std::move(visibility));
+void MeshPool::set_materials(MeshMaterialsPtr materials) {
   const std::lock_guard lock(mutex_);
-  visibility_ = std::move(next);
+  materials_ = std::move(materials);
 }
 
 bool MeshPool::push(MeshJob job) {
@@ -85,7 +84,7 @@ bool MeshPool::push(MeshJob job) {
 
 bool MeshPool::push(FarMeshJob job) {
   if (threads_.empty()) {
-    FarMeshResult result = mesh_tile(job, *visibility_, push_scratch_.rdm);
+    FarMeshResult result = mesh_tile(job, materials_->tiles, push_scratch_.mesher.cubes);
     const std::lock_guard lock(mutex_);
     ++tiles_in_flight_;
     tile_results_.push_back(std::move(result));
@@ -143,20 +142,20 @@ void MeshPool::work() {
   unsigned chunks_since_tile = 0;
   for (;;) {
     Job job;
-    std::shared_ptr<const VisibilityTable> visibility;
+    MeshMaterialsPtr materials;
     {
       std::unique_lock lock(mutex_);
       work_there_.wait(lock, [this] { return stops_ || !jobs_.empty() || !tile_jobs_.empty(); });
       if (stops_) return;
       job = take_job(chunks_since_tile);
-      visibility = visibility_;
+      materials = materials_;
     }
     if (const auto* const tile = std::get_if<FarMeshJob>(&job)) {
-      FarMeshResult result = mesh_tile(*tile, *visibility, scratch.rdm);
+      FarMeshResult result = mesh_tile(*tile, materials->tiles, scratch.mesher.cubes);
       const std::lock_guard lock(mutex_);
       tile_results_.push_back(std::move(result));
     } else {
-      MeshResult result = mesh(std::get<MeshJob>(job), *visibility, scratch);
+      MeshResult result = mesh(std::get<MeshJob>(job), *materials, scratch);
       const std::lock_guard lock(mutex_);
       results_.push_back(std::move(result));
     }
@@ -164,7 +163,7 @@ void MeshPool::work() {
   }
 }
 
-MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
+MeshResult MeshPool::mesh(const MeshJob& job, const MeshMaterials& materials,
                           Scratch& scratch) const {
   MeshResult result;
   result.key = job.key;
@@ -187,16 +186,17 @@ MeshResult MeshPool::mesh(const MeshJob& job, const VisibilityTable& visibility,
     const auto mesh = std::make_shared<ChunkMesh>();
     copy_with_room(job.before->opaque, mesh->opaque);
     copy_with_room(job.before->transparent, mesh->transparent);
-    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, borders, visibility,
-                                         job.changed.here, job.changed.beyond, scratch.rdm, *mesh);
+    result.layers_only =
+        mesh_chunk_layers(*job.chunk, neighbours, borders, materials, job.changed.here,
+                          job.changed.beyond, scratch.mesher, *mesh);
     const bool is_fitting =
         result.layers_only && fits_memory(mesh->opaque) && fits_memory(mesh->transparent);
     result.mesh = mesh->empty() ? empty_
                   : is_fitting  ? mesh
                                 : std::make_shared<const ChunkMesh>(*mesh);
   } else {
-    mesh_rdm(*job.chunk, neighbours, borders, visibility, scratch.rdm, scratch.mesh,
-             &scratch.borders);
+    mesh_chunk(*job.chunk, neighbours, borders, materials, scratch.mesher, scratch.mesh,
+               &scratch.borders);
     if (!scratch.borders.empty())
       result.borders = std::make_shared<const ChunkBorders>(scratch.borders);
     result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);

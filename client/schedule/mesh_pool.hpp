@@ -11,14 +11,15 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "client/far/tile_mesh.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "common/mesh/chunk_mesh.hpp"
-#include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/mesh/chunk_mesher.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -42,17 +43,21 @@ class MeshPool {
   using ClockNs = std::function<std::int64_t()>;  // steady, nanoseconds; called from workers
   using Wake = std::function<void()>;             // called from a worker after each result
 
-  MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake);
+  MeshPool(MeshMaterialsPtr materials, unsigned workers, ClockNs clock, Wake wake);
+  /// The materials are all cubes.
+  MeshPool(const VisibilityTable& visibility, unsigned workers, ClockNs clock, Wake wake)
+      : MeshPool(std::make_shared<const MeshMaterials>(visibility), workers, std::move(clock),
+                 std::move(wake)) {}
   /// Drops the jobs that wait, and waits for the running ones.
   ~MeshPool();
   MeshPool(const MeshPool&) = delete;
   MeshPool& operator=(const MeshPool&) = delete;
 
-  /// Replaces the visibility of materials, for the jobs that begin from now on.
-  void set_visibility(VisibilityTable visibility);
+  /// Replaces the materials, for the jobs that begin from now on.
+  void set_materials(MeshMaterialsPtr materials);
   bool push(MeshJob job);
   /// Meshes on the calling thread. Thread: the one that pushes.
-  MeshResult mesh_here(const MeshJob& job) { return mesh(job, *visibility_, push_scratch_); }
+  MeshResult mesh_here(const MeshJob& job) { return mesh(job, *materials_, push_scratch_); }
   /// Returns the results so far, in the order in which they were finished.
   std::vector<MeshResult> take_results();
   /// Returns the number of jobs that wait or run, plus the results that were not taken.
@@ -71,7 +76,7 @@ class MeshPool {
 
  private:
   struct Scratch {
-    RdmScratch rdm;
+    ChunkMeshScratch mesher;
     // For meshes of whole chunks. Their capacities grow; the results are copies of the right size.
     ChunkMesh mesh;
     ChunkBorders borders;
@@ -80,7 +85,7 @@ class MeshPool {
   void work();
   /// Takes the job that comes next. Requires that one waits, and mutex_.
   Job take_job(unsigned& chunks_since_tile);
-  MeshResult mesh(const MeshJob& job, const VisibilityTable& visibility, Scratch& scratch) const;
+  MeshResult mesh(const MeshJob& job, const MeshMaterials& materials, Scratch& scratch) const;
 
   const ClockNs clock_;
   const Wake wake_;
@@ -88,7 +93,7 @@ class MeshPool {
   const MeshPtr empty_ = std::make_shared<const ChunkMesh>();
   mutable std::mutex mutex_;
   // Never null. The thread that pushes replaces it, under mutex_. Workers copy it under mutex_.
-  std::shared_ptr<const VisibilityTable> visibility_;
+  MeshMaterialsPtr materials_;
   std::condition_variable work_there_;
   std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next six
   std::deque<FarMeshJob> tile_jobs_;

@@ -66,8 +66,8 @@ void BuildPreview::set(std::vector<ShownBuild> builds) {
   if (shown_.empty()) ghosts_.clear();
 }
 
-void BuildPreview::set_visibility(const VisibilityTable& visibility) {
-  visibility_ = visibility;
+void BuildPreview::set_materials(MeshMaterialsPtr materials) {
+  materials_ = std::move(materials);
   for (Model& model : models_) begin(model);
   is_changed_ = true;
 }
@@ -148,7 +148,7 @@ bool BuildPreview::read_cube(Model& model) {
   for (; depth < model.level; ++depth) {
     model.halves[depth].push_back(std::move(tile));
     if (model.halves[depth].size() < 8) break;
-    tile = tile_of(model.halves[depth], visibility_, tiler_);
+    tile = tile_of(model.halves[depth], materials_->tiles, tiler_);
     model.halves[depth].clear();
   }
   if (depth < model.level) return has_lines;
@@ -176,7 +176,11 @@ void BuildPreview::mesh_tile(Model& model) {
     if (found != model.tiles.end()) neighbours[static_cast<std::size_t>(i)] = &found->second;
   }
   auto mesh = std::make_shared<ChunkMesh>();
-  mesh_rdm(it->second, neighbours, visibility_, mesher_, *mesh);
+  if (model.level == 0) {
+    mesh_chunk(it->second, neighbours, MeshBorders{}, *materials_, mesher_, *mesh);
+  } else {
+    mesh_rdm(it->second, neighbours, materials_->tiles, mesher_.cubes, *mesh);
+  }
   model.quads += mesh->quad_count();
   if (model.quads > kQuadsMax) return coarsen(model);
   if (!mesh->empty()) model.meshed.push_back({at, std::move(mesh)});
@@ -198,7 +202,7 @@ void BuildPreview::coarsen(Model& model) {
                                  : uniform_chunk(Extent::cube(static_cast<unsigned>(kTileEdge)),
                                                  kEmpty, kTileOrder));
         }
-        RunChunk tile = tile_of(children, visibility_, tiler_);
+        RunChunk tile = tile_of(children, materials_->tiles, tiler_);
         if (!is_empty(tile)) coarse.emplace(at, std::move(tile));
       }
     }

@@ -14,8 +14,8 @@
 #include "client/render/ghost.hpp"
 #include "common/builds/build.hpp"
 #include "common/core/coords.hpp"
-#include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/mesh/chunk_mesher.hpp"
+#include "common/mesh/mesh_materials.hpp"
 #include "common/tiles/tile_builder.hpp"
 
 namespace runstone {
@@ -41,8 +41,8 @@ class BuildPreview {
   /// Shows these builds from the next step() on, at most the first kBuildsMax. Empty: shows nothing at
   /// once. A build that is shown already keeps its meshes.
   void set(std::vector<ShownBuild> builds);
-  /// Sets the materials that hide faces. Makes all ghosts again.
-  void set_visibility(const VisibilityTable& visibility);
+  /// Sets the materials of the world. Makes all ghosts again.
+  void set_materials(MeshMaterialsPtr materials);
 
   /// Makes a part of the ghosts: reads and meshes at most `tiles_max` cubes of 64 cells. Returns true
   /// if ghosts() changed. Cost: O(runs and lines of these cubes + quads).
@@ -94,9 +94,9 @@ class BuildPreview {
   std::vector<Model> models_;  // of the builds of shown_, each once
   std::vector<GhostChunk> ghosts_;
   bool is_changed_ = false;  // ghosts_ does not fit shown_ and models_
-  VisibilityTable visibility_{{}};
+  MeshMaterialsPtr materials_ = std::make_shared<const MeshMaterials>();
   TileScratch tiler_;
-  RdmScratch mesher_;
+  ChunkMeshScratch mesher_;
 };
 
 }  // namespace runstone

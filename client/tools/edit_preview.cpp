@@ -38,8 +38,8 @@ void EditPreview::set(std::vector<EditDescriptor> edits) {
   is_restarted_ = true;
 }
 
-void EditPreview::set_visibility(const VisibilityTable& visibility) {
-  visibility_ = visibility;
+void EditPreview::set_materials(MeshMaterialsPtr materials) {
+  materials_ = std::move(materials);
   is_restarted_ = true;
 }
 
@@ -180,7 +180,7 @@ std::shared_ptr<const ChunkMesh> EditPreview::mesh(ChunkCoord at, RunChunk Part:
       neighbours[static_cast<std::size_t>(i)] = &(it->second.*runs);
   }
   auto out = std::make_shared<ChunkMesh>();
-  mesh_rdm(part.*runs, neighbours, visibility_, mesher_, *out);
+  mesh_chunk(part.*runs, neighbours, MeshBorders{}, *materials_, mesher_, *out);
   return out;
 }
 

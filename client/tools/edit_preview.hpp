@@ -15,8 +15,8 @@
 #include "client/replica/replica.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
-#include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/mesh/chunk_mesher.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -29,8 +29,8 @@ class EditPreview {
   /// Shows these edits, in this order, from the next step() on. Empty: shows nothing at once. Does
   /// nothing if they are the present edits. Requires valid edits that have voxels.
   void set(std::vector<EditDescriptor> edits);
-  /// Sets the materials that hide faces. Makes all ghosts again.
-  void set_visibility(const VisibilityTable& visibility);
+  /// Sets the materials of the world. Makes all ghosts again.
+  void set_materials(MeshMaterialsPtr materials);
 
   /// Compares the chunks with those that were previewed, and makes ghosts again where the edits or
   /// the chunks changed: at most `chunks_max` chunks in this call. Returns true if ghosts()
@@ -92,9 +92,9 @@ class EditPreview {
   bool is_cut_ = false;
   std::uint64_t placed_ = 0, removed_ = 0;
   std::uint64_t made_placed_ = 0, made_removed_ = 0;
-  VisibilityTable visibility_{{}};
+  MeshMaterialsPtr materials_ = std::make_shared<const MeshMaterials>();
   ApplyScratch apply_;
-  RdmScratch mesher_;
+  ChunkMeshScratch mesher_;
 };
 
 }  // namespace runstone

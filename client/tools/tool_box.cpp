@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "client/render/drawn_materials.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
@@ -417,9 +418,9 @@ void ToolBox::show_preview(bool is_shown) {
 
 std::string ToolBox::set_materials(const MaterialTable& materials) {
   materials_ = materials;
-  const VisibilityTable visibility(visibilities(materials));
-  preview_.set_visibility(visibility);
-  build_preview_.set_visibility(visibility);
+  const MeshMaterialsPtr meshed = mesh_materials_of(materials);
+  preview_.set_materials(meshed);
+  build_preview_.set_materials(meshed);
   points_.clear();
   typed_.reset();  // an open window gives its places again
   ++revision_;

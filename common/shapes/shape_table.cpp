@@ -1,5 +1,6 @@
 #include "common/shapes/shape_table.hpp"
 
+#include <atomic>
 #include <map>
 
 namespace runstone {
@@ -10,6 +11,8 @@ ShapeTable::ShapeTable(std::span<const Shape> by_material) {
     if (!shape.is_cube()) different.emplace(shape, std::uint16_t{0});
   }
   if (different.empty()) return;
+  static std::atomic<std::uint64_t> last_serial{0};
+  serial_ = ++last_serial;
   shapes_.reserve(different.size());
   for (auto& [shape, number] : different) {
     shapes_.push_back({shape, ShapeFaces(shape)});

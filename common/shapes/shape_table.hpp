@@ -34,10 +34,14 @@ class ShapeTable {
   std::span<const Entry> shapes() const { return shapes_; }
   /// Requires !is_cube(material).
   const Entry& operator[](Material material) const { return shapes_[number(material) - 1U]; }
+  /// Returns a number that no other table of this process has but copies of this one, and 0 for an
+  /// empty table. What was made of the shapes is kept by it.
+  std::uint64_t serial() const { return serial_; }
 
  private:
   std::vector<std::uint16_t> numbers_;  // by material
   std::vector<Entry> shapes_;
+  std::uint64_t serial_ = 0;
 };
 
 }  // namespace runstone

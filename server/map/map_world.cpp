@@ -143,7 +143,7 @@ StoreResult<void> MapWorld::read_new_edits(TimeUs utc_us, const WorldAt::Progres
 StoreResult<void> MapWorld::read_materials() {
   auto table = world_->reader->materials();
   if (!table) return failure(table.error());
-  world_->visibility = VisibilityTable(visibilities(*table));
+  world_->visibility = VisibilityTable(half_filled_visibilities(*table));
   world_->map_materials = map_materials(*table);
   world_->materials = *std::move(table);
   return {};

@@ -9,6 +9,7 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/mesh/visibility.hpp"
+#include "common/tiles/tile_visibility.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/tiles/tile_source.hpp"
 
@@ -75,7 +76,8 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
   TileLedger ground;
   TileSource source(chunks, generator, store.meta().chunk_edge, ground, differs,
                     {kCacheBytes, false, false});
-  const VisibilityTable visibility(visibilities(*materials));
+  const TileVisibility visibility(VisibilityTable(half_filled_visibilities(*materials)),
+                                  VisibilityTable(cube_visibilities(*materials)));
   std::uint64_t done = 0;
   for (const auto& [key, version] : *keys) {
     if (progress) progress(done++, keys->size());

@@ -43,9 +43,15 @@ bool TileMaking::is_current(const CachedChunk& copy) {
 }
 
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
-  if (!visibility_ || materials_ != materials.size()) {
-    visibility_ = std::make_shared<const VisibilityTable>(visibilities(materials));
+  const auto shapes = static_cast<std::size_t>(
+      std::count_if(materials.rows().begin(), materials.rows().end(),
+                    [](const MaterialInfo& row) { return !row.shape.is_cube(); }));
+  if (!visibility_ || materials_ != materials.size() || shapes_ != shapes) {
+    visibility_ =
+        std::make_shared<const TileVisibility>(VisibilityTable(half_filled_visibilities(materials)),
+                                               VisibilityTable(cube_visibilities(materials)));
     materials_ = materials.size();
+    shapes_ = shapes;
   }
   flush_edits();
   asio::thread_pool& threads = request.at ? *past_thread_ : *threads_;

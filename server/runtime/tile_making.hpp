@@ -13,7 +13,7 @@
 
 #include "common/generate/generator.hpp"
 #include "common/materials/material_table.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/tiles/tile_visibility.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/runtime/low_priority_threads.hpp"
@@ -71,8 +71,9 @@ class TileMaking {
   std::vector<std::pair<std::vector<ChunkKey>, Sequence>> waiting_edits_;
   TileSource source_;
   const PastChunks past_chunks_;
-  std::shared_ptr<const VisibilityTable> visibility_;
-  std::size_t materials_ = 0;  // rows that visibility_ has
+  std::shared_ptr<const TileVisibility> visibility_;
+  // The rows of visibility_, and how many of them have a shape. Both only rise.
+  std::size_t materials_ = 0, shapes_ = 0;
   Tiles unsaved_;
   bool is_saving_ = false;
   const std::unique_ptr<asio::thread_pool> threads_ = low_priority_threads(kThreads);

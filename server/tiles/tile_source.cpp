@@ -17,7 +17,7 @@ namespace runstone {
 
 class TileSource::Making {
  public:
-  Making(TileSource& source, const TileRequest& request, const VisibilityTable& visibility,
+  Making(TileSource& source, const TileRequest& request, const TileVisibility& visibility,
          const PastChunk& past_chunk)
       : source_(source),
         request_(request),
@@ -117,10 +117,10 @@ class TileSource::Making {
       runs[i] = &children[i].chunk->voxels;
       version = std::max(version, children[i].chunk->version);
     }
-    return tile_of_voxels(
-        key,
-        build_tile(runs, static_cast<unsigned>(source_.edge_), kTileOrder, visibility_, scratch_),
-        version, is_approximate, is_damaged);
+    return tile_of_voxels(key,
+                          build_tile(runs, static_cast<unsigned>(source_.edge_), kTileOrder,
+                                     visibility_.cells, scratch_),
+                          version, is_approximate, is_damaged);
   }
 
   StoreResult<Child> child_of(const ChunkKey& key) {
@@ -206,7 +206,7 @@ class TileSource::Making {
 
   TileSource& source_;
   const TileRequest& request_;
-  const VisibilityTable& visibility_;
+  const TileVisibility& visibility_;
   const PastChunk& past_chunk_;
   const std::map<ChunkCoord, ChunkPtr> fresh_;
   TileScratch scratch_;
@@ -226,7 +226,7 @@ TileSource::TileSource(ChunkSource& chunks, const Generator& generator, std::int
       cache_(options.cache_bytes) {}
 
 StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
-                                                    const VisibilityTable& visibility,
+                                                    const TileVisibility& visibility,
                                                     const PastChunk& past_chunk) {
   RUNSTONE_ASSERT(!request.at || (past_chunk && request.past_made));
   RUNSTONE_ASSERT(request.key.lod >= 1 && request.key.lod <= kTileLevelMax);
@@ -241,11 +241,11 @@ StoreResult<std::vector<MadeTile>> TileSource::make(const TileRequest& request,
   return tiles;
 }
 
-void TileSource::add_veiled(MadeTile& made, const VisibilityTable& visibility) {
+void TileSource::add_veiled(MadeTile& made, const TileVisibility& visibility) {
   if (made.veiled || !options_.adds_veils) return;
   const Chunk& tile = *made.tile;
   VeilScratch scratch;
-  if (auto voxels = veiled(tile.voxels, visibility, scratch)) {
+  if (auto voxels = veiled(tile.voxels, visibility.veil, scratch)) {
     Chunk out{*std::move(voxels), tile.version, {}};
     if (tile.digest != Digest{}) out.digest = digest_of(out.voxels);
     made.veiled = std::make_shared<const Chunk>(std::move(out));

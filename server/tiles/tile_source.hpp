@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "common/generate/generator.hpp"
-#include "common/mesh/visibility.hpp"
+#include "common/tiles/tile_visibility.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/tiles/tile_cache.hpp"
 #include "server/tiles/tile_ledger.hpp"
@@ -65,7 +65,7 @@ class TileSource {
   /// that moment. It is a past tile (MadeTile::is_past), which is kept in request.past_made alone.
   /// Other tiles are the present ones.
   StoreResult<std::vector<MadeTile>> make(const TileRequest& request,
-                                          const VisibilityTable& visibility,
+                                          const TileVisibility& visibility,
                                           const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now.
   /// It makes no tile and reads none from the disk. If the tile with its veil is in memory, the
@@ -79,7 +79,7 @@ class TileSource {
   /// Passes the chunks that are stored to the ledger, unless it was done.
   StoreResult<void> find_ground();
   /// Adds MadeTile::veiled, unless the tile has it.
-  void add_veiled(MadeTile& tile, const VisibilityTable& visibility);
+  void add_veiled(MadeTile& tile, const TileVisibility& visibility);
   /// Reports a damaged row, once for each key.
   void warn_once(const ChunkKey& key, const std::string& line);
 

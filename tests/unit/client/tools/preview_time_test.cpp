@@ -57,7 +57,7 @@ void measure(const std::string& name, const Replica& replica,
              const std::function<EditDescriptor(VoxelPos)>& edit_at) {
   const std::vector<Visibility> visible = visibilities(default_material_table());
   EditPreview preview;
-  preview.set_visibility(VisibilityTable(visible));
+  preview.set_materials(std::make_shared<const MeshMaterials>(VisibilityTable(visible)));
   std::vector<double> us;
   for (int i = 0; i < kMoves; ++i) {
     const VoxelPos at{i % 37 - 50, -20 + i % 11, i % 41 - 50};
