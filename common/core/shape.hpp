@@ -19,7 +19,8 @@ inline constexpr std::uint8_t kShapeUnits = 16;
 struct ShapeBox {
   std::array<std::uint8_t, 3> min{0, 0, 0};                                // 0 .. 15
   std::array<std::uint8_t, 3> max{kShapeUnits, kShapeUnits, kShapeUnits};  // min + 1 .. 16
-  friend auto operator<=>(const ShapeBox&, const ShapeBox&) = default;
+  friend bool operator==(const ShapeBox&, const ShapeBox&) = default;
+  friend std::strong_ordering operator<=>(const ShapeBox&, const ShapeBox&) = default;
 };
 
 /// Values are frozen: tables, records and messages hold them.
@@ -33,7 +34,7 @@ struct Shape {
   std::vector<ShapeBox> boxes;  // at most kShapeBoxesMax; none: the material is a cube
   bool is_cube() const { return boxes.empty(); }
   friend bool operator==(const Shape&, const Shape&) = default;
-  friend auto operator<=>(const Shape&, const Shape&) = default;
+  friend std::strong_ordering operator<=>(const Shape&, const Shape&) = default;
 };
 
 /// The boxes of one shape, at most. Built-in kinds have at most eight.
