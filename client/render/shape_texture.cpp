@@ -9,7 +9,8 @@ namespace {
 std::uint32_t texel_of(const ShapeFace& face) {
   std::uint32_t out = 0;
   unsigned shift = 0;
-  for (const std::uint8_t value : {face.depth, face.far_depth, face.u0, face.u1, face.v0, face.v1}) {
+  for (const std::uint8_t value :
+       {face.depth, face.far_depth, face.u0, face.u1, face.v0, face.v1}) {
     out |= std::uint32_t{value} << shift;
     shift += 5;
   }
