@@ -155,8 +155,7 @@ void Walker::step_down(const VoxelSpace& space, const Obstacles& solid) {
   is_on_ground_ = true;
 }
 
-WorldPos Walker::kept_on_edge(const VoxelSpace& space, const Obstacles& solid,
-                              WorldPos by) const {
+WorldPos Walker::kept_on_edge(const VoxelSpace& space, const Obstacles& solid, WorldPos by) const {
   const auto has_ground = [&](double x, double z) {
     const BodyBox there = body_at({feet_.x + x, feet_.y, feet_.z + z});
     return sweep(space, solid, there, {0, -kStepUpMax / 2, 0}).has_value();

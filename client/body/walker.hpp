@@ -59,8 +59,7 @@ class Walker {
   /// Changes the speed as input, ground and liquid want it.
   void accelerate(const WalkInput& input, bool swims);
   /// Moves the body by `by`, and up a step if `may_step_up` and the step is low enough.
-  void move(const VoxelSpace& space, const Obstacles& solid, const WorldPos& by,
-            bool may_step_up);
+  void move(const VoxelSpace& space, const Obstacles& solid, const WorldPos& by, bool may_step_up);
   /// Puts a body that has just walked over an edge onto ground that is low enough for a step down.
   void step_down(const VoxelSpace& space, const Obstacles& solid);
   /// Returns the part of the way over the ground after which the body still stands on something.

@@ -76,6 +76,8 @@ void Play::take_new_materials() {
 void Play::set_materials(const MaterialTable& materials) {
   pipeline_.set_materials(materials);
   motion_.set_materials(materials);
+  const std::vector<Shape> shapes = shapes_of(materials);
+  tool_.set_shapes(ShapeTable(shapes));
   panels_.set_materials(materials);
   others_.set_materials(materials);
   const std::string lost = tool_.box().set_materials(materials);

@@ -11,7 +11,8 @@ namespace runstone {
 class Obstacles {
  public:
   /// Makes obstacles that are all cubes.
-  Obstacles(MaterialSet cubes) : cubes_(std::move(cubes)) {}  // NOLINT(google-explicit-constructor)
+  Obstacles(MaterialSet cubes = {})
+      : cubes_(std::move(cubes)) {}  // NOLINT(google-explicit-constructor)
   /// `cubes` and `shapes` have no material in common. Requires a table in which the materials of
   /// `shapes` are no cubes, and that `shapes` has no unknown ones.
   Obstacles(MaterialSet cubes, MaterialSet shapes, std::shared_ptr<const ShapeTable> table)
