@@ -36,8 +36,9 @@ runstone_installed(core DESCRIPTION "positions, bytes, digests and results")
 runstone_installed(runs REQUIRES runstone-core DESCRIPTION "voxel chunks stored as runs of one material")
 runstone_installed(rights DESCRIPTION "roles, bans and protected boxes" REQUIRES runstone-core)
 runstone_installed(edits REQUIRES runstone-rights runstone-runs libhwy DESCRIPTION "edits of run chunks and the layers they change")
-runstone_installed(collision REQUIRES runstone-runs DESCRIPTION "boxes that move through run chunks")
-runstone_installed(mesh REQUIRES runstone-runs libhwy DESCRIPTION "quads from run chunks")
+runstone_installed(shapes REQUIRES runstone-core DESCRIPTION "voxels that are no cubes: boxes and their surface")
+runstone_installed(collision REQUIRES runstone-runs runstone-shapes DESCRIPTION "boxes that move through run chunks")
+runstone_installed(mesh REQUIRES runstone-runs runstone-shapes libhwy DESCRIPTION "quads from run chunks")
 
 if(RUNSTONE_INSTALL)
   install(EXPORT runstone NAMESPACE runstone:: DESTINATION ${runstone_package} COMPONENT runstone

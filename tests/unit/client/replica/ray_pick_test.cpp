@@ -129,5 +129,5 @@ TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   CHECK_FALSE(pick(replica, ShapeTable{}, {5.5, 5.5, 1}, look_direction(turn / 2, 0),
                    100));  // leaves the shown chunks
   CHECK_FALSE(pick(replica, ShapeTable{}, {NAN, 5.5, 1}, look_direction(0, 0), 10));
-  CHECK_FALSE(pick(Replica{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
+  CHECK_FALSE(pick(Replica{}, ShapeTable{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
 }

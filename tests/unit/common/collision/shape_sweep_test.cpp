@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/collision/sweep.hpp"
-#include "common/core/rng.hpp"
+#include "common/core/hash.hpp"
 
 namespace runstone::test {
 namespace {
