@@ -5,6 +5,9 @@
 #include <set>
 #include <utility>
 
+#include "common/shapes/shape_faces.hpp"
+#include "common/shapes/shape_table.hpp"
+
 namespace runstone {
 namespace {
 
@@ -21,10 +24,18 @@ const char* broken_rule(const SurfaceRule& rule) {
   return nullptr;
 }
 
+/// Fails for a shape that a row of this visibility must not have. A cube is no shape.
+Result<void> check_row_shape(const Shape& shape, Visibility visibility) {
+  if (shape == Shape{}) return {};
+  if (visibility == Visibility::empty)
+    return fail(ErrorCode::bad_value, "a material that is empty has no shape");
+  return check_shape(shape);
+}
+
 }  // namespace
 
 MaterialRow row_of(const MaterialInfo& info) {
-  return {info.name, info.colour, info.visibility, info.body, info.look};
+  return {info.name, info.colour, info.visibility, info.body, info.look, info.shape};
 }
 
 MaterialTable::MaterialTable() {
@@ -43,6 +54,8 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
   if (const auto sound =
           validate_material(info.name, info.colour, info.visibility, info.body, info.look);
       !sound)
+    return failure(sound.error());
+  if (const auto sound = check_row_shape(info.shape, info.visibility); !sound)
     return failure(sound.error());
   if (info.generation) {
     if (const char* what = broken_rule(info.generation->surface))
@@ -68,6 +81,8 @@ Result<void> MaterialTable::check_rows(std::span<const MaterialRow> rows) const 
             validate_material(row.name, row.colour, row.visibility, row.body, row.look);
         !sound)
       return fail(sound.error().code, sound.error().what, i);
+    if (const auto sound = check_row_shape(row.shape, row.visibility); !sound)
+      return fail(sound.error().code, sound.error().what, i);
     if (find(row.name) || !names.insert(row.name).second)
       return fail(ErrorCode::bad_value, kNameIsTaken, i);
   }
@@ -80,9 +95,25 @@ Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> 
   if (auto sound = check_rows(rows); !sound) return sound;
   for (const MaterialRow& row : rows) {
     const auto added =
-        add({row.name, row.colour, row.visibility, std::nullopt, row.body, row.look});
+        add({row.name, row.colour, row.visibility, std::nullopt, row.body, row.look, row.shape});
     RUNSTONE_ASSERT(added.has_value());
   }
+  return {};
+}
+
+Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
+  std::set<Material> materials;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const auto& [material, shape] = given[i];
+    if (!knows(material))
+      return fail(ErrorCode::bad_value, "a shape is given to a material that does not exist", i);
+    if (!rows_[material].shape.is_cube() || !materials.insert(material).second)
+      return fail(ErrorCode::bad_value, "a shape is given to a material that has one", i);
+    if (shape.is_cube()) return fail(ErrorCode::bad_value, "a given shape is a cube", i);
+    if (const auto sound = check_row_shape(shape, rows_[material].visibility); !sound)
+      return fail(sound.error().code, sound.error().what, i);
+  }
+  for (const auto& [material, shape] : given) rows_[material].shape = shape;
   return {};
 }
 
@@ -90,6 +121,34 @@ std::vector<Visibility> visibilities(const MaterialTable& table) {
   std::vector<Visibility> out;
   out.reserve(table.size());
   for (const MaterialInfo& row : table.rows()) out.push_back(row.visibility);
+  return out;
+}
+
+std::vector<Visibility> cube_visibilities(const MaterialTable& table) {
+  std::vector<Visibility> out = visibilities(table);
+  for (std::size_t id = 0; id < out.size(); ++id) {
+    if (!table[static_cast<Material>(id)].shape.is_cube()) out[id] = Visibility::empty;
+  }
+  return out;
+}
+
+std::vector<Visibility> half_filled_visibilities(const MaterialTable& table) {
+  constexpr unsigned kHalf = kShapeUnits * kShapeUnits * kShapeUnits / 2;
+  std::vector<Visibility> out = visibilities(table);
+  const std::vector<Shape> by_material = shapes_of(table);
+  const ShapeTable shapes(by_material);
+  for (std::size_t id = 0; id < out.size(); ++id) {
+    const auto material = static_cast<Material>(id);
+    if (!shapes.is_cube(material) && shapes[material].faces.volume() < kHalf)
+      out[id] = Visibility::empty;
+  }
+  return out;
+}
+
+std::vector<Shape> shapes_of(const MaterialTable& table) {
+  std::vector<Shape> out;
+  out.reserve(table.size());
+  for (const MaterialInfo& row : table.rows()) out.push_back(row.shape);
   return out;
 }
 
