@@ -19,7 +19,8 @@ inline constexpr std::uint8_t kShapeUnits = 16;
 struct ShapeBox {
   std::array<std::uint8_t, 3> min{0, 0, 0};                                // 0 .. 15
   std::array<std::uint8_t, 3> max{kShapeUnits, kShapeUnits, kShapeUnits};  // min + 1 .. 16
-  friend auto operator<=>(const ShapeBox&, const ShapeBox&) = default;
+  friend bool operator==(const ShapeBox&, const ShapeBox&) = default;
+  friend std::strong_ordering operator<=>(const ShapeBox& a, const ShapeBox& b);
 };
 
 /// Values are frozen: tables, records and messages hold them.
@@ -33,11 +34,16 @@ struct Shape {
   std::vector<ShapeBox> boxes;  // at most kShapeBoxesMax; none: the material is a cube
   bool is_cube() const { return boxes.empty(); }
   friend bool operator==(const Shape&, const Shape&) = default;
-  friend auto operator<=>(const Shape&, const Shape&) = default;
+  /// Compares the form, then the boxes one by one.
+  friend std::strong_ordering operator<=>(const Shape& a, const Shape& b);
 };
 
 /// The boxes of one shape, at most. Built-in kinds have at most eight.
 inline constexpr std::size_t kShapeBoxesMax = 32;
+
+/// The different shapes of the materials of one world, at most. The bound keeps Welcome within its
+/// class, and numbers of shapes within 16 bits.
+inline constexpr std::size_t kTableShapesMax = 4096;
 
 /// Fails (bad_value) for an unknown form, a cube with the form `crossed`, or a box that is empty or
 /// leaves the voxel, and (limit_exceeded) for more than kShapeBoxesMax boxes. The offset of the
