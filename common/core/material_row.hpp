@@ -32,15 +32,15 @@ struct MaterialRow {
   Visibility visibility = Visibility::opaque;
   MaterialBody body = MaterialBody::solid;
   std::optional<MaterialLook> look = std::nullopt;  // if none is given, readers take default_look()
-  Shape shape;                                      // a cube in a material that is empty
+  Shape shape = {};                                 // a cube in a material that is empty
   friend bool operator==(const MaterialRow&, const MaterialRow&) = default;
 };
 
 inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
 /// Fails (bad_value) for a bad name, for an opaque material with alpha below 255, for a body that
-/// is unknown or that an empty material has, and for a bad look (validate_look()). A shape is checked
-/// apart (validate_shape()).
+/// is unknown or that an empty material has, and for a bad look (validate_look()). A shape is
+/// checked apart (validate_shape()).
 Result<void> validate_material(std::string_view name, const MaterialColour& colour,
                                Visibility visibility, MaterialBody body,
                                const std::optional<MaterialLook>& look);

@@ -20,7 +20,7 @@ struct ShapeBox {
   std::array<std::uint8_t, 3> min{0, 0, 0};                                // 0 .. 15
   std::array<std::uint8_t, 3> max{kShapeUnits, kShapeUnits, kShapeUnits};  // min + 1 .. 16
   friend bool operator==(const ShapeBox&, const ShapeBox&) = default;
-  friend std::strong_ordering operator<=>(const ShapeBox& a, const ShapeBox& b);
+  friend std::strong_ordering operator<=>(const ShapeBox&, const ShapeBox&) = default;
 };
 
 /// Values are frozen: tables, records and messages hold them.
@@ -34,8 +34,7 @@ struct Shape {
   std::vector<ShapeBox> boxes;  // at most kShapeBoxesMax; none: the material is a cube
   bool is_cube() const { return boxes.empty(); }
   friend bool operator==(const Shape&, const Shape&) = default;
-  /// Compares the form, then the boxes one by one.
-  friend std::strong_ordering operator<=>(const Shape& a, const Shape& b);
+  friend std::strong_ordering operator<=>(const Shape&, const Shape&) = default;
 };
 
 /// The boxes of one shape, at most. Built-in kinds have at most eight.

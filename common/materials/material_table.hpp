@@ -44,7 +44,7 @@ struct MaterialInfo {
   std::optional<GenerationRule> generation;
   MaterialBody body = MaterialBody::solid;
   std::optional<MaterialLook> look = std::nullopt;  // as that of a MaterialRow
-  Shape shape;                                      // as that of a MaterialRow
+  Shape shape = {};                                 // as that of a MaterialRow
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
 };
 

@@ -1,7 +1,6 @@
 // ShapeTable: the shapes of all materials as the mesher, the GPU and collisions read them.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
