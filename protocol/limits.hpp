@@ -10,6 +10,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/extent.hpp"
+#include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
 
@@ -76,7 +77,7 @@ static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax,
 inline constexpr unsigned kVerifierDepthMax = 8;
 inline constexpr unsigned kVerifierTablesMax = 2 * kMaterialCountMax + 16;
 static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 40) +
-                      kTableShapesMax * (2 + 6 * kShapeBoxesMax) <=
+                      kTableShapesMax * kShapeBytesMax <=
                   kServerControlBytesMax,
               "a full material table fits Welcome, with its shapes");
 

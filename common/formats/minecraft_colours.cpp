@@ -454,11 +454,11 @@ constexpr NamedAppearance kCorals[] = {
 };
 
 /// Ends of names that are a shape of the material before them.
-struct Shape {
+struct NameEnd {
   std::string_view end;
   Form form;
 };
-constexpr Shape kShapes[] = {
+constexpr NameEnd kShapes[] = {
     {"_stairs", Form::solid},
     {"_slab", Form::solid},
     {"_wall_hanging_sign", Form::thin},
@@ -713,7 +713,7 @@ std::optional<Appearance> composed_appearance(std::string_view name) {
       return found;
     }
     const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
-                                     [&](const Shape& s) { return name.ends_with(s.end); });
+                                     [&](const NameEnd& s) { return name.ends_with(s.end); });
     if (shape != std::end(kShapes)) {
       name.remove_suffix(shape->end.size());
       if (!form) form = shape->form;
@@ -793,7 +793,7 @@ MaterialLook surface_of(std::string_view name, MaterialBody body, const StateLis
   if (name.ends_with("_ore") || name.ends_with("_coral_block")) like = "stone";
   const auto* wood = find_begin(kWoods, name);
   if (wood != nullptr && std::any_of(std::begin(kShapes), std::end(kShapes),
-                                     [&](const Shape& s) { return name.ends_with(s.end); }))
+                                     [&](const NameEnd& s) { return name.ends_with(s.end); }))
     like = "planks";
   MaterialLook look = default_look(like, body);
   // The words of default_look() do not know which blocks of this game are lit.

@@ -1,31 +1,45 @@
 #include "common/shapes/shape_bytes.hpp"
 
-#include <algorithm>
+#include "common/core/assert.hpp"
+#include "common/shapes/shape_faces.hpp"
 
 namespace runstone {
 
-void write_shape(ByteWriter& w, const Shape& shape) {
-  w.u8(static_cast<std::uint8_t>(shape.form));
-  w.varint(shape.boxes.size());
+void write_shape(ByteWriter& out, const Shape& shape) {
+  RUNSTONE_ASSERT(!shape.is_cube() && shape.boxes.size() <= kShapeBoxesMax);
+  out.u8(static_cast<std::uint8_t>(shape.form));
+  out.u8(static_cast<std::uint8_t>(shape.boxes.size()));
   for (const ShapeBox& box : shape.boxes) {
-    w.bytes(box.min);
-    w.bytes(box.max);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out.u8(static_cast<std::uint8_t>(box.min[axis] | (box.max[axis] - 1) << 4));
   }
 }
 
-Shape read_shape(ByteReader& r) {
-  Shape shape;
-  shape.form = static_cast<ShapeForm>(r.u8());
-  const std::uint64_t count = r.varint_max(kShapeBoxesMax, "a shape has more than 32 boxes");
-  while (r.ok() && shape.boxes.size() < count) {
-    ShapeBox box;
-    for (auto* corner : {&box.min, &box.max}) {
-      const ByteView bytes = r.bytes(corner->size());
-      std::copy(bytes.begin(), bytes.end(), corner->begin());
-    }
-    if (r.ok()) shape.boxes.push_back(box);
+Shape read_shape(ByteReader& in) {
+  Shape out;
+  const std::uint8_t form = in.u8(), count = in.u8();
+  if (!in.ok()) return {};
+  if (form > static_cast<std::uint8_t>(ShapeForm::crossed) || count == 0 ||
+      count > kShapeBoxesMax) {
+    in.reject(ErrorCode::bad_value, "form of a shape is unknown, or it has not 1 .. 32 boxes");
+    return {};
   }
-  return shape;
+  out.form = static_cast<ShapeForm>(form);
+  for (std::uint8_t i = 0; i < count; ++i) {
+    ShapeBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint8_t byte = in.u8();
+      box.min[axis] = byte & 15;
+      box.max[axis] = static_cast<std::uint8_t>((byte >> 4) + 1);
+    }
+    out.boxes.push_back(box);
+  }
+  if (!in.ok()) return {};
+  if (const auto valid = check_shape(out); !valid) {
+    in.reject(valid.error().code, valid.error().what);
+    return {};
+  }
+  return out;
 }
 
 }  // namespace runstone

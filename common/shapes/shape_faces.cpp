@@ -103,6 +103,16 @@ ShapeFaces::ShapeFaces(const Shape& shape) {
   }
 }
 
+Result<void> check_shape(const Shape& shape) {
+  if (auto valid = validate_shape(shape); !valid) return valid;
+  if (shape.is_cube()) return fail(ErrorCode::bad_value, "a shape has no box");
+  if (ShapeFaces(shape).faces().size() > kShapeFacesMax) {
+    return fail(ErrorCode::limit_exceeded, "a shape has more than 1023 faces; use fewer boxes",
+                kShapeFacesMax);
+  }
+  return {};
+}
+
 bool is_on_border(const ShapeFace& face) {
   return face.is_flat() && face.depth == (is_positive(face.direction) ? kShapeUnits : 0);
 }

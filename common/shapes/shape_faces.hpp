@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/coords.hpp"
+#include "common/core/result.hpp"
 #include "common/core/shape.hpp"
 
 namespace runstone {
@@ -51,6 +52,11 @@ class ShapeFaces {
 /// A shape of more faces is not accepted: a quad has ten bits for the number of the face
 /// (common/mesh/quad.hpp).
 inline constexpr std::size_t kShapeFacesMax = 1023;
+
+/// Returns success for a shape that a material may have. Fails as validate_shape() does, with
+/// bad_value for a cube, and with limit_exceeded for more than kShapeFacesMax faces. Shapes from
+/// outside pass through here. Cost: that of ShapeFaces.
+Result<void> check_shape(const Shape& shape);
 
 /// Returns true if the face lies on the border of the voxel that its direction names.
 bool is_on_border(const ShapeFace& face);

@@ -44,8 +44,6 @@ Result<std::vector<Shape>> decode_shapes(ByteView bytes) {
       return fail(ErrorCode::limit_exceeded, "more than 4096 different shapes");
     Shape shape = read_shape(r);
     if (!r.ok()) break;
-    if (shape.is_cube()) return fail(ErrorCode::bad_value, "a shape of the list is a cube");
-    if (const auto sound = validate_shape(shape); !sound) return failure(sound.error());
     if (!shapes.empty() && shapes.back() >= shape)
       return fail(ErrorCode::not_canonical, "shapes of the list do not ascend", r.offset());
     shapes.push_back(std::move(shape));

@@ -66,7 +66,7 @@ void run_script(ByteReader& in) {
   extent.y = static_cast<std::uint8_t>(8 + in.u8() % 17);
   extent.z = static_cast<std::uint8_t>(8 + in.u8() % 17);
   const AxisOrder order = kAxisOrders[in.u8() % kAxisOrderCount];
-  const auto shape = static_cast<Shape>(in.u8() % kShapeCount);
+  const auto shape = static_cast<ChunkShape>(in.u8() % kShapeCount);
   SplitMix64 rng{in.u16()};
   RunChunk chunk = random_chunk(rng, extent, order, 4, shape);
   DenseChunk oracle = DenseChunk::of(chunk);

@@ -4,48 +4,32 @@
 #include <set>
 
 #include "common/core/assert.hpp"
-#include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
 namespace {
-
-/// At most the bytes of a row: the step from the material before, and the number of its shape.
-constexpr std::size_t kGivenRowBytesMax = 3 + 2;
-/// At most the bytes of both counts.
-constexpr std::size_t kGivenCountBytesMax = 2 + 2;
 
 struct ShapeBefore {
   bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
 };
 using ShapeSet = std::set<const Shape*, ShapeBefore>;
 
-std::size_t bytes_of_shape(const Shape& shape) {
-  Bytes bytes;
-  ByteWriter w(bytes);
-  write_shape(w, shape);
-  return bytes.size();
-}
-
 /// Counts the rows of a record as they are added.
 class GivenCount {
  public:
   /// Returns false if a record has no room for the row as well. The shape must outlive the object.
   bool add(const GivenShape& row) {
-    const bool is_new = !shapes_.contains(&row.shape);
-    const std::size_t bytes =
-        bytes_ + kGivenRowBytesMax + (is_new ? bytes_of_shape(row.shape) : std::size_t{0});
-    if (rows_ == kGivenShapesMax || (is_new && shapes_.size() == kDifferentShapesMax) ||
-        bytes > kGivenShapesBytesMax)
-      return false;
-    if (is_new) shapes_.insert(&row.shape);
-    bytes_ = bytes;
+    if (rows_ == kGivenShapesMax) return false;
+    if (!shapes_.contains(&row.shape)) {
+      if (shapes_.size() == kDifferentShapesMax) return false;
+      shapes_.insert(&row.shape);
+    }
     ++rows_;
     return true;
   }
 
  private:
   ShapeSet shapes_;
-  std::size_t rows_ = 0, bytes_ = kGivenCountBytesMax;
+  std::size_t rows_ = 0;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/given_shape.hpp"
 #include "common/core/result.hpp"
+#include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
 
@@ -20,11 +21,13 @@ struct GivenShapes {
 inline constexpr std::size_t kGivenShapesMax = 512;
 /// The different shapes of one record, at most.
 inline constexpr std::size_t kDifferentShapesMax = 256;
-/// The maximum size of the bytes. A record is then no larger than the largest edit of a player.
-inline constexpr std::size_t kGivenShapesBytesMax = 32 * 1024;
+/// The maximum size of the bytes: both counts, the shapes, and of each row the step from the material
+/// before and the number of its shape. A record is then no larger than the largest edit of a player.
+inline constexpr std::size_t kGivenShapesBytesMax =
+    2 + kDifferentShapesMax * kShapeBytesMax + 2 + kGivenShapesMax * (3 + 2);
 
 /// Fails if a shape is not valid or a cube, if the materials do not ascend or are out of range, or if
-/// there are too many rows, different shapes or bytes. Cost: O(n log n).
+/// there are too many rows or different shapes. Cost: O(n log n).
 Result<void> validate(const GivenShapes& given);
 
 /// Returns the first rows, as many as one record may have. Requires at least one row, and rows that

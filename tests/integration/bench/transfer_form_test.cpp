@@ -19,7 +19,7 @@ namespace runstone::bench {
 namespace {
 
 LitChunk random_lit(SplitMix64& rng, unsigned materials) {
-  const auto shape = static_cast<test::Shape>(rng.below(test::kShapeCount));
+  const auto shape = static_cast<test::ChunkShape>(rng.below(test::kShapeCount));
   const RunChunk wide =
       test::random_chunk(rng, Extent::cube(kByteEdge), test::random_order(rng), materials, shape);
   RunBuilder runs(wide.extent, wide.order);

@@ -46,7 +46,8 @@ TEST_CASE("the largest and the flattest extents: meshers of polygons",
 TEST_CASE("noise and checkerboards: meshers of polygons", "[mesh][property][polygons]") {
   SplitMix64 rng(Catch::rngSeed() + 53);
   PolygonChecks checks;
-  for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
+  for (const ChunkShape shape :
+       {ChunkShape::checkerboard, ChunkShape::noise, ChunkShape::uniform}) {
     for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
       const Extent extent{33, 40, 31};
       MeshScene scene{random_chunk(rng, extent, random_order(rng), materials, shape), {}};

@@ -66,7 +66,8 @@ TEST_CASE("shapes with a face on every voxel, and with none: every reference mes
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 23);
   MesherChecks checks;
-  for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
+  for (const ChunkShape shape :
+       {ChunkShape::checkerboard, ChunkShape::noise, ChunkShape::uniform}) {
     for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
       for (const AxisOrder order : kAxisOrders) {
         const Extent extent{33, 40, 31};

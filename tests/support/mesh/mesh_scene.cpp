@@ -98,7 +98,7 @@ MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order) {
   MeshScene scene;
   scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
   for (auto& neighbour : scene.neighbours) {
-    neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
+    neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, ChunkShape::boxes);
   }
   return scene;
 }

@@ -92,13 +92,13 @@ Extent random_extent(SplitMix64& rng, unsigned side_max) {
 AxisOrder random_order(SplitMix64& rng) { return kAxisOrders[rng.below(kAxisOrderCount)]; }
 
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials,
-                      Shape shape) {
+                      ChunkShape shape) {
   RUNSTONE_ASSERT(materials >= 1 && materials <= 65536);
   const Palette palette(rng, materials);
   switch (shape) {
-    case Shape::uniform:
+    case ChunkShape::uniform:
       return uniform_chunk(extent, palette.pick(rng), order);
-    case Shape::layered: {
+    case ChunkShape::layered: {
       std::vector<Material> layers(extent.y);
       for (std::size_t y = 0; y < layers.size(); ++y) {
         layers[y] = y > 0 && rng.below(3) != 0 ? layers[y - 1] : palette.pick(rng);
@@ -106,7 +106,7 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
       return stream(extent, order,
                     [&](int, int y, int) { return layers[static_cast<std::size_t>(y)]; });
     }
-    case Shape::
+    case ChunkShape::
         // A height map: ground of two materials, water up to a level, empty above.
         columns: {
       std::vector<int> heights(static_cast<std::size_t>(extent.x) * extent.z);
@@ -123,11 +123,11 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
         return palette.id(y < water ? ground + 2 : 0);
       });
     }
-    case Shape::boxes:
-    case Shape::spheres: {
+    case ChunkShape::boxes:
+    case ChunkShape::spheres: {
       const std::vector<Blob> blobs = random_blobs(rng, extent, palette);
       const Material ground = palette.pick(rng);
-      const bool round = shape == Shape::spheres;
+      const bool round = shape == ChunkShape::spheres;
       return stream(extent, order, [&](int x, int y, int z) {
         for (const Blob& b : blobs) {
           if (round ? in_ball(b, x, y, z) : in_box(b, x, y, z)) return b.material;
@@ -136,16 +136,16 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
       });
     }
     // Mostly one material with ores in it.
-    case Shape::speckled: {
+    case ChunkShape::speckled: {
       const Material ground = palette.pick(rng);
       const std::uint32_t rarity = 2 + rng.below(200);
       return stream(extent, order, [&](int, int, int) {
         return rng.below(rarity) == 0 ? palette.pick(rng) : ground;
       });
     }
-    case Shape::noise:
+    case ChunkShape::noise:
       return stream(extent, order, [&](int, int, int) { return palette.pick(rng); });
-    case Shape::checkerboard: {
+    case ChunkShape::checkerboard: {
       const std::uint32_t other = 1 + rng.below(materials);
       return stream(extent, order, [&](int x, int y, int z) {
         return palette.id(((x + y + z) & 1) != 0 ? other : 0);
@@ -156,7 +156,8 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
 }
 
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials) {
-  return random_chunk(rng, extent, order, materials, static_cast<Shape>(rng.below(kShapeCount)));
+  return random_chunk(rng, extent, order, materials,
+                      static_cast<ChunkShape>(rng.below(kShapeCount)));
 }
 
 RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials) {

@@ -14,12 +14,12 @@ Extent random_extent(SplitMix64& rng, unsigned side_max = 40);
 AxisOrder random_order(SplitMix64& rng);
 
 /// The arrangement of the voxels of a random chunk.
-enum class Shape { uniform, layered, columns, boxes, spheres, speckled, noise, checkerboard };
+enum class ChunkShape { uniform, layered, columns, boxes, spheres, speckled, noise, checkerboard };
 inline constexpr int kShapeCount = 8;
 
 /// Draws from `materials` ids, among them 0, the empty one. Requires 1 <= materials <= 65,536.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials,
-                      Shape shape);
+                      ChunkShape shape);
 /// Draws any shape.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials);
 /// Draws any shape and order over sides 8 .. side_max.

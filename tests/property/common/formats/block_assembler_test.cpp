@@ -20,7 +20,7 @@ Blocks random_blocks(SplitMix64& random, std::int32_t edge, ChunkCoord at) {
     if (random.below(4) == 0) continue;
     const ChunkCoord block{at.x * side + i % side, at.y * side + i / side % side,
                            at.z * side + i / side / side};
-    const auto shape = static_cast<Shape>(random.below(kShapeCount));
+    const auto shape = static_cast<ChunkShape>(random.below(kShapeCount));
     blocks.emplace(
         block, random_chunk(random, Extent::cube(16), AxisOrder::xyz, 1 + random.below(20), shape));
   }

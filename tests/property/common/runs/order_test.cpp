@@ -51,7 +51,8 @@ TEST_CASE("every extent reorders from every order into every order", "[runs][pro
   CAPTURE(Catch::rngSeed());
   for (int shape = 0; shape < test::kShapeCount; ++shape) {
     for (const AxisOrder order : kAxisOrders) {
-      check_orders(test::random_chunk(rng, {8, 9, 10}, order, 3, static_cast<test::Shape>(shape)));
+      check_orders(
+          test::random_chunk(rng, {8, 9, 10}, order, 3, static_cast<test::ChunkShape>(shape)));
     }
   }
 }
@@ -60,9 +61,10 @@ TEST_CASE("the axis order changes between the narrow and the wide form's limits 
           "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   CAPTURE(Catch::rngSeed());
-  check_orders(test::random_chunk(rng, {71, 71, 13}, AxisOrder::zxy, 4, test::Shape::noise));
-  check_orders(test::random_chunk(rng, {32, 32, 64}, AxisOrder::yzx, 4, test::Shape::speckled));
-  check_orders(test::random_chunk(rng, {8, 128, 65}, AxisOrder::xyz, 4, test::Shape::columns));
+  check_orders(test::random_chunk(rng, {71, 71, 13}, AxisOrder::zxy, 4, test::ChunkShape::noise));
+  check_orders(
+      test::random_chunk(rng, {32, 32, 64}, AxisOrder::yzx, 4, test::ChunkShape::speckled));
+  check_orders(test::random_chunk(rng, {8, 128, 65}, AxisOrder::xyz, 4, test::ChunkShape::columns));
 }
 
 TEST_CASE("a layer reads as the oracle's voxels, along every axis and either way round",

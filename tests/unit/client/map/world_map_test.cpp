@@ -115,7 +115,7 @@ TEST_CASE("a step has bounded work, and near tiles come first", "[client_map]") 
       ChunkSnapshot snapshot;
       snapshot.key = {0, {x, 0, z}};
       snapshot.chunk.voxels =
-          random_chunk(rng, Extent::cube(kBigEdge), AxisOrder::xzy, 4, Shape::spheres);
+          random_chunk(rng, Extent::cube(kBigEdge), AxisOrder::xzy, 4, ChunkShape::spheres);
       snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
       replica.receive(chunks_of(std::move(snapshot)), {1000, 1100, 1200});
     }

@@ -31,7 +31,7 @@ struct CopyFixture {
           ChunkSnapshot snapshot;
           snapshot.key = {0, {x, y, z}};
           snapshot.chunk.voxels =
-              random_chunk(rng, Extent::cube(kCopyEdge), random_order(rng), 4, Shape::boxes);
+              random_chunk(rng, Extent::cube(kCopyEdge), random_order(rng), 4, ChunkShape::boxes);
           snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
           replica.receive(test::chunks_of(std::move(snapshot)), kNow);
         }

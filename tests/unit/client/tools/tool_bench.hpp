@@ -36,7 +36,7 @@ class ToolBench {
   /// Shows the same chunks with random voxels of the materials 0 .. 3.
   void show_random() {
     for_each_chunk([&](ChunkCoord at) {
-      const Shape shape = rng.between(0, 1) == 0 ? Shape::boxes : Shape::spheres;
+      const ChunkShape shape = rng.between(0, 1) == 0 ? ChunkShape::boxes : ChunkShape::spheres;
       show(at, random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, shape));
     });
   }

@@ -65,7 +65,7 @@ TEST_CASE("the tops of random stacks of chunks are those of the dense oracle", "
   for (int round = 0; round < 60; ++round) {
     std::vector<RunChunk> chunks;
     for (std::uint32_t i = 0; i <= rng.below(4); ++i) {
-      const auto shape = static_cast<test::Shape>(rng.next() % test::kShapeCount);
+      const auto shape = static_cast<test::ChunkShape>(rng.next() % test::kShapeCount);
       chunks.push_back(
           test::random_chunk(rng, Extent::cube(kSide), test::random_order(rng), 5, shape));
     }

@@ -48,7 +48,7 @@ TEST_CASE("the tops of random chunks are those of the dense oracle, in every axi
     ShowingMaterials showing;
     while (showing.size() < rng.next() % 8) showing.push_back(rng.next() % 2 == 0);
     if (!showing.empty()) showing[0] = false;
-    const auto shape = static_cast<test::Shape>(rng.next() % test::kShapeCount);
+    const auto shape = static_cast<test::ChunkShape>(rng.next() % test::kShapeCount);
     for (const AxisOrder order : kAxisOrders) {
       const RunChunk chunk = test::random_chunk(rng, extent, order, materials, shape);
       CAPTURE(Catch::rngSeed(), round, static_cast<int>(order), static_cast<int>(shape));
@@ -67,8 +67,10 @@ TEST_CASE("a chunk below fills only the columns that are open", "[runs][column_t
   for (const AxisOrder above_order : kAxisOrders) {
     for (const AxisOrder below_order : kAxisOrders) {
       const Extent extent{9, 16, 12};
-      const RunChunk above = test::random_chunk(rng, extent, above_order, 3, test::Shape::spheres);
-      const RunChunk below = test::random_chunk(rng, extent, below_order, 3, test::Shape::boxes);
+      const RunChunk above =
+          test::random_chunk(rng, extent, above_order, 3, test::ChunkShape::spheres);
+      const RunChunk below =
+          test::random_chunk(rng, extent, below_order, 3, test::ChunkShape::boxes);
       std::vector<ColumnTop> expected = dense_tops(DenseChunk::of(above), 16, showing);
       const std::vector<ColumnTop> under = dense_tops(DenseChunk::of(below), 0, showing);
       for (std::size_t i = 0; i < expected.size(); ++i) {

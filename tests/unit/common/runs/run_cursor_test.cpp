@@ -20,7 +20,8 @@ std::size_t run_of(const RunList& runs, std::uint32_t voxel) {
 
 TEST_CASE("a cursor steps through every run", "[runs][cursor]") {
   SplitMix64 rng(1);
-  const RunChunk chunk = test::random_chunk(rng, {8, 9, 10}, AxisOrder::zxy, 3, test::Shape::noise);
+  const RunChunk chunk =
+      test::random_chunk(rng, {8, 9, 10}, AxisOrder::zxy, 3, test::ChunkShape::noise);
   chunk.runs.visit([&](auto runs) {
     RunCursor cursor(runs);
     for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
@@ -55,7 +56,7 @@ TEST_CASE("seeks of every distance from every kind of start land as a plain sear
   SplitMix64 rng(3);
   for (int round = 0; round < 30; ++round) {
     const RunChunk chunk = round % 5 == 4 ? test::random_chunk(rng, {40, 41, 42}, AxisOrder::yxz, 5,
-                                                               test::Shape::speckled)
+                                                               test::ChunkShape::speckled)
                                           : test::random_chunk(rng, 16, 3);
     chunk.runs.visit([&](auto runs) {
       RunCursor cursor(runs);

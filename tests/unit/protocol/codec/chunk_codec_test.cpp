@@ -253,7 +253,8 @@ TEST_CASE("a chunk of another extent than expected is refused in every encoding"
 
 TEST_CASE("the largest chunk comes back from all encodings and fits its limit", "[protocol]") {
   SplitMix64 rng{9};
-  const RunChunk chunk = random_chunk(rng, Extent::cube(128), AxisOrder::xyz, 65'536, Shape::noise);
+  const RunChunk chunk =
+      random_chunk(rng, Extent::cube(128), AxisOrder::xyz, 65'536, ChunkShape::noise);
   REQUIRE(chunk.runs.size() > 2'000'000);
   for (const ChunkEncoding encoding :
        {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {

@@ -74,7 +74,7 @@ TEST_CASE("a zstd bomb allocates what its run count allows, whatever its content
 
 TEST_CASE("after the first chunks the codec allocates only the decoded chunk", "[protocol]") {
   SplitMix64 rng{3};
-  const RunChunk chunk = random_chunk(rng, Extent::cube(32), AxisOrder::xyz, 40, Shape::boxes);
+  const RunChunk chunk = random_chunk(rng, Extent::cube(32), AxisOrder::xyz, 40, ChunkShape::boxes);
   for (const ChunkEncoding encoding :
        {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     Bytes out;

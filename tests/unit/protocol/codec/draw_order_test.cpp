@@ -40,7 +40,7 @@ DrawPicture sample_picture() {
 
 RunChunk sample_voxels() {
   SplitMix64 rng(7);
-  return random_chunk(rng, Extent::cube(kEdge), AxisOrder::xzy, 3, Shape::boxes);
+  return random_chunk(rng, Extent::cube(kEdge), AxisOrder::xzy, 3, ChunkShape::boxes);
 }
 
 Bytes world() {

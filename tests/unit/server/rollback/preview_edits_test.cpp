@@ -16,7 +16,7 @@ RestorePlan noisy_plan(SplitMix64& rng, ChunkCoord at, unsigned edge = kEdge) {
   RestorePlan plan;
   plan.key = {0, at};
   plan.now = uniform_chunk(Extent::cube(edge), 4);
-  plan.restored = random_chunk(rng, Extent::cube(edge), AxisOrder::xyz, 4, Shape::noise);
+  plan.restored = random_chunk(rng, Extent::cube(edge), AxisOrder::xyz, 4, ChunkShape::noise);
   append_differences(plan.now, plan.restored, plan.differences);
   return plan;
 }

@@ -383,8 +383,9 @@ TEST_CASE("careful pastes leave alone what was changed since the plan", "[rollba
 TEST_CASE("differences that are too large for one clipboard are pasted in parts", "[rollback]") {
   SplitMix64 rng(6);
   // The voxels are noise of many materials, more than a clipboard may hold.
-  const RunChunk now = random_chunk(rng, Extent::cube(64), AxisOrder::zxy, 40'000, Shape::noise);
-  const RunChunk restored = random_chunk(rng, now.extent, now.order, 40'000, Shape::noise);
+  const RunChunk now =
+      random_chunk(rng, Extent::cube(64), AxisOrder::zxy, 40'000, ChunkShape::noise);
+  const RunChunk restored = random_chunk(rng, now.extent, now.order, 40'000, ChunkShape::noise);
   std::vector<Difference> differences;
   append_differences(now, restored, differences);
   const VoxelPos origin = {-64, 128, 64};

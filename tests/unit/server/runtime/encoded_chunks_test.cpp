@@ -14,7 +14,7 @@ constexpr ChunkKey kKey{0, {1, 2, 3}};
 
 ChunkPtr some_chunk(SplitMix64& rng) {
   Chunk chunk;
-  chunk.voxels = random_chunk(rng, Extent::cube(16), AxisOrder::xyz, 5, Shape::speckled);
+  chunk.voxels = random_chunk(rng, Extent::cube(16), AxisOrder::xyz, 5, ChunkShape::speckled);
   chunk.version = {1, 1 + rng.below(1000)};
   chunk.digest = digest_of(chunk.voxels);
   return std::make_shared<const Chunk>(std::move(chunk));

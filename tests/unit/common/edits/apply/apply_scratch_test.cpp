@@ -12,7 +12,8 @@ TEST_CASE("applying stacks allocates nothing once scratch, result and chunk have
   SplitMix64 rng{31};
   ApplyScratch scratch;
   ApplyResult result;
-  const RunChunk start = random_chunk(rng, Extent::cube(32), AxisOrder::yxz, 5, Shape::columns);
+  const RunChunk start =
+      random_chunk(rng, Extent::cube(32), AxisOrder::yxz, 5, ChunkShape::columns);
   std::vector<EditDescriptor> edits(100);
   for (EditDescriptor& edit : edits) {
     do {

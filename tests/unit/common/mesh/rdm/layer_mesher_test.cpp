@@ -201,7 +201,7 @@ TEST_CASE("a wall is one quad when its hole is filled, across the border of a ch
 TEST_CASE("a part pays for one layer, and not for all layers or an empty chunk", "[mesh]") {
   SplitMix64 rng(20261204);
   const Extent extent = Extent::cube(32);
-  MeshScene scene{random_chunk(rng, extent, AxisOrder::xyz, 3, Shape::speckled), {}};
+  MeshScene scene{random_chunk(rng, extent, AxisOrder::xyz, 3, ChunkShape::speckled), {}};
   RdmScratch scratch;
   ChunkMesh mesh;
   mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
