@@ -1,9 +1,5 @@
-<<<<<<< HEAD
-// GivenShape: the shape that a material of a world gets after its row was made, once.
-=======
 // GivenShape: a shape that a row of the material table gets after it was added. It is the one change
 // of a row that there is, and each row has it once.
->>>>>>> i49shape
 #pragma once
 #include "common/core/ids.hpp"
 #include "common/core/shape.hpp"
