@@ -12,6 +12,7 @@
 #include "server/admin/player_commands.hpp"
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
+#include "server/admin/shape_commands.hpp"
 
 namespace runstone {
 namespace {

@@ -39,16 +39,15 @@ std::string added_materials_text(const AddedMaterials& added) {
   return text;
 }
 
-std::string given_shapes_text(const GivenShapes& given, const MaterialTable& materials) {
-  std::string text = given.rows.size() == 1 ? "shape of " : "shapes of ";
+std::string given_names_text(std::span<const GivenShape> given, const MaterialTable& materials) {
+  std::string text;
   std::size_t shown = 0;
-  for (; shown < std::min(given.rows.size(), kRowsInLine); ++shown) {
-    const Material id = given.rows[shown].material;
+  for (; shown < std::min(given.size(), kRowsInLine); ++shown) {
+    const Material id = given[shown].material;
     text += shown == 0 ? "" : ", ";
     text += materials.knows(id) ? materials[id].name : std::to_string(id);
   }
-  if (given.rows.size() > shown)
-    text += " and " + std::to_string(given.rows.size() - shown) + " more";
+  if (given.size() > shown) text += " and " + std::to_string(given.size() - shown) + " more";
   return text;
 }
 

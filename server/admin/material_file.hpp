@@ -23,8 +23,8 @@ std::vector<std::string> material_lines(Material first, std::span<const Material
 /// Returns these texts of the first eight rows in one line, for the command `log`.
 std::string added_materials_text(const AddedMaterials& added);
 
-/// Returns a text such as "shapes of oak_slab, oak_stairs and 3 more" with the first eight names, for the
-/// command `log`. Materials that the table lacks are shown by their ids.
-std::string given_shapes_text(const GivenShapes& given, const MaterialTable& materials);
+/// Returns a text such as "oak_slab, oak_stairs and 3 more" with the names of the first eight
+/// materials. Those that the table lacks are shown by their ids.
+std::string given_names_text(std::span<const GivenShape> given, const MaterialTable& materials);
 
 }  // namespace runstone
