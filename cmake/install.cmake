@@ -37,7 +37,8 @@ runstone_installed(runs REQUIRES runstone-core DESCRIPTION "voxel chunks stored 
 runstone_installed(rights DESCRIPTION "roles, bans and protected boxes" REQUIRES runstone-core)
 runstone_installed(edits REQUIRES runstone-rights runstone-runs libhwy DESCRIPTION "edits of run chunks and the layers they change")
 runstone_installed(collision REQUIRES runstone-runs DESCRIPTION "boxes that move through run chunks")
-runstone_installed(mesh REQUIRES runstone-runs libhwy DESCRIPTION "quads from run chunks")
+runstone_installed(shapes DESCRIPTION "the surface of voxels that are no cubes" REQUIRES runstone-core)
+runstone_installed(mesh REQUIRES runstone-runs runstone-shapes libhwy DESCRIPTION "quads from run chunks")
 
 if(RUNSTONE_INSTALL)
   install(EXPORT runstone NAMESPACE runstone:: DESTINATION ${runstone_package} COMPONENT runstone

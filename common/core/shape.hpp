@@ -37,7 +37,7 @@ struct Shape {
   friend std::strong_ordering operator<=>(const Shape&, const Shape&) = default;
 };
 
-/// The boxes of one shape, at most. Built-in kinds have at most eight.
+/// The boxes of one shape, at most. Built-in kinds have fewer than half of them.
 inline constexpr std::size_t kShapeBoxesMax = 32;
 
 /// The different shapes of the materials of one world, at most. The bound keeps Welcome within its

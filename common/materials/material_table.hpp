@@ -1,18 +1,20 @@
 // MaterialTable: the properties of each material id. It is a data file (TOML) like the thesis'
-// table (7.4): row i describes id i. Rows never change and are never removed; rows may be appended.
-// Id 0 is always "air", empty.
+// table (7.4): row i describes id i. Rows are never removed, and rows may be appended. A row never
+// changes, but it may get a shape once. Id 0 is always "air", empty.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/given_shape.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/material_row.hpp"
 #include "common/core/result.hpp"
@@ -64,26 +66,46 @@ class MaterialTable {
   std::span<const MaterialInfo> rows() const { return rows_; }
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
-  /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, or a number
-  /// or a look outside its range. Cost: O(log size).
+  /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, a number or a
+  /// look outside its range, or a shape that the material must not have (check_shape(), and none if it
+  /// is empty). Fails with limit_exceeded for more than kTableShapesMax different shapes. Cost:
+  /// O(log size), and that of check_shape() if no row has the shape.
   Result<Material> add(MaterialInfo info);
   /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room
   /// for all of them, and with bad_value for a bad row, or a name that is taken, by the table or by
-  /// an earlier row. The error's offset is the number of the row. Cost: O(rows log size).
+  /// an earlier row, and for a shape as add() does. The error's offset is the number of the row. Cost:
+  /// O(rows log size), and that of check_shape() for each shape that the table lacks.
   Result<void> check_rows(std::span<const MaterialRow> rows) const;
   /// Appends the rows, without generation rules; the first gets the id `first`. Fails as
   /// check_rows() does, and with broken_invariant if `first` is not size(); then nothing changes.
   Result<void> append(Material first, std::span<const MaterialRow> rows);
+
+  /// Gives rows a shape. Fails with bad_value or limit_exceeded if a material is unknown, empty, has
+  /// a shape or occurs twice, or if a shape is a cube or check_shape() fails for it; then nothing
+  /// changes, and for more than kTableShapesMax different shapes. The error's offset is the number
+  /// of the entry. Cost: O(entries log size), and that of check_shape() for each shape that the table
+  /// lacks.
+  Result<void> give_shapes(std::span<const GivenShape> given);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
 
  private:
   std::vector<MaterialInfo> rows_;
   std::map<std::string, Material, std::less<>> ids_;  // row by name
+  std::set<Shape> shapes_;                            // the different ones of the rows
 };
 
 /// Returns the visibility of each material by id, in the form of the mesher's VisibilityTable.
 std::vector<Visibility> visibilities(const MaterialTable& table);
+/// Returns the visibilities for the mesh of the cubes: materials with a shape are empty.
+std::vector<Visibility> cube_visibilities(const MaterialTable& table);
+/// Returns the visibilities for coarse levels of detail: a shape that fills less than half of its
+/// voxel is empty, and any other counts as a cube. Cost: O(materials), and ShapeFaces for each
+/// different shape.
+std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
+
+/// Returns the shape of each material by id, as ShapeTable takes them.
+std::vector<Shape> shapes_of(const MaterialTable& table);
 
 /// Reads `[[material]]` tables in id order, air first. `file` is only for messages. Unknown keys
 /// are errors. docs/materials.md lists the keys.

@@ -65,6 +65,25 @@ std::string look_text(const MaterialLook& look) {
   return keys.empty() ? "{}" : "{" + keys + " }";
 }
 
+std::string shape_text(const Shape& shape) {
+  std::string out = shape.form == ShapeForm::crossed ? "crossed = [" : "shape = [";
+  const char* between = "";
+  for (const ShapeBox& box : shape.boxes) {
+    out += between;
+    between = ", ";
+    char open = '[';
+    for (const auto& corner : {box.min, box.max}) {
+      for (const std::uint8_t place : corner) {
+        out += open;
+        out += std::to_string(place);
+        open = ',';
+      }
+    }
+    out += ']';
+  }
+  return out + "]\n";
+}
+
 }  // namespace
 
 std::string to_toml(const MaterialTable& table) {
@@ -78,6 +97,7 @@ std::string to_toml(const MaterialTable& table) {
     if (row.body != MaterialBody::solid)
       out += std::string("body = \"") + kBodyNames[static_cast<std::size_t>(row.body)] + "\"\n";
     if (row.look) out += "look = " + look_text(*row.look) + "\n";
+    if (!row.shape.is_cube()) out += shape_text(row.shape);
     if (!row.generation) continue;
     out += "[material.generate]\nsurface = " + surface_text(row.generation->surface) + "\n";
     if (row.generation->reversed)

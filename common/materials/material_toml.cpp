@@ -9,6 +9,9 @@
 
 #include "common/materials/material_names.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/shapes/shape_faces.hpp"
+#include "common/shapes/shape_kinds.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 
@@ -142,6 +145,59 @@ class TableReader {
     return out;
   }
 
+  /// Reads the boxes of a shape, each an array of six integers.
+  void boxes(const toml::node& node, const std::string& path, Shape& out) {
+    const toml::array* list = node.as_array();
+    if (list == nullptr || list->empty() || list->size() > kShapeBoxesMax)
+      return reject(node, path, "must be an array of 1 .. 32 boxes");
+    for (const toml::node& written : *list) {
+      const toml::array* numbers = written.as_array();
+      ShapeBox box;
+      bool good = numbers != nullptr && numbers->size() == 6;
+      for (std::size_t i = 0; good && i < 6; ++i) {
+        const auto* value = (*numbers)[i].as_integer();
+        good = value != nullptr && value->get() >= 0 && value->get() <= kShapeUnits;
+        if (good) (i < 3 ? box.min : box.max)[i % 3] = static_cast<std::uint8_t>(value->get());
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) good = good && box.min[axis] < box.max[axis];
+      if (!good) {
+        return reject(
+            written, path,
+            "a box must be [min x, min y, min z, max x, max y, max z], integers of 0 .. 16 "
+            "(sixteenths of a voxel), each min below its max");
+      }
+      out.boxes.push_back(box);
+    }
+  }
+
+  /// Reads the keys `shape` and `crossed`. `name` is that of the material: its states say how a
+  /// built-in kind lies.
+  Shape shape(const toml::table& table, const std::string& path, std::string_view name) {
+    const toml::node* node = table.get("shape");
+    const toml::node* crossed = table.get("crossed");
+    Shape out;
+    if (node != nullptr && crossed != nullptr) {
+      reject(*crossed, path + ".crossed", "the material has a key shape; give one of the two");
+    } else if (crossed != nullptr) {
+      out.form = ShapeForm::crossed;
+      boxes(*crossed, path + ".crossed", out);
+    } else if (node != nullptr && node->is_string()) {
+      const std::string& kind = node->as_string()->get();
+      if (const auto found = shape_of_kind(kind, states_in_name(name))) return *found;
+      std::string names;
+      for (const std::string_view known : shape_kinds())
+        names.append(names.empty() ? "" : ", ").append(known);
+      reject(*node, path + ".shape", "must be boxes or one of " + names);
+    } else if (node != nullptr) {
+      boxes(*node, path + ".shape", out);
+    }
+    if (failed() || out.is_cube()) return {};
+    if (const auto sound = check_shape(out); !sound)
+      reject(node != nullptr ? *node : *crossed, path + (node != nullptr ? ".shape" : ".crossed"),
+             sound.error().what);
+    return out;
+  }
+
   std::optional<SurfaceRule> surface(const toml::table& table, const std::string& path,
                                      std::string_view key) {
     const toml::node* node = table.get(key);
@@ -195,7 +251,8 @@ class TableReader {
 
 /// Reads a row without the checks of MaterialTable::add().
 MaterialInfo read_info(TableReader& in, const toml::table& row, const std::string& path) {
-  in.only_keys(row, path, {"name", "colour", "visibility", "body", "look", "generate"});
+  in.only_keys(row, path,
+               {"name", "colour", "visibility", "body", "look", "shape", "crossed", "generate"});
   const auto name = in.text(row, path, "name");
   if (!name) in.reject(row, path + ".name", "is missing");
   MaterialInfo info;
@@ -210,6 +267,13 @@ MaterialInfo read_info(TableReader& in, const toml::table& row, const std::strin
   info.look = in.look(row, path);
   info.generation = in.generation(row, path);
   if (name) info.name = *name;
+  info.shape = in.shape(row, path, info.name);
+  if (info.visibility == Visibility::empty) {
+    for (const char* key : {"shape", "crossed"}) {
+      if (const toml::node* node = row.get(key))
+        in.reject(*node, path + "." + key, "a material that is empty has no shape");
+    }
+  }
   return info;
 }
 

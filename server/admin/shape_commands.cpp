@@ -23,8 +23,8 @@ std::vector<GivenShape> shapes_of_names(const MaterialTable& table) {
   for (std::size_t id = 1; id < table.size(); ++id) {
     const MaterialInfo& info = table[static_cast<Material>(id)];
     if (!info.shape.is_cube() || info.visibility == Visibility::empty) continue;
-    Shape shape = shape_of_material_name(info.name);
-    if (!shape.is_cube()) rows.push_back({static_cast<Material>(id), std::move(shape)});
+    if (auto shape = shape_of_material_name(info.name))
+      rows.push_back({static_cast<Material>(id), *std::move(shape)});
   }
   return rows;
 }

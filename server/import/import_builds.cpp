@@ -140,7 +140,7 @@ Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
   survey.spawn = is_inside ? *spawn : spawn_of(all, tops);
   for (auto& [name, row] : rows) {
     const auto added = survey.materials.add(
-        {row.name, row.colour, row.visibility, std::nullopt, row.body, row.look});
+        {row.name, row.colour, row.visibility, std::nullopt, row.body, row.look, row.shape});
     if (!added) {
       return failure("its " + std::to_string(rows.size()) + " materials: " + name + ": " +
                      added.error().what);

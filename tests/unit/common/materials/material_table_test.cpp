@@ -164,3 +164,51 @@ TEST_CASE("a full table takes no rows", "[materials]") {
   CHECK(table.append(last, std::vector{one}).has_value());
   CHECK(table.check_rows(std::vector{two}).error().code == ErrorCode::limit_exceeded);
 }
+
+TEST_CASE("rows get a shape once, all of a list or none", "[materials][shapes]") {
+  const Shape slab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  const Shape carpet{ShapeForm::boxes, {{{0, 0, 0}, {16, 1, 16}}}};
+  MaterialTable table;
+  REQUIRE(table.add(named("a")));
+  REQUIRE(table.add(named("b")));
+  REQUIRE(table.add({"nothing", {0, 0, 0, 0}, Visibility::empty, std::nullopt}));
+  const MaterialTable before = table;
+  const auto refused = [&](std::vector<GivenShape> given, std::uint64_t offset) {
+    const auto done = table.give_shapes(given);
+    REQUIRE_FALSE(done);
+    CHECK(done.error().offset == offset);
+    CHECK(table == before);
+  };
+  refused({{1, slab}, {4, slab}}, 1);
+  refused({{1, slab}, {3, slab}}, 1);
+  refused({{0, slab}}, 0);
+  refused({{1, slab}, {2, slab}, {1, slab}}, 2);
+  refused({{1, slab}, {2, Shape{}}}, 1);
+  refused({{2, Shape{ShapeForm::boxes, {{{0, 0, 0}, {16, 0, 16}}}}}}, 0);
+  REQUIRE(table.give_shapes(std::vector<GivenShape>{{2, carpet}, {1, slab}}));
+  CHECK(table[1].shape == slab);
+  CHECK(table[2].shape == carpet);
+  CHECK(row_of(table[1]).shape == slab);
+  CHECK_FALSE(table.give_shapes(std::vector<GivenShape>{{1, slab}}));
+
+  CHECK(shapes_of(table) == std::vector<Shape>{{}, slab, carpet, {}});
+  using enum Visibility;
+  CHECK(visibilities(table) == std::vector<Visibility>{empty, opaque, opaque, empty});
+  CHECK(cube_visibilities(table) == std::vector<Visibility>{empty, empty, empty, empty});
+  CHECK(half_filled_visibilities(table) == std::vector<Visibility>{empty, opaque, empty, empty});
+}
+
+TEST_CASE("a row that is added keeps its shape, and an empty one must have none",
+          "[materials][shapes]") {
+  MaterialRow row{"slab", {1, 2, 3, 255}, Visibility::opaque};
+  row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  MaterialTable table;
+  REQUIRE(table.append(1, std::vector{row}));
+  CHECK(table[1].shape == row.shape);
+  row.name = "other";
+  row.visibility = Visibility::empty;
+  CHECK(table.check_rows(std::vector{row}).error().code == ErrorCode::bad_value);
+  MaterialInfo info = named("bad");
+  info.shape.form = ShapeForm::crossed;
+  CHECK_FALSE(table.add(info));
+}

@@ -35,6 +35,11 @@ MaterialTable random_table(SplitMix64& random) {
     if (info.visibility != Visibility::empty)
       info.body = static_cast<MaterialBody>(random.below(3));
     if (random.below(2) == 0) info.look = test::random_look(random);
+    if (info.visibility != Visibility::empty && random.below(2) == 0) {
+      const auto low = static_cast<std::uint8_t>(random.below(16));
+      info.shape.form = static_cast<ShapeForm>(random.below(2));
+      info.shape.boxes = {{{low, 0, 3}, {16, 8, 5}}, {{0, low, low}, {1, 16, 16}}};
+    }
     if (random.below(2) == 0) info.generation = GenerationRule{surface(), std::nullopt};
     if (info.generation && random.below(2) == 0) info.generation->reversed = surface();
     REQUIRE(table.add(info).has_value());
@@ -236,4 +241,74 @@ TEST_CASE("an error in a file of added materials names file, line and key", "[ma
   CHECK(message(twice + twice) == "wool.toml:4: material[1]: name is already taken");
   CHECK(message("[[material]]\nname = \"air\"\nvisibility = \"empty\"\n") ==
         "wool.toml:1: material[0]: name is already taken");
+}
+
+TEST_CASE("a material has boxes, crossed planes or a built-in kind", "[materials][shapes]") {
+  const auto table = parse_material_table(kAir + std::string(R"(
+[[material]]
+name = "shelf"
+colour = "#102030"
+shape = [[0, 12, 0, 16, 16, 8], [0, 0, 0, 2, 12, 2]]
+[[material]]
+name = "reed"
+colour = "#102030"
+crossed = [[1, 0, 1, 15, 14, 15]]
+[[material]]
+name = "oak_stairs[facing=east,half=top]"
+colour = "#102030"
+shape = "stairs"
+[[material]]
+name = "oak_slab[type=double]"
+colour = "#102030"
+shape = "slab"
+)"),
+                                          "m.toml");
+  REQUIRE(table);
+  CHECK((*table)[1].shape ==
+        Shape{ShapeForm::boxes, {{{0, 12, 0}, {16, 16, 8}}, {{0, 0, 0}, {2, 12, 2}}}});
+  CHECK((*table)[2].shape == Shape{ShapeForm::crossed, {{{1, 0, 1}, {15, 14, 15}}}});
+  CHECK((*table)[3].shape ==
+        Shape{ShapeForm::boxes, {{{0, 8, 0}, {16, 16, 16}}, {{8, 0, 0}, {16, 8, 16}}}});
+  CHECK((*table)[4].shape.is_cube());
+  CHECK(to_toml(*table).find("shape = [[0,12,0,16,16,8], [0,0,0,2,12,2]]\n") != std::string::npos);
+  CHECK(to_toml(*table).find("crossed = [[1,0,1,15,14,15]]\n") != std::string::npos);
+  const auto read = parse_material_table(to_toml(*table), "m.toml");
+  REQUIRE(read);
+  CHECK(*read == *table);
+  const auto rows = parse_material_rows(R"(
+[[material]]
+name = "oak_slab[type=top]"
+colour = "#102030"
+shape = "slab"
+)",
+                                        "m.toml");
+  REQUIRE(rows);
+  CHECK(rows->front().row.shape == Shape{ShapeForm::boxes, {{{0, 8, 0}, {16, 16, 16}}}});
+}
+
+TEST_CASE("errors in a shape name line and key", "[materials][shapes]") {
+  const std::string head = "name = \"a\"\ncolour = \"#102030\"\n";
+  const auto check = [&](const std::string& text, const std::string& key) {
+    const TextError error = row_error(head + text);
+    CAPTURE(text, error.what);
+    CHECK(error.line == 7);
+    CHECK(error.key == key);
+    return error.what;
+  };
+  CHECK(check("shape = \"slap\"\n", "material[1].shape").find("slab") != std::string::npos);
+  check("shape = 3\n", "material[1].shape");
+  check("shape = []\n", "material[1].shape");
+  check("shape = [[0,0,0,16,16]]\n", "material[1].shape");
+  check("shape = [[0,0,0,16,17,16]]\n", "material[1].shape");
+  check("shape = [[0,0,0,16,8.0,16]]\n", "material[1].shape");
+  check("shape = [[0,0,0,16,0,16]]\n", "material[1].shape");
+  check("crossed = [[0,-1,0,16,8,16]]\n", "material[1].crossed");
+  check("crossed = \"plant\"\n", "material[1].crossed");
+  check("crossed = [[0,0,0,16,8,16]]\nshape = \"slab\"\n", "material[1].crossed");
+  std::string many = "shape = [";
+  for (int i = 0; i < 33; ++i) many += "[0,0,0,16,8,16],";
+  check(many + "]\n", "material[1].shape");
+  const TextError empty = row_error("name = \"a\"\nvisibility = \"empty\"\nshape = \"slab\"\n");
+  CHECK(empty.line == 7);
+  CHECK(empty.key == "material[1].shape");
 }
