@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-static_assert(kMessageKindCount == 58, "a kind that is added needs golden bytes here");
+static_assert(kMessageKindCount == 59, "a kind that is added needs golden bytes here");
 
 Builds golden_builds() {
   ListedBuild mill;
@@ -85,6 +85,8 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureLargeActions == 1 << 15);
   CHECK(kFeatureLibrary == 1 << 16);
   CHECK(kFeatureBuilds == 1 << 17);
+  CHECK(kFeatureShapes == 1 << 18);
+  CHECK(kFeatureShapeRecords == 1 << 19);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
@@ -95,6 +97,7 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<BuildOffer>) == 56);
   CHECK(wire_number(kKindOf<BuildUpload>) == 57);
   CHECK(wire_number(kKindOf<BuildAnswer>) == 58);
+  CHECK(wire_number(kKindOf<ShapesGiven>) == 59);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

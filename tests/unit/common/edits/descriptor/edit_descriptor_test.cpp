@@ -380,6 +380,9 @@ TEST_CASE("the cause of a record is that of its edit", "[edits]") {
     CHECK_FALSE(validate_fields({{1, 1}, {}, 0, other, wool}).has_value());
   for (const EditDescriptor& edit : {kVoxel, grant})
     CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::materials, edit}).has_value());
+  const EditDescriptor slab = shapes_edit({{{35, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}}}});
+  CHECK(validate_fields({{1, 1}, {}, 0, Cause::materials, slab}).has_value());
+  CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::console, slab}).has_value());
   const EditDescriptor gone = library_edit(RemoveBuild{7});
   CHECK(validate_fields({{1, 1}, {}, 0, Cause::library, gone}).has_value());
   CHECK_FALSE(validate_fields({{1, 1}, {}, 0, Cause::console, gone}).has_value());
