@@ -34,7 +34,7 @@ ErrorCode fault_of_given(const GivenShapes& given) {
 }  // namespace
 
 TEST_CASE("given shapes at the limits are valid, one step beyond they are not", "[edits]") {
-  CHECK(validate({{{65535, box_shape(8)}}}).has_value());
+  CHECK(validate(GivenShapes{{{65535, box_shape(8)}}}).has_value());
   CHECK(validate(many_shapes(kGivenShapesMax, kDifferentShapesMax)).has_value());
   CHECK(fault_of_given({}) == ErrorCode::bad_value);
   CHECK(fault_of_given(many_shapes(kGivenShapesMax + 1, 1)) == ErrorCode::limit_exceeded);
