@@ -10,6 +10,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/extent.hpp"
+#include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
 
@@ -33,18 +34,20 @@ inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
 inline constexpr std::uint64_t kFeatureLargeActions = 32768;
 inline constexpr std::uint64_t kFeatureBuilds = 131072;  // BuildsRequest to BuildAnswer
+inline constexpr std::uint64_t kFeatureShapes = 262144;  // shapes in Welcome, and ShapesGiven
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
 inline constexpr std::uint64_t kFeatureLibrary = 65536;          // LogPart may have a LibraryChange
+inline constexpr std::uint64_t kFeatureShapeRecords = 524288;    // LogPart may have GivenShapes
 inline constexpr std::uint64_t kFeaturesOfServers =
-    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary;
+    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary | kFeatureShapeRecords;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
-    kFeatureBuilds;
+    kFeatureBuilds | kFeatureShapes;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -73,8 +76,10 @@ static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax,
 // FlatBuffers verifier: nesting and number of tables of the largest valid message.
 inline constexpr unsigned kVerifierDepthMax = 8;
 inline constexpr unsigned kVerifierTablesMax = 2 * kMaterialCountMax + 16;
-static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 40) <= kServerControlBytesMax,
-              "a full material table fits Welcome");
+static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 40) +
+                      kTableShapesMax * kShapeBytesMax <=
+                  kServerControlBytesMax,
+              "a full material table fits Welcome, with its shapes");
 
 // Handshake.
 inline constexpr std::size_t kNonceBytes = 32;

@@ -145,9 +145,9 @@ double ClientHud::plate_alpha(const WorldPos& head, double distance) const {
   const WorldPos eye = play_.player().eye();
   const double dx = head.x - eye.x, dy = head.y - eye.y, dz = head.z - eye.z;
   const double length = std::max(1e-6, std::sqrt(dx * dx + dy * dy + dz * dz));
-  const bool is_hidden =
-      pick(play_.session().replica(), eye, {dx / length, dy / length, dz / length}, length)
-          .has_value();
+  const bool is_hidden = pick(play_.session().replica(), play_.tool().shapes(), eye,
+                              {dx / length, dy / length, dz / length}, length)
+                             .has_value();
   return is_hidden ? alpha * kPlateBehindWall : alpha;
 }
 

@@ -1,18 +1,28 @@
 #include "client/body/body_materials.hpp"
 
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace runstone {
 
 BodyMaterials body_materials(const MaterialTable& table) {
-  std::vector<bool> solid, liquid;
+  std::vector<bool> cubes, shapes, liquid;
+  bool has_shapes = false;
   for (const MaterialInfo& row : table.rows()) {
     const bool is_there = row.visibility != Visibility::empty;
-    solid.push_back(is_there && row.body == MaterialBody::solid);
+    const bool is_solid = is_there && row.body == MaterialBody::solid;
+    cubes.push_back(is_solid && row.shape.is_cube());
+    shapes.push_back(is_solid && !row.shape.is_cube());
+    has_shapes = has_shapes || shapes.back();
     liquid.push_back(is_there && row.body == MaterialBody::liquid);
   }
-  return {MaterialSet(std::move(solid), true), MaterialSet(std::move(liquid), false)};
+  MaterialSet in_liquid(std::move(liquid), false), of_cubes(std::move(cubes), true);
+  if (!has_shapes) return {std::move(of_cubes), std::move(in_liquid)};
+  const std::vector<Shape> by_material = shapes_of(table);
+  return {Obstacles(std::move(of_cubes), MaterialSet(std::move(shapes), false),
+                    std::make_shared<const ShapeTable>(by_material)),
+          std::move(in_liquid)};
 }
 
 }  // namespace runstone

@@ -78,7 +78,7 @@ void Walker::step(const VoxelSpace& space, const BodyMaterials& materials, const
   fallen_ = is_on_ground_ || is_in_liquid_ ? 0 : fallen_ + std::max(0.0, before_y - feet_.y);
 }
 
-void Walker::rise_out(const VoxelSpace& space, const MaterialSet& solid) {
+void Walker::rise_out(const VoxelSpace& space, const Obstacles& solid) {
   velocity_ = {};
   fallen_ = 0;
   is_on_ground_ = false;
@@ -114,7 +114,7 @@ void Walker::accelerate(const WalkInput& input, bool swims) {
   }
 }
 
-void Walker::move(const VoxelSpace& space, const MaterialSet& solid, const WorldPos& by,
+void Walker::move(const VoxelSpace& space, const Obstacles& solid, const WorldPos& by,
                   bool may_step_up) {
   Slide end = slide(space, solid, body_at(feet_), by);
   const double wanted = length_over_ground(by);
@@ -146,7 +146,7 @@ void Walker::move(const VoxelSpace& space, const MaterialSet& solid, const World
   if (is_on_ground_ || is_stopped(end, Direction::pos_y)) velocity_.y = 0;
 }
 
-void Walker::step_down(const VoxelSpace& space, const MaterialSet& solid) {
+void Walker::step_down(const VoxelSpace& space, const Obstacles& solid) {
   const Slide down = slide(space, solid, body_at(feet_), {0, -kStepUpMax - kTouchDepth, 0});
   if (!is_stopped(down, Direction::neg_y)) return;
   feet_.y += down.moved.y;
@@ -155,8 +155,7 @@ void Walker::step_down(const VoxelSpace& space, const MaterialSet& solid) {
   is_on_ground_ = true;
 }
 
-WorldPos Walker::kept_on_edge(const VoxelSpace& space, const MaterialSet& solid,
-                              WorldPos by) const {
+WorldPos Walker::kept_on_edge(const VoxelSpace& space, const Obstacles& solid, WorldPos by) const {
   const auto has_ground = [&](double x, double z) {
     const BodyBox there = body_at({feet_.x + x, feet_.y, feet_.z + z});
     return sweep(space, solid, there, {0, -kStepUpMax / 2, 0}).has_value();

@@ -55,16 +55,15 @@ class Walker {
  private:
   void step(const VoxelSpace& space, const BodyMaterials& materials, const WalkInput& input);
   /// Moves a body that is inside a solid voxel up.
-  void rise_out(const VoxelSpace& space, const MaterialSet& solid);
+  void rise_out(const VoxelSpace& space, const Obstacles& solid);
   /// Changes the speed as input, ground and liquid want it.
   void accelerate(const WalkInput& input, bool swims);
   /// Moves the body by `by`, and up a step if `may_step_up` and the step is low enough.
-  void move(const VoxelSpace& space, const MaterialSet& solid, const WorldPos& by,
-            bool may_step_up);
+  void move(const VoxelSpace& space, const Obstacles& solid, const WorldPos& by, bool may_step_up);
   /// Puts a body that has just walked over an edge onto ground that is low enough for a step down.
-  void step_down(const VoxelSpace& space, const MaterialSet& solid);
+  void step_down(const VoxelSpace& space, const Obstacles& solid);
   /// Returns the part of the way over the ground after which the body still stands on something.
-  WorldPos kept_on_edge(const VoxelSpace& space, const MaterialSet& solid, WorldPos by) const;
+  WorldPos kept_on_edge(const VoxelSpace& space, const Obstacles& solid, WorldPos by) const;
 
   WorldPos feet_, velocity_;  // voxels, voxels a second
   double waiting_s_ = 0;      // time that has passed and is no whole step yet

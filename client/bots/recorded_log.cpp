@@ -54,6 +54,11 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
         wrong = "edit " + std::to_string(record.version.seq) + ": " + appended.error().what;
       return appended.has_value();
     }
+    if (const GivenShapes* given = given_shapes_of(record.edit)) {
+      const auto shaped = log.materials.give_shapes(given->rows);
+      if (!shaped) wrong = "edit " + std::to_string(record.version.seq) + ": " + shaped.error().what;
+      return shaped.has_value();
+    }
     if (!has_voxels(record.edit)) return true;  // the live world has rights of its own
     const TimeUs step_us = log.edits == 0 ? 0 : between(last_us, record.time_us);
     passed_us = step_us > std::numeric_limits<TimeUs>::max() - passed_us

@@ -21,6 +21,7 @@
 #include "client/tools/tool_command.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -39,6 +40,9 @@ class EditTool {
         on_refused_(std::move(on_refused)) {}
 
   const Replica& replica() const { return session_.replica(); }
+  /// Sets the shapes of the world's materials, which pick() hits.
+  void set_shapes(ShapeTable shapes) { shapes_ = std::move(shapes); }
+  const ShapeTable& shapes() const { return shapes_; }
   ToolBox& box() { return box_; }
   const ToolBox& box() const { return box_; }
   /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
@@ -116,6 +120,7 @@ class EditTool {
   LatencyRecorder& recorder_;
   ToolBox& box_;
   const OnRefused on_refused_;
+  ShapeTable shapes_;
   std::optional<FixedAim> fixed_aim_;
   std::unique_ptr<ActionSender> sender_;  // of the action under way, or null
   std::string build_name_;

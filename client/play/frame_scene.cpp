@@ -75,8 +75,21 @@ void FrameScene::add_ground(std::vector<Marker>& markers) const {
 }
 
 void FrameScene::add_aim(std::vector<Marker>& markers) const {
-  if (const auto hit = tool_.pick())
-    markers.push_back(outline_of(box_between(hit->voxel, hit->voxel), 0.002, 20, 20, 20));
+  const auto hit = tool_.pick();
+  if (!hit) return;
+  constexpr double kGap = 0.002;
+  const Marker voxel = outline_of(box_between(hit->voxel, hit->voxel), kGap, 20, 20, 20);
+  if (tool_.shapes().is_cube(hit->material)) return markers.push_back(voxel);
+  for (const ShapeBox& box : tool_.shapes()[hit->material].shape.boxes) {
+    const auto place = [&](std::size_t axis) { return box.min[axis] / double{kShapeUnits}; };
+    const auto size = [&](std::size_t axis) {
+      return (box.max[axis] - box.min[axis]) / double{kShapeUnits} + 2 * kGap;
+    };
+    Marker of_box = voxel;
+    of_box.x += place(0), of_box.y += place(1), of_box.z += place(2);
+    of_box.size_x = size(0), of_box.size_y = size(1), of_box.size_z = size(2);
+    markers.push_back(of_box);
+  }
 }
 
 void FrameScene::add_selection(std::vector<Marker>& markers) const {

@@ -68,14 +68,18 @@ void Play::take_new_materials() {
   if (!session_.is_open()) return;
   const MaterialTable& materials = session_.welcome()->materials;
   const std::size_t known = pipeline_.materials().size();
-  if (materials.size() <= known) return;
+  const bool has_new = materials.size() > known;
+  if (!has_new && shapes_number_ == session_.shapes_number()) return;
   set_materials(materials);
-  log_.on_new_materials(materials.size() - known);
+  if (has_new) log_.on_new_materials(materials.size() - known);
 }
 
 void Play::set_materials(const MaterialTable& materials) {
+  shapes_number_ = session_.shapes_number();
   pipeline_.set_materials(materials);
   motion_.set_materials(materials);
+  const std::vector<Shape> shapes = shapes_of(materials);
+  tool_.set_shapes(ShapeTable(shapes));
   panels_.set_materials(materials);
   others_.set_materials(materials);
   const std::string lost = tool_.box().set_materials(materials);

@@ -189,6 +189,7 @@ class Play {
   ServerNotices server_notices_;
   std::vector<PlayerNotice> notices_;
   std::optional<WorldId> world_;     // whose materials the hotbar has
+  std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened
   TimeUs input_us_;                  // when input was last handled
 };

@@ -38,6 +38,7 @@ GLint QuadBuffer::bind(const GlProgram& program, GLint unit) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, store_.texture());
   glUniform1i(glGetUniformLocation(program.get(), "quads"), unit);
+  shapes_.bind(program, kShapeUnit);
   return glGetUniformLocation(program.get(), "first_vertex");
 }
 

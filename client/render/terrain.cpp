@@ -9,6 +9,7 @@
 
 #include "client/far/child_bits.hpp"
 #include "client/render/terrain_glsl.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 namespace {
@@ -31,6 +32,7 @@ constexpr float kSeam = 0.00006F;
 
 // Texture units.
 constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
+static_assert(kDepthUnit < QuadBuffer::kShapeUnit);
 
 constexpr const char* kDepthVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
@@ -111,24 +113,44 @@ Terrain::Terrain()
 
 void Terrain::set_materials(const MaterialTable& materials) {
   materials_.set(materials);
+  const std::vector<Shape> shapes = shapes_of(materials);
+  quads_.set_shapes(ShapeTable(shapes));
   light_codes_ = light_codes(materials);
 }
 
 Terrain::Chunk Terrain::add_chunk(std::int32_t edge, const ChunkMesh& mesh) {
-  auto tree = TransparentTree::build(mesh.transparent.quads);
+  const auto count_of = [](std::span<const Quad> quads) {
+    return static_cast<std::uint32_t>(quads.size());
+  };
+  const auto append = [this](std::span<const Quad> quads) {
+    staged_.insert(staged_.end(), quads.begin(), quads.end());
+  };
+  // The transparent quads of cubes and shapes, which are ordered together.
+  std::vector<Quad> joined;
+  std::span<const Quad> transparent(mesh.transparent.quads);
+  if (!mesh.shapes.transparent.empty()) {
+    joined = mesh.transparent.quads;
+    joined.insert(joined.end(), mesh.shapes.transparent.begin(), mesh.shapes.transparent.end());
+    transparent = joined;
+  }
+  auto tree = TransparentTree::build(transparent);
+  if (tree) transparent = tree->pieces();
   // Both passes lie in one span, so that a chunk has one range of the buffer.
-  const auto opaque_count = static_cast<std::uint32_t>(mesh.opaque.quads.size());
-  const std::span<const Quad> transparent =
-      tree ? tree->pieces() : std::span<const Quad>(mesh.transparent.quads);
   staged_ = mesh.opaque.quads;
-  staged_.insert(staged_.end(), transparent.begin(), transparent.end());
+  append(mesh.shapes.opaque);
+  append(transparent);
   const std::uint32_t first = quads_.add(staged_);
   Chunk out;
   out.edge = edge;
-  out.quads = {first, static_cast<std::uint32_t>(staged_.size())};
+  out.quads = {first, count_of(staged_)};
   out.opaque = QuadSpans(mesh.opaque, edge, first);
-  out.transparent = {first + opaque_count, static_cast<std::uint32_t>(transparent.size())};
-  if (!tree) out.layers = QuadSpans(mesh.transparent, edge, first + opaque_count);
+  out.shapes = {first + count_of(mesh.opaque.quads), count_of(mesh.shapes.opaque)};
+  out.transparent = {out.shapes.first + out.shapes.count, count_of(transparent)};
+  if (!tree) {
+    out.layers = QuadSpans(mesh.transparent, edge, out.transparent.first);
+    out.transparent_shapes = {out.transparent.first + count_of(mesh.transparent.quads),
+                              count_of(mesh.shapes.transparent)};
+  }
   out.tree = std::move(tree);
   return out;
 }
@@ -337,7 +359,7 @@ bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
     const glm::vec3 at(origin_in_world(key, chunk.edge) - pass.middle);
     if (!frustum.may_see(at, at + static_cast<float>(chunk.edge))) continue;
     spans_.clear();
-    chunk.opaque.append_facing(sun, spans_);
+    chunk.append_opaque(sun, spans_);
     if (spans_.empty()) continue;
     glUniform3fv(origin, 1, glm::value_ptr(at));
     quads_.draw(spans_, first_vertex);
@@ -527,7 +549,7 @@ TerrainStats Terrain::draw_opaque(const FrameView& view) {
   // Chunks are drawn from near to far, so that hidden pixels fail the depth test early.
   for (const Visible& chunk : visible_) {
     spans_.clear();
-    chunk.chunk->opaque.append_facing(chunk.eye, spans_);
+    chunk.chunk->append_opaque(chunk.eye, spans_);
     if (spans_.empty()) continue;
     use_for(chunk, view, false);
     quads_.draw(spans_, in_use_->first_vertex);
@@ -562,6 +584,8 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
       chunk->chunk->tree->append_back_to_front(chunk->eye, chunk->chunk->transparent.first, spans_);
     } else {
       chunk->chunk->layers.append_back_to_front(chunk->eye, spans_, chunk->joined_sides);
+      const QuadSpan shapes = chunk->chunk->transparent_shapes;
+      if (shapes.count != 0) spans_.push_back(shapes);
     }
     if (spans_.empty()) continue;
     use_for(*chunk, view, true);
@@ -577,7 +601,7 @@ void Terrain::draw_inspection(const FrameView& view, const Inspection& inspectio
   inspection_->begin(inspection, view.clip, view.depth, quads_, view.look.exact);
   for (const Visible& chunk : visible_) {
     spans_.clear();
-    chunk.chunk->opaque.append_facing(chunk.eye, spans_);
+    chunk.chunk->append_opaque(chunk.eye, spans_);
     if (chunk.chunk->transparent.count != 0) spans_.push_back(chunk.chunk->transparent);
     if (spans_.empty()) continue;
     if (inspection_->place(chunk.key, chunk.origin, chunk.chunk->edge, chunk.scale))
@@ -593,7 +617,9 @@ QuadSpan Terrain::ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh) {
   if (is_new) {
     ghost.mesh = mesh;
     std::vector<Quad> quads = mesh->opaque.quads;
-    quads.insert(quads.end(), mesh->transparent.quads.begin(), mesh->transparent.quads.end());
+    for (const std::vector<Quad>* some :
+         {&mesh->transparent.quads, &mesh->shapes.opaque, &mesh->shapes.transparent})
+      quads.insert(quads.end(), some->begin(), some->end());
     ghost.quads = {quads_.add(quads), static_cast<std::uint32_t>(quads.size())};
   }
   return ghost.quads;
@@ -657,8 +683,8 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
 }
 
 std::uint64_t Terrain::gpu_bytes() const {
-  return quads_.used_bytes() + field_.byte_size() + field_texture_.byte_size() +
-         shadows_.byte_size();
+  return quads_.used_bytes() + quads_.shape_bytes() + field_.byte_size() +
+         field_texture_.byte_size() + shadows_.byte_size();
 }
 
 }  // namespace runstone

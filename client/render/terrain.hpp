@@ -86,11 +86,18 @@ class Terrain {
   struct Chunk {
     std::int32_t edge = 0;  // voxels
     QuadSpan quads;         // of both passes
-    QuadSpan transparent;
-    QuadSpans opaque;
+    QuadSpan transparent;   // of cubes and shapes
+    QuadSpans opaque;       // of cubes
+    QuadSpan shapes;        // the opaque ones
     /// The order of the transparent quads; nullopt if they are too many for a tree.
     std::optional<TransparentTree> tree;
-    QuadSpans layers;  // of the transparent quads, without a tree
+    QuadSpans layers;             // of the transparent quads of cubes, without a tree
+    QuadSpan transparent_shapes;  // without a tree
+    /// Appends the spans of the opaque quads whose faces may be seen from `eye`, and all of shapes.
+    void append_opaque(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const {
+      opaque.append_facing(eye, out);
+      if (shapes.count != 0) out.push_back(shapes);
+    }
   };
   struct Tile {
     Chunk whole;

@@ -1,5 +1,6 @@
 #include "client/replica/ray_pick.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -54,6 +55,48 @@ class ShownReader {
   ShownPtr chunk_;
 };
 
+/// Where a ray enters a box, or nullopt if it passes or the box lies behind the eye. A ray that
+/// begins inside enters at 0, without a face.
+struct BoxEntry {
+  double distance = 0;
+  std::optional<Direction> face;
+};
+std::optional<BoxEntry> entry_of(const std::array<double, 3>& from,
+                                 const std::array<double, 3>& slope, const ShapeBox& box) {
+  double enters = 0, leaves = std::numeric_limits<double>::infinity();
+  BoxEntry out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double min = box.min[axis] / double{kShapeUnits};
+    const double max = box.max[axis] / double{kShapeUnits};
+    if (slope[axis] == 0) {
+      if (from[axis] < min || from[axis] > max) return std::nullopt;
+      continue;
+    }
+    const bool is_up = slope[axis] > 0;
+    const double in = ((is_up ? min : max) - from[axis]) / slope[axis];
+    if (in > enters) {
+      enters = in;
+      out.face = static_cast<Direction>(axis * 2 + (is_up ? 0U : 1U));
+    }
+    leaves = std::min(leaves, ((is_up ? max : min) - from[axis]) / slope[axis]);
+  }
+  if (enters > leaves) return std::nullopt;
+  out.distance = enters;
+  return out;
+}
+
+/// Returns where the ray first enters a box of the shape of a voxel.
+std::optional<BoxEntry> entry_of(const WorldPos& eye, const LookDirection& look, VoxelPos at,
+                                 const Shape& shape) {
+  const std::array<double, 3> from = {eye.x - at.x, eye.y - at.y, eye.z - at.z};
+  std::optional<BoxEntry> out;
+  for (const ShapeBox& box : shape.boxes) {
+    const auto entry = entry_of(from, {look.x, look.y, look.z}, box);
+    if (entry && (!out || entry->distance < out->distance)) out = entry;
+  }
+  return out;
+}
+
 bool inside_world(const WorldPos& p) {
   const auto fits = [](double v) { return std::isfinite(v) && std::fabs(v) < kWorldLimit - 1024; };
   return fits(p.x) && fits(p.y) && fits(p.z);
@@ -65,8 +108,8 @@ LookDirection look_direction(double yaw, double pitch) {
   return {std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
 }
 
-std::optional<RayHit> pick(const Replica& replica, const WorldPos& eye, const LookDirection& look,
-                           double reach) {
+std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, const WorldPos& eye,
+                           const LookDirection& look, double reach) {
   if (!replica.opened() || !inside_world(eye)) return std::nullopt;
   std::array<AxisWalk, 3> walk = {AxisWalk{eye.x, look.x}, AxisWalk{eye.y, look.y},
                                   AxisWalk{eye.z, look.z}};
@@ -78,7 +121,12 @@ std::optional<RayHit> pick(const Replica& replica, const WorldPos& eye, const Lo
     const VoxelPos at{walk[0].voxel, walk[1].voxel, walk[2].voxel};
     const auto material = reader.at(at);
     if (!material) return std::nullopt;
-    if (*material != kEmpty) return RayHit{at, *material, face, distance};
+    if (shapes.is_cube(*material)) {
+      if (*material != kEmpty) return RayHit{at, *material, face, distance};
+    } else if (const auto entry = entry_of(eye, look, at, shapes[*material].shape);
+               entry && entry->distance <= reach) {
+      return RayHit{at, *material, entry->face, entry->distance};
+    }
     std::size_t axis = walk[0].next <= walk[1].next ? 0 : 1;
     if (walk[2].next < walk[axis].next) axis = 2;
     distance = walk[axis].next;

@@ -1,10 +1,12 @@
-// Ray pick: finds the first voxel that a ray hits in the shown runs. Cost: O(log runs) a step.
+// Ray pick: finds the first voxel that a ray hits in the shown runs: a cube, or a box of a shape.
+// Cost: O(log runs) a step, and the boxes of the shapes on the way.
 // Source: Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing".
 #pragma once
 #include <optional>
 
 #include "client/replica/replica.hpp"
 #include "common/core/coords.hpp"
+#include "common/shapes/shape_table.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -12,7 +14,8 @@ namespace runstone {
 struct RayHit {
   VoxelPos voxel;  // not empty
   Material material = kEmpty;
-  /// The face through which the ray entered, or nullopt if the ray starts inside the voxel.
+  /// The face through which the ray entered the voxel, or the box of its shape; nullopt if the ray
+  /// starts inside.
   std::optional<Direction> face;
   double distance = 0;  // from the eye to that face, voxels
 };
@@ -26,9 +29,10 @@ struct LookDirection {
 LookDirection look_direction(double yaw, double pitch);
 
 /// Walks from `eye` along `look` for at most `reach` voxels. Returns nullopt if nothing is hit, or
-/// at the first chunk that is not shown: a player cannot edit what is not visible.
-std::optional<RayHit> pick(const Replica& replica, const WorldPos& eye, const LookDirection& look,
-                           double reach);
+/// at the first chunk that is not shown: a player cannot edit what is not visible. The planes of
+/// plants are hit by their box.
+std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, const WorldPos& eye,
+                           const LookDirection& look, double reach);
 
 /// Returns the position of a voxel placed against the hit face, or nullopt if the ray started
 /// inside the hit voxel.

@@ -187,6 +187,8 @@ class ClientSession {
   /// Returns the newest list of the servers of the world.
   const Servers& servers() const { return connection_.servers(); }
   std::uint64_t servers_number() const { return connection_.servers_number(); }
+  /// Returns how often materials of welcome() were given shapes.
+  std::uint64_t shapes_number() const { return connection_.shapes_number(); }
   AuthorId author() const { return connection_.author(); }
   /// Returns the name with which this player joins.
   const std::string& name() const { return connection_.config().name; }

@@ -69,6 +69,8 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
   }
   if (const auto* added = std::get_if<MaterialsAdded>(&message); added != nullptr && is_open())
     return on_materials(*added);
+  if (const auto* shapes = std::get_if<ShapesGiven>(&message); shapes != nullptr && is_open())
+    return on_shapes(*shapes);
   if (auto* servers = std::get_if<Servers>(&message); servers != nullptr && is_open()) {
     servers_ = std::move(*servers);
     ++servers_number_;
@@ -152,6 +154,16 @@ ServerConnection::Dispatch ServerConnection::on_materials(const MaterialsAdded& 
   const auto appended = welcome_->materials.append(added.first, added.rows);
   if (appended) return Dispatch::materials_added;
   fail_with(GoodbyeReason::malformed_message, appended.error().what);
+  return Dispatch::handled;
+}
+
+ServerConnection::Dispatch ServerConnection::on_shapes(const ShapesGiven& shapes) {
+  const auto given = welcome_->materials.give_shapes(shapes.given.rows);
+  if (given) {
+    ++shapes_number_;
+    return Dispatch::materials_added;
+  }
+  fail_with(GoodbyeReason::malformed_message, given.error().what);
   return Dispatch::handled;
 }
 

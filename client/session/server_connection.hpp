@@ -59,10 +59,10 @@ class ServerConnection {
     handled,           // by the connection, which may have ended; or it accepts no input any more
     another_world,     // the welcome of another world: what the session holds is of the last world
     session_accepted,  // the connection is open now; the message is SessionAccepted, unchanged
-    materials_added,   // welcome() has more materials now
+    materials_added,   // welcome() has more materials now, or materials with other shapes
     for_session,       // the session decides whether the message is allowed in this state
   };
-  /// Handles the messages of the handshake, pongs and new materials once open, and goodbyes. Leaves
+  /// Handles the messages of the handshake, pongs, new materials and shapes once open, and goodbyes. Leaves
   /// other messages as they are.
   Dispatch receive(Message& message, const Arrival& arrival);
   /// Notes that a valid message arrived that did not pass through receive().
@@ -118,6 +118,8 @@ class ServerConnection {
   const Servers& servers() const { return servers_; }
   /// Returns a number that rises with each change of servers().
   std::uint64_t servers_number() const { return servers_number_; }
+  /// Returns how often materials of welcome() were given shapes.
+  std::uint64_t shapes_number() const { return shapes_number_; }
   AuthorId author() const { return author_; }
   std::uint64_t connect_count() const { return connect_count_; }
   std::uint64_t pongs() const { return pongs_; }
@@ -136,6 +138,7 @@ class ServerConnection {
   Dispatch give_up(GoodbyeReason reason, const std::string& text);
   void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
   Dispatch on_materials(const MaterialsAdded& added);
+  Dispatch on_shapes(const ShapesGiven& shapes);
 
   SessionConfig config_;
   SessionState state_ = SessionState::offline;
@@ -149,6 +152,7 @@ class ServerConnection {
   std::optional<Welcome> welcome_;
   Servers servers_;
   std::uint64_t servers_number_ = 0;
+  std::uint64_t shapes_number_ = 0;
   AuthorId author_ = 0;
   std::uint64_t connect_count_ = 0, pongs_ = 0;
   ClockOffset clock_;

@@ -39,6 +39,7 @@ struct Mirror {
   void operator()(RightsEdit&) const {}
   void operator()(MaterialsEdit&) const {}
   void operator()(LibraryEdit&) const {}
+  void operator()(ShapesEdit&) const {}
 };
 
 void append_new(std::vector<EditDescriptor>& to, EditDescriptor edit) {

@@ -18,6 +18,8 @@ std::string kind_words(EditKind kind) {
       return "new materials";
     case EditKind::library:
       return "change of the library";
+    case EditKind::shapes:
+      return "shapes of materials";
     default:
       return name_of(kind);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -87,24 +88,8 @@ struct AxisSweep {
   double next_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace
-
-Result<void> validate_move(const BodyBox& box, const WorldPos& move) {
-  const Numbers min = numbers_of(box.min), max = numbers_of(box.max), by = numbers_of(move);
-  for (std::size_t a = 0; a < 3; ++a) {
-    // A comparison with a number that is none is false.
-    if (!(min[a] < max[a])) return fail(ErrorCode::bad_value, "body without a size on an axis");
-    if (!(std::abs(by[a]) <= kSweepMax))
-      return fail(ErrorCode::bad_value, "move of more than 256 voxels on an axis");
-    if (!(min[a] + std::min(by[a], 0.0) >= -kWorldLimit &&
-          max[a] + std::max(by[a], 0.0) <= kWorldLimit))
-      return fail(ErrorCode::bad_value, "move that leaves the world");
-  }
-  return {};
-}
-
-std::optional<SweepHit> sweep(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
-                              const WorldPos& move) {
+std::optional<SweepHit> sweep_cubes(const VoxelSpace& space, const MaterialSet& solid,
+                                    const BodyBox& box, const WorldPos& move) {
   const Numbers min = numbers_of(box.min), max = numbers_of(box.max), by = numbers_of(move);
   for (std::size_t a = 0; a < 3; ++a)
     RUNSTONE_ASSERT(min[a] < max[a] && std::abs(by[a]) <= kSweepMax);
@@ -127,8 +112,125 @@ std::optional<SweepHit> sweep(const VoxelSpace& space, const MaterialSet& solid,
   }
 }
 
+/// A box of a shape in the world.
+struct SolidBox {
+  Numbers min{}, max{};
+};
+
+/// Calls visit(voxel, box) for each box of the shapes that are obstacles in these voxels.
+template <class Visit>
+void visit_boxes(const VoxelSpace& space, const Obstacles& solid, const VoxelBox& voxels,
+                 const Visit& visit) {
+  visit_voxels(space, solid.shapes(), voxels, [&](VoxelPos at, Material material) {
+    const Numbers corner = {double(at.x), double(at.y), double(at.z)};
+    for (const ShapeBox& box : solid.table()[material].shape.boxes) {
+      SolidBox in_world;
+      for (std::size_t a = 0; a < 3; ++a) {
+        in_world.min[a] = corner[a] + box.min[a] / double{kShapeUnits};
+        in_world.max[a] = corner[a] + box.max[a] / double{kShapeUnits};
+      }
+      visit(at, in_world);
+    }
+  });
+}
+
+/// Returns the fraction of the move at which the body meets the box, and the axis of the face, or
+/// nullopt if it passes, or overlaps the box by more than kTouchDepth from the start. The intervals
+/// of the body are kTouchDepth shorter at both ends.
+std::optional<std::pair<double, std::size_t>> meets(const Numbers& min, const Numbers& max,
+                                                    const Numbers& by, const SolidBox& box) {
+  double enters = -1, leaves = 1;
+  std::size_t axis = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double low = min[a] + kTouchDepth, high = max[a] - kTouchDepth;
+    if (by[a] == 0) {
+      if (high <= box.min[a] || low >= box.max[a]) return std::nullopt;
+      continue;
+    }
+    const double in = (by[a] > 0 ? box.min[a] - high : box.max[a] - low) / by[a];
+    const double out = (by[a] > 0 ? box.max[a] - low : box.min[a] - high) / by[a];
+    if (in > enters) enters = in, axis = a;
+    leaves = std::min(leaves, out);
+  }
+  if (enters < 0 || enters >= leaves || enters > 1) return std::nullopt;
+  return std::pair{std::max(0.0, enters - kTouchDepth / std::abs(by[axis])), axis};
+}
+
+/// Returns the first box of a shape that the body meets before `end`, a fraction of the move. The
+/// move is looked at in parts of at most this length, voxels, so that few voxels that the body
+/// does not pass are read.
+constexpr double kPartMax = 4;
+std::optional<SweepHit> sweep_shapes(const VoxelSpace& space, const Obstacles& solid,
+                                     const BodyBox& body, const WorldPos& move, double end) {
+  const Numbers min = numbers_of(body.min), max = numbers_of(body.max), by = numbers_of(move);
+  const double longest = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])});
+  const int parts = std::max(1, static_cast<int>(std::ceil(longest * end / kPartMax)));
+  std::optional<SweepHit> out;
+  for (int part = 0; part < parts && !out; ++part) {
+    // A box that is met later is found again in its part.
+    const double since = end * part / parts, until = end * (part + 1) / parts;
+    std::array<Cells, 3> cells;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double from = by[a] * since, to = by[a] * until;
+      // With the voxels that the body only touches.
+      const double low = min[a] + std::min(from, to) - kTouchDepth;
+      const double high = max[a] + std::max(from, to) + kTouchDepth;
+      const auto limit = static_cast<double>(kWorldLimit);
+      cells[a] = {static_cast<std::int32_t>(std::floor(std::max(low, -limit))),
+                  static_cast<std::int32_t>(std::ceil(std::min(high, limit))) - 1};
+    }
+    visit_boxes(space, solid, box_of_cells(cells), [&](VoxelPos at, const SolidBox& box) {
+      const auto hit = meets(min, max, by, box);
+      if (!hit || hit->first > until || (out && out->fraction <= hit->first)) return;
+      out = SweepHit{hit->first,
+                     static_cast<Direction>(hit->second * 2 + (by[hit->second] < 0 ? 1U : 0U)), at};
+    });
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<void> validate_move(const BodyBox& box, const WorldPos& move) {
+  const Numbers min = numbers_of(box.min), max = numbers_of(box.max), by = numbers_of(move);
+  for (std::size_t a = 0; a < 3; ++a) {
+    // A comparison with a number that is none is false.
+    if (!(min[a] < max[a])) return fail(ErrorCode::bad_value, "body without a size on an axis");
+    if (!(std::abs(by[a]) <= kSweepMax))
+      return fail(ErrorCode::bad_value, "move of more than 256 voxels on an axis");
+    if (!(min[a] + std::min(by[a], 0.0) >= -kWorldLimit &&
+          max[a] + std::max(by[a], 0.0) <= kWorldLimit))
+      return fail(ErrorCode::bad_value, "move that leaves the world");
+  }
+  return {};
+}
+
+std::optional<SweepHit> sweep(const VoxelSpace& space, const Obstacles& solid, const BodyBox& box,
+                              const WorldPos& move) {
+  const std::optional<SweepHit> cube = sweep_cubes(space, solid.cubes(), box, move);
+  if (!solid.has_shapes()) return cube;
+  const auto shape = sweep_shapes(space, solid, box, move, cube ? cube->fraction : 1);
+  return shape ? shape : cube;
+}
+
 bool overlaps(const VoxelSpace& space, const MaterialSet& materials, const BodyBox& box) {
   return find_voxel(space, materials, voxels_of(box)).has_value();
+}
+
+bool overlaps(const VoxelSpace& space, const Obstacles& solid, const BodyBox& box) {
+  if (overlaps(space, solid.cubes(), box)) return true;
+  if (!solid.has_shapes()) return false;
+  bool out = false;
+  const Numbers min = numbers_of(box.min), max = numbers_of(box.max);
+  visit_boxes(space, solid, voxels_of(box), [&](VoxelPos, const SolidBox& obstacle) {
+    bool meets = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      meets =
+          meets && obstacle.min[a] < max[a] - kTouchDepth && obstacle.max[a] > min[a] + kTouchDepth;
+    }
+    out = out || meets;
+  });
+  return out;
 }
 
 bool is_known(const VoxelSpace& space, const BodyBox& box) {
@@ -136,7 +238,7 @@ bool is_known(const VoxelSpace& space, const BodyBox& box) {
   return !find_voxel(space, kNothingButUnknown, voxels_of(box)).has_value();
 }
 
-Slide slide(const VoxelSpace& space, const MaterialSet& solid, const BodyBox& box,
+Slide slide(const VoxelSpace& space, const Obstacles& solid, const BodyBox& box,
             const WorldPos& move) {
   Slide out;
   Numbers min = numbers_of(box.min), max = numbers_of(box.max), rest = numbers_of(move);

@@ -3,6 +3,7 @@
 // it looks up one run and walks from there, so no voxel is unpacked.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "common/collision/material_set.hpp"
@@ -31,5 +32,11 @@ class VoxelSpace {
 /// its chunk.
 std::optional<VoxelPos> find_voxel(const VoxelSpace& space, const MaterialSet& materials,
                                    const VoxelBox& box);
+
+/// Calls visit(voxel, material) for each voxel of `box` whose material is in the set. Chunks that
+/// are not known have none. Requires a box within the world. Cost: that of find_voxel(), and one
+/// call for each voxel found.
+void visit_voxels(const VoxelSpace& space, const MaterialSet& materials, const VoxelBox& box,
+                  const std::function<void(VoxelPos, Material)>& visit);
 
 }  // namespace runstone

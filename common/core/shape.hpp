@@ -40,6 +40,10 @@ struct Shape {
 /// The boxes of one shape, at most. Built-in kinds have fewer than half of them.
 inline constexpr std::size_t kShapeBoxesMax = 32;
 
+/// The different shapes of the materials of one world, at most. The bound keeps Welcome within its
+/// class, and numbers of shapes within 16 bits.
+inline constexpr std::size_t kTableShapesMax = 4096;
+
 /// Fails (bad_value) for an unknown form, a cube with the form `crossed`, or a box that is empty or
 /// leaves the voxel, and (limit_exceeded) for more than kShapeBoxesMax boxes. The offset of the
 /// error is the number of the box. Cost: O(boxes).

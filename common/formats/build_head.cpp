@@ -7,12 +7,15 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
+#include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
 namespace {
 
 /// The bit of a material's visibility and body that says that a look follows.
 constexpr std::uint8_t kBuildHasLook = 16;
+/// The bit that says that a shape follows.
+constexpr std::uint8_t kBuildHasShape = 32;
 
 void write_material_text(ByteWriter& w, std::string_view text) {
   w.varint(text.size());
@@ -31,6 +34,9 @@ Result<void> check_build_material(const BuildMaterial& material) {
     return fail(ErrorCode::bad_value,
                 "states must be at most 256 bytes of UTF-8 without control characters");
   const MaterialRow& row = material.row;
+  if (!row.shape.is_cube() && row.visibility == Visibility::empty)
+    return fail(ErrorCode::bad_value, "material of the build is empty and has a shape");
+  if (const auto sound = validate_shape(row.shape); !sound) return sound;
   return validate_material(row.name, row.colour, row.visibility, row.body, row.look);
 }
 
@@ -80,16 +86,25 @@ void encode_build_material(const BuildMaterial& material, Bytes& out) {
   w.bytes(row.colour);
   w.u8(static_cast<std::uint8_t>(static_cast<unsigned>(row.visibility) |
                                  static_cast<unsigned>(row.body) << 2 |
-                                 (row.look ? unsigned{kBuildHasLook} : 0U)));
-  if (!row.look) return;
-  for (const std::uint8_t byte :
-       {row.look->variation, row.look->grain, row.look->roughness, row.look->emission,
-        static_cast<std::uint8_t>(row.look->pattern)}) {
-    w.u8(byte);
+                                 (row.look ? unsigned{kBuildHasLook} : 0U) |
+                                 (row.shape.is_cube() ? 0U : unsigned{kBuildHasShape})));
+  if (row.look) {
+    for (const std::uint8_t byte :
+         {row.look->variation, row.look->grain, row.look->roughness, row.look->emission,
+          static_cast<std::uint8_t>(row.look->pattern)}) {
+      w.u8(byte);
+    }
   }
+  if (!row.shape.is_cube()) write_shape(w, row.shape);
 }
 
-Result<void> decode_build_materials(ByteView in, std::uint32_t count,
+bool has_shape(std::span<const BuildMaterial> materials) {
+  return std::any_of(materials.begin(), materials.end(), [](const BuildMaterial& material) {
+    return !material.row.shape.is_cube();
+  });
+}
+
+Result<void> decode_build_materials(ByteView in, std::uint32_t count, bool with_shapes,
                                     std::vector<BuildMaterial>& out) {
   ByteReader r(in);
   for (std::uint32_t i = 0; i < count && r.ok(); ++i) {
@@ -101,7 +116,7 @@ Result<void> decode_build_materials(ByteView in, std::uint32_t count,
     const ByteView colour = r.bytes(row.colour.size());
     std::copy(colour.begin(), colour.end(), row.colour.begin());
     const std::uint8_t bits = r.u8();
-    if (bits >= kBuildHasLook * 2)
+    if (bits >= (with_shapes ? kBuildHasShape : kBuildHasLook) * 2)
       r.reject(ErrorCode::bad_value, "material has unknown bits of visibility and body");
     row.visibility = static_cast<Visibility>(bits & 3);
     row.body = static_cast<MaterialBody>(bits >> 2 & 3);
@@ -112,6 +127,7 @@ Result<void> decode_build_materials(ByteView in, std::uint32_t count,
       look.pattern = static_cast<MaterialPattern>(r.u8());
       row.look = look;
     }
+    if ((bits & kBuildHasShape) != 0) row.shape = read_shape(r);
     if (!r.ok()) break;
     if (const auto sound = check_build_material(material); !sound)
       r.reject(sound.error().code, sound.error().what);

@@ -1,6 +1,6 @@
 // BuildHead and BuildMaterial: the contents of an .rsb besides its cells: what the build is, and the
 // materials that its cells name. A build has no ids of any world: another world
-// finds its materials by their names, or makes them of colour, visibility, body and look.
+// finds its materials by their names, or makes them of colour, visibility, body, look and shape.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -48,9 +48,12 @@ Result<BuildHead> decode_build_head(ByteView in);
 
 /// Appends one valid material.
 void encode_build_material(const BuildMaterial& material, Bytes& out);
+/// Returns true if a material is no cube. Cost: O(materials).
+bool has_shape(std::span<const BuildMaterial> materials);
 /// Decodes exactly `count` materials, and appends them to `out`. They need not ascend: call
-/// validate_build_materials() for all. The offset of an error is a byte of the payload.
-Result<void> decode_build_materials(ByteView in, std::uint32_t count,
+/// validate_build_materials() for all. `with_shapes`: they may have shapes. The offset of an error is
+/// a byte of the payload.
+Result<void> decode_build_materials(ByteView in, std::uint32_t count, bool with_shapes,
                                     std::vector<BuildMaterial>& out);
 
 }  // namespace runstone

@@ -92,7 +92,7 @@ struct Format {
   Result<ForeignInfo> (*read)(ByteView record, const PieceSink& sink);
   /// Returns the material that a block becomes. The result is deterministic, and
   /// MaterialTable::add() accepts it for every block, if the name is not taken. `keep_all`: blocks
-  /// that are no whole cube, such as plants, are not empty.
+  /// that are no whole cube and have no shape are not empty.
   MaterialInfo (*material_of)(const ForeignBlock& block, bool keep_all);
   /// Writes a build as one file. Fails with limit_exceeded and the limit in the text if the build is
   /// larger, or has more materials, than a file of this format holds; nothing was written then. Fails

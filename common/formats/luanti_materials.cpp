@@ -11,6 +11,7 @@
 #include "common/formats/luanti_names.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/shape_names.hpp"
 #include "common/materials/default_look.hpp"
 
 namespace runstone {
@@ -301,7 +302,17 @@ MaterialInfo written_material(const std::string& name) {
     out.look = default_look(name, out.body);
   }
   out.name = name;
+  out.shape = shape_of_material_name(name).value_or(Shape{});
   return out;
+}
+
+/// Returns the name of a material for a node with states. They are a part of it if they say how the
+/// node's shape lies.
+std::string name_with_param2(std::string name, const std::string& states) {
+  const std::string whole = name + '[' + states + ']';
+  if (states.empty() || whole.size() > kMaterialNameBytesMax) return name;
+  const auto lying = shape_of_material_name(whole);
+  return lying && lying != shape_of_material_name(name) ? whole : name;
 }
 
 }  // namespace
@@ -316,7 +327,8 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
     return written_material(name);
   const Look look = look_of(name);
   MaterialInfo out;
-  out.name = material_name(name);
+  out.name = name_with_param2(material_name(name), node.states);
+  const std::optional<Shape> shape = shape_of_material_name(out.name);
   out.colour = {static_cast<std::uint8_t>(look.rgb >> 16), static_cast<std::uint8_t>(look.rgb >> 8),
                 static_cast<std::uint8_t>(look.rgb), 255};
   switch (look.kind) {
@@ -328,6 +340,10 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
       out.colour[3] = look.alpha;
       break;
     case Kind::thin:
+      if (shape) {
+        out.body = MaterialBody::passable;
+        break;
+      }
       out.visibility = keep_all ? Visibility::transparent : Visibility::empty;
       if (keep_all) out.body = MaterialBody::passable;
       out.colour[3] = kThinAlpha;
@@ -335,6 +351,7 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
   }
   // Luanti's games name the two nodes of a liquid so.
   if (name.ends_with("_source") || name.ends_with("_flowing")) out.body = MaterialBody::liquid;
+  if (shape && out.visibility != Visibility::empty) out.shape = *shape;
   // It is stored, so that every client draws the world alike.
   out.look = default_look(name, out.body);
   return out;

@@ -5,6 +5,7 @@
 
 #include "common/formats/material_match.hpp"
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/shape_names.hpp"
 #include "common/materials/material_table.hpp"
 
 namespace runstone {
@@ -40,6 +41,7 @@ MaterialRow row_named(const std::string& name, const MaterialRow& source) {
     out = row_of(material_of_minecraft_block(*block, true));
   if (out.visibility == Visibility::empty) return empty_row();
   out.name = name;
+  if (const auto shape = shape_of_material_name(name)) out.shape = *shape;
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/core/text.hpp"
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/shape_names.hpp"
 
 namespace runstone {
 namespace {
@@ -40,6 +41,8 @@ std::string world_name_of(const BuildMaterial& material) {
 MaterialRow world_row_of(const BuildMaterial& material) {
   MaterialRow row = material.row;
   row.name = world_name_of(material);
+  if (row.shape.is_cube() && row.visibility != Visibility::empty)
+    row.shape = shape_of_material_name(row.name).value_or(Shape{});
   return row;
 }
 

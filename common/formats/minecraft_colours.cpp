@@ -9,6 +9,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/shape_names.hpp"
 #include "common/formats/minecraft_states.hpp"
 #include "common/materials/default_look.hpp"
 
@@ -826,8 +827,9 @@ MaterialInfo material_of_minecraft_block(const ForeignBlock& given, bool keep_al
     return out;
   }
   const bool is_thin = appearance.form == Form::thin || appearance.form == Form::wet;
+  const std::optional<Shape> shape = shape_of_material_name(out.name);
   if (is_thin && !keep_all) {
-    // Seagrass that became empty would be a hole in the sea.
+    // A voxel has no room for seagrass and its water: the plant would be a hole in the sea.
     const bool in_water = states.empty() || !has_state(states, "waterlogged", "false");
     if ((appearance.form == Form::wet && in_water) || has_state(states, "waterlogged", "true"))
       return material_of_minecraft_block({"minecraft:water", ""}, keep_all);
@@ -835,7 +837,9 @@ MaterialInfo material_of_minecraft_block(const ForeignBlock& given, bool keep_al
   const std::uint32_t rgb = appearance.rgb;
   out.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8),
                 static_cast<std::uint8_t>(rgb), 255};
-  if (is_thin) {
+  if (is_thin && shape) {
+    out.body = MaterialBody::passable;
+  } else if (is_thin) {
     out.visibility = keep_all ? Visibility::transparent : Visibility::empty;
     if (keep_all) out.body = MaterialBody::passable;
     out.colour[3] = kKeptAlpha;
@@ -846,6 +850,7 @@ MaterialInfo material_of_minecraft_block(const ForeignBlock& given, bool keep_al
   if (appearance.form == Form::liquid) out.body = MaterialBody::liquid;
   if (name == "nether_portal" || name == "end_portal" || name == "end_gateway")
     out.body = MaterialBody::passable;
+  if (shape && out.visibility != Visibility::empty) out.shape = *shape;
   // It is stored, so that every client draws the world alike.
   out.look = surface_of(name, out.body, states);
   return out;

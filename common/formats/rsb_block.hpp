@@ -21,7 +21,8 @@ namespace runstone {
 /// the file as text.
 inline constexpr std::array<std::uint8_t, 8> kRsbMark = {0x89, 'R',  'S',  'B',
                                                          'F',  '\r', '\n', 0x1a};
-inline constexpr std::uint32_t kRsbVersion = 1;
+/// The version of a file whose materials are cubes, and that of a file in which one has a shape.
+inline constexpr std::uint32_t kRsbVersion = 1, kRsbVersionOfShapes = 2;
 inline constexpr std::size_t kRsbFileHeadBytes = 12;  // mark and version
 inline constexpr std::size_t kRsbHeaderBytes = 48;
 /// The maximum sizes of one block. They also bound a reader's memory.

@@ -76,7 +76,8 @@ RsbResult<void> RsbReader::read_head() {
     return failure_at({ErrorCode::bad_value, "is not an .rsb file", 0}, "mark", 0);
   if (*got < mark.size())
     return failure_at({ErrorCode::truncated, "file ends inside its mark", 0}, "mark", 0);
-  if (ByteReader(ByteView(mark).subspan(kRsbMark.size())).u32() != kRsbVersion) {
+  const std::uint32_t version = ByteReader(ByteView(mark).subspan(kRsbMark.size())).u32();
+  if (version != kRsbVersion && version != kRsbVersionOfShapes) {
     return failure_at(
         {ErrorCode::bad_version, "is an .rsb of another version than this program knows", 0},
         "mark", 0);
@@ -87,10 +88,10 @@ RsbResult<void> RsbReader::read_head() {
   auto head = decode_build_head(raw_);
   if (!head) return failure_at(head.error(), "head", block->position);
   info_ = std::move(head->info);
-  return read_materials(head->material_count);
+  return read_materials(head->material_count, version == kRsbVersionOfShapes);
 }
 
-RsbResult<void> RsbReader::read_materials(std::uint32_t material_count) {
+RsbResult<void> RsbReader::read_materials(std::uint32_t material_count, bool with_shapes) {
   std::uint64_t all_bytes = 0;
   std::uint64_t begin = position_;
   while (materials_.size() < material_count) {
@@ -107,11 +108,16 @@ RsbResult<void> RsbReader::read_materials(std::uint32_t material_count) {
           {ErrorCode::broken_invariant, "materials are not those that the head announces", 0},
           "materials", begin);
     }
-    if (const auto read = decode_build_materials(raw_, block->count, materials_); !read)
+    if (const auto read = decode_build_materials(raw_, block->count, with_shapes, materials_);
+        !read)
       return failure_at(read.error(), "materials", begin);
   }
   if (const auto sound = validate_build_materials(materials_); !sound)
     return failure_at(sound.error(), "materials", begin);
+  if (with_shapes && !has_shape(materials_)) {
+    return failure_at({ErrorCode::not_canonical, "no material has a shape in a file of version 2", 0},
+                      "materials", begin);
+  }
   return {};
 }
 

@@ -33,7 +33,7 @@ class RsbReader {
  private:
   explicit RsbReader(RsbSource source) : source_(std::move(source)) {}
   RsbResult<void> read_head();
-  RsbResult<void> read_materials(std::uint32_t material_count);
+  RsbResult<void> read_materials(std::uint32_t material_count, bool with_shapes);
   RsbResult<void> read_end(const RsbBlock& block);
   RsbResult<RsbBlock> read_header();
   /// Reads the header and the payload of the next block. Fails if it is of another kind.

@@ -51,7 +51,7 @@ RsbResult<void> RsbWriter::begin(const BuildInfo& info, std::span<const BuildMat
   sides_ = info.sides;
   material_count_ = static_cast<std::uint32_t>(materials.size());
   Bytes mark(kRsbMark.begin(), kRsbMark.end());
-  ByteWriter(mark).u32(kRsbVersion);
+  ByteWriter(mark).u32(has_shape(materials) ? kRsbVersionOfShapes : kRsbVersion);
   if (!sink_(mark)) return failure_at(ErrorCode::io_failed, "cannot be written", RsbKind::head);
   position_ = mark.size();
   RsbBlock block;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/shape_names.hpp"
 
 namespace runstone {
 namespace {
@@ -150,8 +151,11 @@ MaterialInfo material_of_schematic_block(const ForeignBlock& block, bool keep_al
   const auto name =
       unescaped(std::string_view(block.name).substr(kRunstoneNamespace.size()), kNameRule);
   if (name && *name != "air" &&
-      validate_material(*name, info.colour, info.visibility, info.body, info.look))
+      validate_material(*name, info.colour, info.visibility, info.body, info.look)) {
     info.name = *name;
+    info.shape = shape_of_material_name(*name).value_or(Shape{});
+    if (info.visibility == Visibility::empty) info.shape = {};
+  }
   return info;
 }
 

@@ -24,13 +24,32 @@ const char* broken_rule(const SurfaceRule& rule) {
   return nullptr;
 }
 
-/// Fails for a shape that a row of this visibility must not have. A cube is no shape.
-Result<void> check_row_shape(const Shape& shape, Visibility visibility) {
-  if (shape == Shape{}) return {};
-  if (visibility == Visibility::empty)
-    return fail(ErrorCode::bad_value, "a material that is empty has no shape");
-  return check_shape(shape);
-}
+/// Checks the shapes of rows that are to have them together.
+class ShapeCheck {
+ public:
+  /// `known` are the shapes of the table, and must outlive the object.
+  explicit ShapeCheck(const std::set<Shape>& known) : known_(known) {}
+  /// Fails for a shape that a row of this visibility must not have, and if there are too many
+  /// different ones. A cube is no shape. The shape must outlive the object.
+  Result<void> check(const Shape& shape, Visibility visibility) {
+    if (shape == Shape{}) return {};
+    if (visibility == Visibility::empty)
+      return fail(ErrorCode::bad_value, "a material that is empty has no shape");
+    if (known_.count(shape) != 0 || fresh_.count(&shape) != 0) return {};
+    if (auto sound = check_shape(shape); !sound) return sound;
+    if (known_.size() + fresh_.size() == kTableShapesMax)
+      return fail(ErrorCode::limit_exceeded, "more than 4096 different shapes", kTableShapesMax);
+    fresh_.insert(&shape);
+    return {};
+  }
+
+ private:
+  struct Before {
+    bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
+  };
+  const std::set<Shape>& known_;
+  std::set<const Shape*, Before> fresh_;
+};
 
 }  // namespace
 
@@ -55,7 +74,7 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
           validate_material(info.name, info.colour, info.visibility, info.body, info.look);
       !sound)
     return failure(sound.error());
-  if (const auto sound = check_row_shape(info.shape, info.visibility); !sound)
+  if (const auto sound = ShapeCheck(shapes_).check(info.shape, info.visibility); !sound)
     return failure(sound.error());
   if (info.generation) {
     if (const char* what = broken_rule(info.generation->surface))
@@ -67,6 +86,7 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
   }
   const auto id = static_cast<Material>(rows_.size());
   if (!ids_.emplace(info.name, id).second) return fail(ErrorCode::bad_value, kNameIsTaken);
+  if (!info.shape.is_cube()) shapes_.insert(info.shape);
   rows_.push_back(std::move(info));
   return id;
 }
@@ -75,13 +95,14 @@ Result<void> MaterialTable::check_rows(std::span<const MaterialRow> rows) const 
   const std::size_t room = kMaterialCountMax - rows_.size();
   if (rows.size() > room) return fail(ErrorCode::limit_exceeded, kTableIsFull, room);
   std::set<std::string_view> names;
+  ShapeCheck shapes(shapes_);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MaterialRow& row = rows[i];
     if (const auto sound =
             validate_material(row.name, row.colour, row.visibility, row.body, row.look);
         !sound)
       return fail(sound.error().code, sound.error().what, i);
-    if (const auto sound = check_row_shape(row.shape, row.visibility); !sound)
+    if (const auto sound = shapes.check(row.shape, row.visibility); !sound)
       return fail(sound.error().code, sound.error().what, i);
     if (find(row.name) || !names.insert(row.name).second)
       return fail(ErrorCode::bad_value, kNameIsTaken, i);
@@ -103,6 +124,7 @@ Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> 
 
 Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
   std::set<Material> materials;
+  ShapeCheck shapes(shapes_);
   for (std::size_t i = 0; i < given.size(); ++i) {
     const auto& [material, shape] = given[i];
     if (!knows(material))
@@ -110,10 +132,13 @@ Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
     if (!rows_[material].shape.is_cube() || !materials.insert(material).second)
       return fail(ErrorCode::bad_value, "a shape is given to a material that has one", i);
     if (shape.is_cube()) return fail(ErrorCode::bad_value, "a given shape is a cube", i);
-    if (const auto sound = check_row_shape(shape, rows_[material].visibility); !sound)
+    if (const auto sound = shapes.check(shape, rows_[material].visibility); !sound)
       return fail(sound.error().code, sound.error().what, i);
   }
-  for (const auto& [material, shape] : given) rows_[material].shape = shape;
+  for (const auto& [material, shape] : given) {
+    rows_[material].shape = shape;
+    shapes_.insert(shape);
+  }
   return {};
 }
 

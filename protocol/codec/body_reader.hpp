@@ -87,6 +87,7 @@ struct BodyReader {
 
   // ---- material_bodies.cpp
   Result<Message> read(const wire::MaterialsAdded& t) const;
+  Result<Message> read(const wire::ShapesGiven& t) const;
 
   // ---- log_mark_bodies.cpp
   Result<Message> read(const wire::LogMarksRequest& t) const;

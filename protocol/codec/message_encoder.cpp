@@ -11,6 +11,7 @@
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/preview_list.hpp"
+#include "protocol/codec/shape_list.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -44,7 +45,10 @@ struct BodyBuilder {
     return wire::CreateHello(b, m.protocol, key, m.instance, nonce, name, m.encodings, m.features);
   }
   Offset<wire::Welcome> operator()(const Welcome& m) {
-    const auto materials = material_rows(m.materials.rows());
+    const bool has_shapes = (m.features & kFeatureShapes) != 0;
+    const ShapeList shapes = has_shapes ? ShapeList(m.materials) : ShapeList();
+    const auto materials = material_rows(m.materials.rows(), shapes);
+    const auto shape_bytes = shapes.empty() ? 0 : bytes_of(b, shapes.encode());
     const auto world_id = bytes_of(b, m.world_id);
     const auto server_key = bytes_of(b, m.server_key);
     const auto challenge = bytes_of(b, m.challenge);
@@ -56,7 +60,7 @@ struct BodyBuilder {
                                challenge, signature, static_cast<std::uint8_t>(m.encoding),
                                m.edit_volume_max, m.edit_budget.per_second, m.edit_budget.burst,
                                m.view_radius_max, m.features, salt, m.tile_levels_max,
-                               m.waiting_edits_max, m.waiting_edit_bytes_max);
+                               m.waiting_edits_max, m.waiting_edit_bytes_max, shape_bytes);
   }
   Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
     const auto signature = bytes_of(b, m.signature);
@@ -237,7 +241,13 @@ struct BodyBuilder {
   Offset<wire::MaterialsAdded> operator()(const MaterialsAdded& m) {
     RUNSTONE_ASSERT(m.first != 0 && !m.rows.empty());
     RUNSTONE_ASSERT(m.first + m.rows.size() <= kMaterialCountMax);
-    return wire::CreateMaterialsAdded(b, m.first, material_rows(m.rows));
+    return wire::CreateMaterialsAdded(b, m.first, material_rows(m.rows, ShapeList()));
+  }
+  Offset<wire::ShapesGiven> operator()(const ShapesGiven& m) {
+    Bytes bytes;
+    ByteWriter w(bytes);
+    write_given_shapes(w, m.given);
+    return wire::CreateShapesGiven(b, bytes_of(b, bytes));
   }
 
   Offset<wire::LogMarksRequest> operator()(const LogMarksRequest& m) {
@@ -403,7 +413,7 @@ struct BodyBuilder {
   }
 
   template <class Rows>
-  auto material_rows(const Rows& materials)
+  auto material_rows(const Rows& materials, const ShapeList& shapes)
       -> Offset<flatbuffers::Vector<Offset<wire::MaterialRow>>> {
     std::vector<Offset<wire::MaterialRow>> rows;
     rows.reserve(materials.size());
@@ -415,9 +425,9 @@ struct BodyBuilder {
       const MaterialLook given = row.look.value_or(MaterialLook{});
       const wire::MaterialLook look(given.variation, given.grain, given.roughness, given.emission,
                                     static_cast<std::uint8_t>(given.pattern));
-      rows.push_back(
-          wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility),
-                                  static_cast<std::uint8_t>(row.body), row.look ? &look : nullptr));
+      rows.push_back(wire::CreateMaterialRow(
+          b, name, rgba, static_cast<std::uint8_t>(row.visibility),
+          static_cast<std::uint8_t>(row.body), row.look ? &look : nullptr, shapes.number(row)));
     }
     return b.CreateVector(rows);
   }

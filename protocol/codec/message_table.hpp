@@ -101,6 +101,7 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"BuildOffer", client, kEdits, open, kFeatureBuilds},
       {"BuildUpload", client, kEdits, open, kFeatureBuilds},
       {"BuildAnswer", server, kControl, open, kFeatureBuilds},
+      {"ShapesGiven", server, kEdits, open, kFeatureShapes},
   }};
 }();
 

@@ -70,7 +70,7 @@ struct Welcome {
   std::uint16_t chunk_edge = 32;
   HeightLimits heights;  // limits of edits
   WorldPos spawn;
-  MaterialTable materials;
+  MaterialTable materials;  // without the feature shapes, encode_message() leaves shapes out
   PublicKey server_key{};
   Nonce challenge{};
   Signature signature{};
@@ -447,6 +447,12 @@ struct MaterialsAdded {
   friend bool operator==(const MaterialsAdded&, const MaterialsAdded&) = default;
 };
 
+/// Shapes of materials that were cubes. It has the class of the edits, and follows the materials.
+struct ShapesGiven {
+  GivenShapes given;
+  friend bool operator==(const ShapesGiven&, const ShapesGiven&) = default;
+};
+
 /// Another server orders the edits of the session from now on. What the client sent before may be
 /// lost. The client answers with Resumed, and offers the edits again that have no answer.
 struct Resume {
@@ -468,7 +474,8 @@ using Message =
                  KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
                  RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
                  RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest,
-                 Builds, BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer>;
+                 Builds, BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer,
+                 ShapesGiven>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "protocol/codec/body_reader.hpp"
+#include "protocol/codec/shape_list.hpp"
 
 namespace runstone {
 namespace {
@@ -9,9 +12,19 @@ Result<void> take_materials(const wire::Welcome& t, MaterialTable& table) {
   const auto* rows = t.materials();
   const auto count = count_of(rows, kMaterialCountMax);
   if (!count || *count == 0) return bad("welcome.materials has not 1 .. 65536 rows");
+  const bool has_shapes = (t.features() & kFeatureShapes) != 0;
+  if (!has_shapes && t.shapes() != nullptr) return bad("welcome.shapes without the feature shapes");
+  const auto shapes = decode_shapes(view_of(t.shapes()));
+  if (!shapes) return failure(shapes.error());
+  std::vector<bool> used(shapes->size() + 1, false);
+  used[0] = true;
   for (std::uint32_t i = 0; i < *count; ++i) {
     MaterialInfo info;
     if (!take_material(*rows->Get(i), info)) return bad("bad row in welcome.materials");
+    const std::size_t shape = rows->Get(i)->shape();
+    if (shape > shapes->size()) return bad("a row of welcome.materials has an unknown shape");
+    used[shape] = true;
+    if (shape != 0) info.shape = (*shapes)[shape - 1];
     if (i == 0) {
       info.look.reset();  // air is not drawn, and a look is never a reason to refuse a row
       if (info != table[kEmpty]) return bad("row 0 of welcome.materials is not air");
@@ -19,6 +32,8 @@ Result<void> take_materials(const wire::Welcome& t, MaterialTable& table) {
       return failure(id.error());
     }
   }
+  if (std::find(used.begin(), used.end(), false) != used.end())
+    return bad("a shape of welcome.shapes has no material");
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "server/admin/player_commands.hpp"
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
+#include "server/admin/shape_commands.hpp"
 
 namespace runstone {
 namespace {
@@ -109,7 +110,7 @@ const std::vector<CommandRow>& command_table() {
     std::vector<CommandRow> rows;
     for (const auto& part : {player_commands(), ground_commands(), moderation_commands(),
                              rollback_commands(), role_commands(), password_commands(),
-                             clock_commands(), library_commands(), host_commands()})
+                             clock_commands(), library_commands(), shape_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

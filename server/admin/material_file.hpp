@@ -6,6 +6,7 @@
 
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
+#include "common/edits/descriptor/given_shapes.hpp"
 #include "common/materials/material_table.hpp"
 
 namespace runstone {
@@ -21,5 +22,9 @@ Result<std::vector<MaterialFileRow>, std::string> read_material_file(const std::
 std::vector<std::string> material_lines(Material first, std::span<const MaterialRow> rows);
 /// Returns these texts of the first eight rows in one line, for the command `log`.
 std::string added_materials_text(const AddedMaterials& added);
+
+/// Returns a text such as "oak_slab, oak_stairs and 3 more" with the names of the first eight
+/// materials. Those that the table lacks are shown by their ids.
+std::string given_names_text(std::span<const GivenShape> given, const MaterialTable& materials);
 
 }  // namespace runstone

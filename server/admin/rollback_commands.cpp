@@ -322,6 +322,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " " + rights_change_text(*change);
   if (const AddedMaterials* added = added_materials_of(record.edit))
     return line + " " + added_materials_text(*added);
+  if (const GivenShapes* given = given_shapes_of(record.edit))
+    return line + " shapes of " + given_names_text(given->rows, materials);
   if (const LibraryChange* change = library_change_of(record.edit))
     return line + " " + library_change_text(*change);
   return line + " " + edit_text(record, materials);

@@ -53,6 +53,9 @@ struct RowCounts {
 /// The key of the row that log_eras() reads. Only a world whose time was corrected has it.
 inline constexpr const char* kLogErasKey = "log_eras";
 
+/// The key of a row, always 1, that only a world has in which a material has or had a shape.
+inline constexpr const char* kShapesKey = "shapes";
+
 class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);

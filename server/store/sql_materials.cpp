@@ -1,10 +1,12 @@
 // The part of SqlStore that knows the material table: `meta` has the table before the first edit
-// of the log, and records of the log append to it.
+// of the log, and records of the log append to it, and give its rows shapes.
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
+#include "server/store/world_schema.hpp"
 
 namespace runstone {
 
@@ -34,8 +36,9 @@ StoreResult<MaterialTable> SqlStore::materials(Sequence at) {
 }
 
 StoreResult<void> SqlStore::append_materials(const EditRecord& record, MaterialTable& table) const {
-  const AddedMaterials& added = *added_materials_of(record.edit);
-  const auto appended = table.append(added.first, added.rows);
+  const AddedMaterials* added = added_materials_of(record.edit);
+  const auto appended = added != nullptr ? table.append(added->first, added->rows)
+                                         : table.give_shapes(given_shapes_of(record.edit)->rows);
   if (appended) return {};
   return failure(StoreError{StoreError::Kind::corrupt, file(),
                             "edit_log seq=" + std::to_string(record.version.seq),
@@ -45,7 +48,7 @@ StoreResult<void> SqlStore::append_materials(const EditRecord& record, MaterialT
 StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord> records) {
   std::optional<MaterialTable> table;
   for (const EditRecord& record : records) {
-    if (added_materials_of(record.edit) == nullptr) continue;
+    if (!changes_materials(record.edit)) continue;
     if (!table) {
       auto read = materials(kSequenceMax);
       if (!read) return failed(read.error());
@@ -55,6 +58,15 @@ StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord
       return refuse(fits.error().where, fits.error().what);
   }
   return {};
+}
+
+StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
+  if (std::none_of(records.begin(), records.end(), [](const EditRecord& record) {
+        return given_shapes_of(record.edit) != nullptr;
+      }))
+    return {};
+  if (auto put = meta_table_.put(kShapesKey, std::int64_t{1}); !put) return put;
+  return raise_format(kWorldFormatOfShapes);
 }
 
 StoreResult<MaterialTable> SqlStore::keep_materials(Sequence last) {

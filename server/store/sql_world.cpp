@@ -138,6 +138,15 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
       if (!raised) return failed(raised.error());
     }
   }
+  if (rows->contains(kShapesKey) && access != StoreAccess::read_only && !store->loss_) {
+    const auto format = store->backend_->format();
+    if (!format) return failed(format.error());
+    if (*format < kWorldFormatOfShapes) {
+      const auto raised =
+          store->transact([&] { return store->raise_format(kWorldFormatOfShapes); });
+      if (!raised) return failed(raised.error());
+    }
+  }
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =
       rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};

@@ -24,13 +24,18 @@ inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// The format of a world that has a library of builds (kBuildFoldKey): it has two tables more, and its
 /// log may have records that programs of format 6 do not know.
 inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
+/// The format of a world in which a material has, or had once, a shape (kShapesKey): its material
+/// table and its log have what programs of format 7 do not know. It has the tables of a library only
+/// if it has a library.
+inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Returns "world formats 5, 6 and 7": those that this program makes, for --version.
+/// Returns "world formats 5, 6, 7 and 8": those that this program makes, for --version.
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
-         std::to_string(kWorldFormatOfEras) + " and " + std::to_string(kWorldFormatOfLibrary);
+         std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) +
+         " and " + std::to_string(kWorldFormatOfShapes);
 }
 
 /// Makes all tables in the caller's transaction.

@@ -40,6 +40,8 @@ Result<void> validate(const AddedMaterials& added) {
     if (auto sound = validate_material(row.name, row.colour, row.visibility, row.body, row.look);
         !sound)
       return sound;
+    if (!row.shape.is_cube())
+      return fail(ErrorCode::bad_value, "a record of new materials has no shapes");
     names.push_back(row.name);
   }
   std::sort(names.begin(), names.end());

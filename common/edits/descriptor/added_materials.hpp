@@ -13,7 +13,8 @@ namespace runstone {
 
 struct AddedMaterials {
   Material first = 1;             // id of the first row: the table's size before
-  std::vector<MaterialRow> rows;  // 1 .. kAddedMaterialsMax; their names differ
+  /// 1 .. kAddedMaterialsMax; their names differ. They are cubes: another record gives them shapes.
+  std::vector<MaterialRow> rows;
   friend bool operator==(const AddedMaterials&, const AddedMaterials&) = default;
 };
 
@@ -32,7 +33,7 @@ inline constexpr std::size_t kAddedLooksBytesMax = kAddedMaterialsMax * kLookByt
 /// otherwise those of the kind `materials`. Cost: O(rows).
 bool has_looks(const AddedMaterials& added);
 
-/// Fails if a row is not valid (validate_material()), if two have one name, or if their number or
+/// Fails if a row is not valid (validate_material()) or has a shape, if two have one name, or if their number or
 /// their ids are out of range. Cost: O(n log n).
 Result<void> validate(const AddedMaterials& added);
 

@@ -100,6 +100,11 @@ Result<void> validate_shape(const LibraryEdit& shape) {
   return validate(*shape.change);
 }
 
+Result<void> validate_shape(const ShapesEdit& shape) {
+  if (shape.given == nullptr) return fail(ErrorCode::bad_value, "edit of shapes without rows");
+  return validate(*shape.given);
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -150,6 +155,8 @@ void write_shape(ByteWriter& w, const MaterialsEdit& shape) {
 void write_shape(ByteWriter& w, const LibraryEdit& shape) {
   write_library_change(w, *shape.change);
 }
+
+void write_shape(ByteWriter& w, const ShapesEdit& shape) { write_given_shapes(w, *shape.given); }
 
 std::int32_t read_coordinate(ByteReader& r) {
   return static_cast<std::int32_t>(
@@ -220,6 +227,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::materials:
     case EditKind::materials_with_looks:
     case EditKind::library:
+    case EditKind::shapes:
       return true;
   }
   return false;
@@ -256,6 +264,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return MaterialsEdit{std::make_shared<const AddedMaterials>(read_added_materials(r, true))};
     case EditKind::library:
       return LibraryEdit{std::make_shared<const LibraryChange>(read_library_change(r))};
+    case EditKind::shapes:
+      return ShapesEdit{std::make_shared<const GivenShapes>(read_given_shapes(r))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -265,7 +275,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
       EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
-      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library};
+      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
+      EditKind::shapes};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -281,6 +292,10 @@ EditDescriptor materials_edit(AddedMaterials added) {
 
 EditDescriptor library_edit(LibraryChange change) {
   return {LibraryEdit{std::make_shared<const LibraryChange>(std::move(change))}, {}, kEmpty};
+}
+
+EditDescriptor shapes_edit(GivenShapes given) {
+  return {ShapesEdit{std::make_shared<const GivenShapes>(std::move(given))}, {}, kEmpty};
 }
 
 Result<void> validate(const EditDescriptor& edit) {
@@ -350,7 +365,7 @@ Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   auto edit = decode_descriptor(in);
   if (edit && !has_voxels(*edit))
     return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials or the library is no edit of voxels");
+                "a change of rights, materials, shapes or the library is no edit of voxels");
   return edit;
 }
 

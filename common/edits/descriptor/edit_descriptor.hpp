@@ -2,8 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
-// have no voxels: they change who may do what, add materials, or change the library of builds. They
-// stand in the same order as the others.
+// have no voxels: they change who may do what, add materials or give them shapes, or change the
+// library of builds. They stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,6 +17,7 @@
 #include "common/edits/clipboard/clipboard.hpp"
 #include "common/edits/clipboard/orientation.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
+#include "common/edits/descriptor/given_shapes.hpp"
 #include "common/edits/descriptor/library_change.hpp"
 #include "common/rights/rights_change.hpp"
 
@@ -33,7 +34,8 @@ enum class EditKind : std::uint8_t {
   rights = 7,
   materials = 8,
   materials_with_looks = 9,  // of which at least one has a look
-  library = 10
+  library = 10,
+  shapes = 11
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -129,9 +131,17 @@ struct LibraryEdit {
   }
 };
 
+/// Gives shapes to materials of the world. It has no voxels and touches no chunk.
+struct ShapesEdit {
+  std::shared_ptr<const GivenShapes> given;
+  friend bool operator==(const ShapesEdit& a, const ShapesEdit& b) {
+    return a.given == b.given || (a.given != nullptr && b.given != nullptr && *a.given == *b.given);
+  }
+};
+
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
 using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit>;
+                               MaterialsEdit, LibraryEdit, ShapesEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -171,11 +181,24 @@ inline const LibraryChange* library_change_of(const EditDescriptor& edit) {
   const auto* library = std::get_if<LibraryEdit>(&edit.shape);
   return library == nullptr ? nullptr : library->change.get();
 }
+/// Returns the descriptor that gives shapes.
+EditDescriptor shapes_edit(GivenShapes given);
+/// Returns the shapes of a descriptor that gives some; null for the other kinds.
+inline const GivenShapes* given_shapes_of(const EditDescriptor& edit) {
+  const auto* shapes = std::get_if<ShapesEdit>(&edit.shape);
+  return shapes == nullptr ? nullptr : shapes->given.get();
+}
+/// Returns true if the edit adds materials or gives shapes to some: it changes the material table.
+inline bool changes_materials(const EditDescriptor& edit) {
+  return std::holds_alternative<MaterialsEdit>(edit.shape) ||
+         std::holds_alternative<ShapesEdit>(edit.shape);
+}
 /// Returns false if the kind of the edit has no voxels.
 inline bool has_voxels(const EditDescriptor& edit) {
   return !std::holds_alternative<RightsEdit>(edit.shape) &&
          !std::holds_alternative<MaterialsEdit>(edit.shape) &&
-         !std::holds_alternative<LibraryEdit>(edit.shape);
+         !std::holds_alternative<LibraryEdit>(edit.shape) &&
+         !std::holds_alternative<ShapesEdit>(edit.shape);
 }
 
 /// Returns the maximum number of bytes of a descriptor of this kind.
@@ -186,11 +209,13 @@ constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::materials_with_looks)
     return 64 + kAddedMaterialsBytesMax + kAddedLooksBytesMax;
   if (kind == EditKind::library) return 64 + kLibraryChangeBytesMax;
+  if (kind == EditKind::shapes) return 64 + kGivenShapesBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
 inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
 static_assert(descriptor_bytes_max(EditKind::materials_with_looks) <= kDescriptorBytesMax);
+static_assert(descriptor_bytes_max(EditKind::shapes) <= kDescriptorBytesMax);
 
 /// Fails with the first field outside its range: a position beyond the world, an empty or oversized
 /// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.

@@ -25,6 +25,8 @@ constexpr const char* name_of(EditKind kind) {
       return "materials";
     case EditKind::library:
       return "library";
+    case EditKind::shapes:
+      return "shapes";
   }
   return "edit";
 }

@@ -28,6 +28,7 @@ struct Follower {
   bool takes_servers = false;                // it knows the message
   bool takes_corrections = false;            // it knows a CorrectTime
   bool takes_library = false;                // it knows a LibraryChange
+  bool takes_shapes = false;                 // it knows GivenShapes
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -65,6 +66,8 @@ class Followers {
   /// Returns why no change of the library may be ordered, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> library_refusal() const;
+  /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
+  std::optional<std::string> shapes_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;

@@ -1,4 +1,4 @@
-// The answer to an addition of materials.
+// The answers to an addition of materials and to shapes that are given.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -10,7 +10,7 @@ namespace runstone {
 
 /// Where added materials are.
 struct AddedAt {
-  Sequence seq = 0;    // of the record
+  Sequence seq = 0;    // of the last record
   Material first = 0;  // id of the first one
 };
 

@@ -149,6 +149,16 @@ std::optional<std::string> Changes::accept_kept_jump(const std::optional<std::st
          *why;
 }
 
+void Changes::offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
+                           std::vector<EditOffer>& offers) {
+  while (!rows.empty()) {
+    GivenShapes given = first_of(rows);
+    rows = rows.subspan(given.rows.size());
+    const OperationId op = order_.next_own_operation(0);
+    offers.push_back({op, Cause::materials, now.steady_us, shapes_edit(std::move(given)), 0});
+  }
+}
+
 Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<MaterialRow>& rows,
                                                          const Clocks& now) {
   const MaterialTable& table = order_.materials();
@@ -159,12 +169,44 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   if (const auto sound = table.check_rows(rows); !sound)
     return refusal(sound.error().what, static_cast<std::size_t>(sound.error().offset));
   const auto first = static_cast<Material>(table.size());
+  AddedMaterials added{first, rows};
+  std::vector<GivenShape> given;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    added.rows[i].shape = {};
+    if (!rows[i].shape.is_cube()) given.push_back({static_cast<Material>(first + i), rows[i].shape});
+  }
+  if (!given.empty()) {
+    MaterialTable with_shapes = table;
+    const auto appended = with_shapes.append(first, added.rows);
+    RUNSTONE_ASSERT(appended.has_value());
+    if (const auto fits = with_shapes.give_shapes(given); !fits) return refusal(fits.error().what);
+  }
   const OperationId op = order_.next_own_operation(0);
-  const EditOffer offer{op, Cause::materials, now.steady_us, materials_edit({first, rows}), 0};
-  const ServerEditsResult ordered = order_edits({offer}, 0, now);
+  std::vector<EditOffer> offers = {
+      {op, Cause::materials, now.steady_us, materials_edit(std::move(added)), 0}};
+  offer_shapes(given, now, offers);
+  const ServerEditsResult ordered = order_edits(offers, 0, now);
   if (ordered.state == ServerEditsResult::State::ordered)
     return AddedAt{order_.newest_materials(), first};
-  return refusal(why_not_ordered(ordered));
+  if (ordered.count == 0) return refusal(why_not_ordered(ordered));
+  return refusal("the materials were added, but not all of their shapes: " +
+                 why_not_ordered(ordered));
+}
+
+Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
+                                                   const Clocks& now) {
+  RUNSTONE_ASSERT(!rows.empty());
+  std::ranges::sort(rows, {}, &GivenShape::material);
+  MaterialTable with_shapes = order_.materials();
+  if (const auto fits = with_shapes.give_shapes(rows); !fits)
+    return failure(std::string(fits.error().what));
+  std::vector<EditOffer> offers;
+  offer_shapes(rows, now, offers);
+  const ServerEditsResult ordered = order_edits(offers, 0, now);
+  if (ordered.state == ServerEditsResult::State::ordered) return order_.newest_materials();
+  const std::string why = why_not_ordered(ordered);
+  if (ordered.count == 0) return failure(why);
+  return failure("a part of the shapes was given; for the others " + why);
 }
 
 Result<Sequence, std::string> Changes::change_library(const LibraryChange& change, AuthorId author,

@@ -1,10 +1,11 @@
 // Changes: edits that the server makes itself: rollback, undo, redo, changes of rights, new
-// materials, and changes of the library of builds. All are records of the log.
+// materials and their shapes, and changes of the library of builds. All are records of the log.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,11 +70,18 @@ class Changes {
   /// news.
   std::optional<std::string> accept_kept_jump(const std::optional<std::string>& refusal,
                                               const Clocks& now);
-  /// Orders the addition of materials by the console, as one record of the log: all or none.
-  /// Refuses bad rows (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them,
-  /// and while the log takes no edits.
+  /// Orders the addition of materials by the console, as one record of the log, and as records that
+  /// give them their shapes if they have some. All or none, but the log may have no more room behind
+  /// the first record: then the refusal says that the materials are there as cubes. Refuses bad rows
+  /// (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them, and while the log
+  /// takes no edits.
   Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
                                                   const Clocks& now);
+  /// Orders shapes for materials of the world by the console, as records of the log: all or none,
+  /// but the log may have no more room behind the first record. Requires at least one row. Returns
+  /// the last record, or why it was refused, as a sentence: bad rows (MaterialTable::give_shapes())
+  /// and while the log takes no edits.
+  Result<Sequence, std::string> give_shapes(std::vector<GivenShape> rows, const Clocks& now);
 
   /// Orders the addition of a build by an author (0: the console), whose file is in the store. Returns
   /// its number, which is the sequence of the record, or why it was refused, as a sentence.
@@ -88,6 +96,9 @@ class Changes {
  private:
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);
+  /// Appends the offers that give shapes. Requires rows that ascend by material.
+  void offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
+                    std::vector<EditOffer>& offers);
   enum class DiskNeed {
     space,  // nothing is ordered while the disk is full
     none,   // what is ordered while the disk is full waits in memory

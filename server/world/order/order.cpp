@@ -67,15 +67,26 @@ std::optional<OrderedBatch> Order::commit(LargeEdits large, std::size_t sessions
 bool Order::apply_materials(const std::vector<EditRecord>& records) {
   bool has_changed = false;
   for (const EditRecord& record : records) {
-    const AddedMaterials* added = added_materials_of(record.edit);
-    if (added == nullptr) continue;
-    const auto appended = materials_.append(added->first, added->rows);
-    RUNSTONE_ASSERT(appended.has_value());
+    if (const AddedMaterials* added = added_materials_of(record.edit)) {
+      const auto appended = materials_.append(added->first, added->rows);
+      RUNSTONE_ASSERT(appended.has_value());
+    } else if (const GivenShapes* shapes = given_shapes_of(record.edit)) {
+      const auto given = materials_.give_shapes(shapes->rows);
+      RUNSTONE_ASSERT(given.has_value());
+      for (const GivenShape& row : shapes->rows) shaped_.push_back(row.material);
+    } else {
+      continue;
+    }
     materials_seq_ = record.version.seq;
     has_changed = true;
   }
   if (has_changed) authority_.set_material_count(materials_.size());
   return has_changed;
+}
+
+bool Order::has_shapes() const {
+  return std::ranges::any_of(materials_.rows(),
+                             [](const MaterialInfo& row) { return !row.shape.is_cube(); });
 }
 
 void Order::append(OrderedBatch& batch) {

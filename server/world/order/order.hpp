@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,10 +77,14 @@ class Order {
   /// Orders the queued edits of one commit. Returns nullopt if no edit is queued that may be
   /// ordered now. `sessions`: the number of sessions that may see a large edit.
   std::optional<OrderedBatch> commit(LargeEdits large, std::size_t sessions, const Clocks& now);
-  /// Appends the materials of these records, which were ordered just now. Returns true if there are
-  /// any.
+  /// Appends the materials of these records, which were ordered just now, and gives the shapes.
+  /// Returns true if there are any.
   bool apply_materials(const std::vector<EditRecord>& records);
-  /// Returns the record that added materials last in this run, or 0.
+  /// Returns the materials that got their shape in this run, in the order of the log.
+  std::span<const Material> shaped() const { return shaped_; }
+  /// Returns true if a material is no cube. Cost: O(materials).
+  bool has_shapes() const;
+  /// Returns the record that added materials or gave shapes last in this run, or 0.
   Sequence newest_materials() const { return materials_seq_; }
   /// Returns the builds of the world. The caller applies records to it as to the materials.
   Library& library() { return library_; }
@@ -173,6 +178,7 @@ class Order {
   LargeEditPace large_edits_;
   MaterialTable materials_;
   Sequence materials_seq_ = 0;
+  std::vector<Material> shaped_;  // at most one entry a row
   Library library_;
   Players players_;
   NameClaims names_;

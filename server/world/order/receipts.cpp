@@ -9,12 +9,16 @@ namespace {
 // A session with more pending rejects does not read at all.
 constexpr std::size_t kPendingRejectsMax = 4096;
 
-/// Returns the rows of the table from `first` on, as many as one record may have.
+/// Returns the rows of the table from `first` on, as many as one record may have. The shapes follow
+/// in messages of their own.
 MaterialsAdded rows_from(const MaterialTable& table, std::size_t first) {
   const auto rows = table.rows().subspan(first, std::min(table.size() - first, kAddedMaterialsMax));
   MaterialsAdded message;
   message.first = static_cast<Material>(first);
-  for (const MaterialInfo& info : rows) message.rows.push_back(row_of(info));
+  for (const MaterialInfo& info : rows) {
+    message.rows.push_back(row_of(info));
+    message.rows.back().shape = {};
+  }
   return message;
 }
 
@@ -25,6 +29,7 @@ void Receipts::welcomed(const Session& session, const Welcome& welcome) {
   sent.epoch = welcome.epoch;
   sent.durable = welcome.durable;
   sent.materials = welcome.materials.size();
+  sent.shaped = order_.shaped().size();
 }
 
 void Receipts::reject(Session& session, Reject reject) {
@@ -116,8 +121,7 @@ void Receipts::send_materials(Session& session) {
   if (session.is_closed || session.is_relayed) return;
   const MaterialTable& table = order_.materials();
   std::size_t& known = sent_[session.id].materials;
-  if (known == table.size()) return;
-  if (!session.has(kFeatureMaterials)) {
+  if (known != table.size() && !session.has(kFeatureMaterials)) {
     return sessions_.close(session, GoodbyeReason::closing,
                            "the world has new materials: connect again");
   }
@@ -126,6 +130,24 @@ void Receipts::send_materials(Session& session) {
     if (!sessions_.send_or_close(session, message)) return;
     known += message.rows.size();
   }
+  send_shapes(session);
+}
+
+void Receipts::send_shapes(Session& session) {
+  std::size_t& known = sent_[session.id].shaped;
+  const auto shaped = order_.shaped().subspan(known);
+  if (shaped.empty() || !session.has(kFeatureShapes)) return;
+  std::vector<GivenShape> rows;
+  rows.reserve(shaped.size());
+  for (const Material material : shaped)
+    rows.push_back({material, order_.materials()[material].shape});
+  std::ranges::sort(rows, {}, &GivenShape::material);
+  for (std::span<const GivenShape> left(rows); !left.empty();) {
+    const ShapesGiven message{first_of(left)};
+    if (!sessions_.send_or_close(session, message)) return;
+    left = left.subspan(message.given.rows.size());
+  }
+  known = order_.shaped().size();
 }
 
 void Receipts::send_materials_to_all() {

@@ -55,8 +55,8 @@ class Receipts {
   void send_epoch_to_all();
 
   // Materials.
-  /// Sends the materials that an open session lacks. Closes a session without the feature, and one
-  /// whose queue is full.
+  /// Sends the materials that an open session lacks, then the shapes. Closes a session without the
+  /// feature materials, and one whose queue is full. A session without the feature shapes gets none.
   void send_materials(Session& session);
   void send_materials_to_all();
 
@@ -66,12 +66,15 @@ class Receipts {
     Sequence durable = 0;
     bool is_read_only = false;
     std::size_t materials = 0;    // rows of the material table that it has
+    std::size_t shaped = 0;       // entries of Order::shaped() that it has
     Sequence awaits_durable = 0;  // of its client's last edit
     std::vector<Reject> rejects;  // that did not fit the session's queue, in order
   };
   /// Returns true if the session lacks the watermark and may get it. While rejects are pending it
   /// may not, because they precede it.
   bool lacks_durable(const Session& session, const Sent& sent) const;
+  /// Sends the shapes that an open session lacks. Closes one whose queue is full.
+  void send_shapes(Session& session);
   /// Sends the watermark to sessions, in one round. If the queue of a session is full, a later call
   /// sends it. Requires ascending numbers.
   void send_durable(std::span<const SessionId> sessions);

@@ -220,6 +220,8 @@ bool Joining::close_if_old_server(Session& session) {
     why = "the time of this world was corrected: start a version that can read this";
   if (!session.has(kFeatureLibrary) && world_.order.library().has_changed_ever())
     why = "this world has a library of builds: start a version that can read this";
+  if (!session.has(kFeatureShapeRecords) && world_.order.has_shapes())
+    why = "this world has materials with shapes: start a version that can read this";
   if (why == nullptr) return false;
   world_.sessions.close(session, GoodbyeReason::wrong_protocol, why);
   return true;

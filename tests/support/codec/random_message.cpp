@@ -99,7 +99,33 @@ EditDescriptor any_edit(SplitMix64& rng) {
   return edit;
 }
 
-MaterialTable any_materials(SplitMix64& rng) {
+Shape any_shape(SplitMix64& rng) {
+  Shape shape;
+  shape.form = static_cast<ShapeForm>(rng.below(2));
+  for (std::uint32_t left = 1 + rng.below(3); left != 0; --left) {
+    ShapeBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.min[axis] = static_cast<std::uint8_t>(rng.below(kShapeUnits));
+      box.max[axis] = static_cast<std::uint8_t>(box.min[axis] + 1 +
+                                                rng.below(std::uint32_t{kShapeUnits} - box.min[axis]));
+    }
+    shape.boxes.push_back(box);
+  }
+  return shape;
+}
+
+GivenShapes any_given_shapes(SplitMix64& rng) {
+  GivenShapes given;
+  const std::vector<Shape> shapes = {any_shape(rng), any_shape(rng)};
+  Material material = kEmpty;
+  for (std::uint32_t left = 1 + rng.below(9); left != 0; --left) {
+    material = static_cast<Material>(material + 1 + rng.below(700));
+    given.rows.push_back({material, shapes[rng.below(2)]});
+  }
+  return given;
+}
+
+MaterialTable any_materials(SplitMix64& rng, bool with_shapes = false) {
   MaterialTable table;
   const std::uint32_t count = rng.below(20);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -110,6 +136,8 @@ MaterialTable any_materials(SplitMix64& rng) {
     if (info.visibility == Visibility::opaque) info.colour[3] = 255;
     if (info.visibility != Visibility::empty) info.body = static_cast<MaterialBody>(rng.below(3));
     if (rng.below(2) == 0) info.look = random_look(rng);
+    if (with_shapes && info.visibility != Visibility::empty && rng.below(2) == 0)
+      info.shape = any_shape(rng);
     RUNSTONE_ASSERT(table.add(std::move(info)).has_value());
   }
   return table;
@@ -140,7 +168,6 @@ Welcome any_welcome(SplitMix64& rng) {
   m.chunk_edge = static_cast<std::uint16_t>(16u << rng.below(4));
   m.heights = {rng.between(-1000, 0), rng.between(1, 1000)};
   m.spawn = any_position(rng);
-  m.materials = any_materials(rng);
   draw(rng, m.server_key);
   draw(rng, m.challenge);
   draw(rng, m.signature);
@@ -149,6 +176,7 @@ Welcome any_welcome(SplitMix64& rng) {
   m.edit_budget = any_budget(rng);
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);
+  m.materials = any_materials(rng, (m.features & kFeatureShapes) != 0);
   if (rng.below(2) == 0) draw(rng, m.password_salt.emplace());
   m.waiting_edits_max = 1 + rng.below(1'000);
   m.waiting_edit_bytes_max = kWaitingEditBytesMax + rng.below(1'000);
@@ -468,7 +496,7 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
 }
 
 /// Returns a record of the log at this version. It may change voxels, rights,
-/// materials or the library.
+/// materials, their shapes or the library.
 EditRecord any_record(SplitMix64& rng, Version version) {
   EditRecord record;
   record.version = version;
@@ -477,6 +505,8 @@ EditRecord any_record(SplitMix64& rng, Version version) {
   record.cause = static_cast<Cause>(rng.below(kCauseMax + 1u));
   if (record.cause == Cause::rights) {
     record.edit = rights_edit(random_rights_change(rng));
+  } else if (record.cause == Cause::materials && rng.below(2) == 0) {
+    record.edit = shapes_edit(any_given_shapes(rng));
   } else if (record.cause == Cause::materials) {
     MaterialsAdded added = any_materials_added(rng);
     record.edit = materials_edit({added.first, std::move(added.rows)});
@@ -736,6 +766,8 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return KeyDeposited{rng.below(1000), any_text(rng, 0, kTextBytesMax)};
     case kKindOf<MaterialsAdded>:
       return any_materials_added(rng);
+    case kKindOf<ShapesGiven>:
+      return ShapesGiven{any_given_shapes(rng)};
     case kKindOf<LogMarksRequest>:
       return any_log_marks_request(rng);
     case kKindOf<LogMarks>:

@@ -21,8 +21,7 @@ AddBuild golden_build() {
   return build;
 }
 
-void check_library_bytes(const LibraryChange& change, const Bytes& golden) {
-  const EditDescriptor edit = library_edit(change);
+void check_bytes_of(const EditDescriptor& edit, const Bytes& golden) {
   CHECK(encode(edit) == golden);
   const auto decoded = decode_descriptor(golden);
   REQUIRE(decoded.has_value());
@@ -38,8 +37,8 @@ void check_library_bytes(const LibraryChange& change, const Bytes& golden) {
 }  // namespace
 
 TEST_CASE("the bytes of changes of the library are pinned", "[edits][golden]") {
-  check_library_bytes(RemoveBuild{300}, {0x0a, 0x00, 0x00, 0x02, 0xac, 0x02});
-  check_library_bytes(golden_build(),
+  check_bytes_of(library_edit(RemoveBuild{300}), {0x0a, 0x00, 0x00, 0x02, 0xac, 0x02});
+  check_bytes_of(library_edit(golden_build()),
                       {0x0a, 0x00, 0x00, 0x01,                          // added
                        0x45, 0x02, 0x01,                                // sides
                        0x09, 0x80, 0x01, 0xd8, 0x04,                    // origin
@@ -51,6 +50,25 @@ TEST_CASE("the bytes of changes of the library are pinned", "[edits][golden]") {
                        0xc9, 0x02,                                      // bytes of the file
                        0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,  // digest of the file
                        0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00});
+}
+
+TEST_CASE("the bytes of given shapes are pinned", "[edits][golden]") {
+  const Shape slab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  const Shape stairs{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}, {{8, 8, 0}, {16, 16, 16}}}};
+  const Shape plant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  check_bytes_of(shapes_edit({{{5, plant}, {300, slab}, {301, stairs}, {700, slab}}}),
+                 {0x0b, 0x00, 0x00,              // shapes, no mask, no material
+                  0x02,                          // three different ones, ascending
+                  0x00, 0x01, 0xf0, 0x70, 0xf0,  // one box
+                  0x00, 0x02, 0xf0, 0x70, 0xf0, 0xf8, 0xf8, 0xf0,  // two boxes
+                  0x01, 0x01, 0xe1, 0xb0, 0xe1,                    // crossed planes
+                  0x03,                                            // four rows
+                  0x04, 0x02,                                      // 5
+                  0xa6, 0x02, 0x00,                                // 5 + 1 + 294
+                  0x00, 0x01,                                      // 301
+                  0x8e, 0x03, 0x00});                              // 301 + 1 + 398
+  CHECK(kind_of(shapes_edit({{{5, slab}}})) == EditKind::shapes);
+  CHECK(static_cast<int>(EditKind::shapes) == 11);
 }
 
 TEST_CASE("the cause of changes of the library has its number", "[edits][golden]") {

@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-static_assert(kMessageKindCount == 58, "a kind that is added needs golden bytes here");
+static_assert(kMessageKindCount == 59, "a kind that is added needs golden bytes here");
 
 Builds golden_builds() {
   ListedBuild mill;
@@ -72,6 +72,11 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
       {BuildAnswer{6, 70'000, 812, ""},
        "14000000000000000c001c0004000c00140008000c0000000600000014000000"
        "70110100000000002c030000000000000000000000000000"},
+      {ShapesGiven{{{{5, {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}}},
+                     {300, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}},
+                     {301, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}}}}},
+       "0c0000000000060008000400060000000400000013000000010001f070f00101"
+       "e1b0e1020401a60200000000"},
       {BuildAnswer{6, 100, 0, "the library is full"},
        "14000000000000000c00140004000c00000008000c000000060000000c000000"
        "640000000000000013000000746865206c6962726172792069732066756c6c00"},
@@ -85,6 +90,8 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureLargeActions == 1 << 15);
   CHECK(kFeatureLibrary == 1 << 16);
   CHECK(kFeatureBuilds == 1 << 17);
+  CHECK(kFeatureShapes == 1 << 18);
+  CHECK(kFeatureShapeRecords == 1 << 19);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
@@ -95,6 +102,7 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<BuildOffer>) == 56);
   CHECK(wire_number(kKindOf<BuildUpload>) == 57);
   CHECK(wire_number(kKindOf<BuildAnswer>) == 58);
+  CHECK(wire_number(kKindOf<ShapesGiven>) == 59);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "tests/support/runs/random_chunk.hpp"
@@ -299,6 +300,39 @@ TEST_CASE("no input leads a walker into a solid voxel", "[body][property]") {
       REQUIRE_FALSE(overlaps(ground, materials().solid, body_at(walker.feet())));
     }
   }
+}
+
+TEST_CASE("a walker goes up a staircase of shapes by half steps, and under a slab", "[body]") {
+  // Stairs that rise to the east, each a lower half and the eastern half above it.
+  constexpr Material kStairs = 3, kTopSlab = 4;
+  const std::vector<Shape> by_material = {
+      {},
+      {},
+      {},
+      {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}, {{8, 8, 0}, {16, 16, 16}}}},
+      {ShapeForm::boxes, {{{0, 8, 0}, {16, 16, 16}}}}};
+  const BodyMaterials with_shapes{Obstacles(MaterialSet({false, true, false, false, false}, true),
+                                            MaterialSet({false, false, false, true, true}, false),
+                                            std::make_shared<const ShapeTable>(by_material)),
+                                  MaterialSet({false, false, true, false, false}, false)};
+  Ground ground;
+  for (std::int32_t i = 0; i < 4; ++i) {
+    ground.set_box({{3 + i, 0, -2}, {4 + i, i, 3}}, kStone);
+    ground.set_box({{3 + i, i, -2}, {4 + i, i + 1, 3}}, kStairs);
+  }
+  ground.set_box({{7, 0, -2}, {40, 4, 3}}, kStone);
+  ground.set_box({{9, 5, -2}, {40, 6, 3}}, kTopSlab);  // 1.5 voxels of room: too low
+  Walker walker;
+  walker.place({1, 0, 0.5});
+  double highest_step = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double before = walker.feet().y;
+    walker.advance(ground, with_shapes, kEast, 0.02);
+    if (walker.is_on_ground()) highest_step = std::max(highest_step, walker.feet().y - before);
+  }
+  CHECK(walker.feet().y == Approx(4));
+  CHECK(walker.feet().x == Approx(9 - kBodyWidth / 2));
+  CHECK(highest_step == Approx(0.5).margin(0.01));
 }
 
 }  // namespace runstone::test

@@ -79,7 +79,7 @@ TEST_CASE("a picked voxel is the nearest one that the ray meets", "[replica]") {
     const WorldPos eye{real(-4, 20), real(-4, 20), real(-4, 20)};
     const LookDirection look = look_direction(real(-3.1, 3.1), real(-1.5, 1.5));
     const double reach = 12;  // ends inside the loaded chunks
-    const auto hit = pick(replica, eye, look, reach);
+    const auto hit = pick(replica, ShapeTable{}, eye, look, reach);
     const auto expected = brute_pick(replica, eye, look, reach);
     CAPTURE(round, eye.x, eye.y, eye.z, look.x, look.y, look.z);
     REQUIRE(hit.has_value() == expected.has_value());
@@ -104,29 +104,30 @@ TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
   const double turn = 2 * std::numbers::pi;
 
-  const auto along_z = pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 10);
+  const auto along_z = pick(replica, ShapeTable{}, {5.5, 5.5, 1}, look_direction(0, 0), 10);
   REQUIRE(along_z);
   CHECK(along_z->voxel == VoxelPos{5, 5, 5});
   CHECK(along_z->face == Direction::neg_z);
   CHECK(along_z->distance == Approx(4));
   CHECK(place_against(*along_z) == VoxelPos{5, 5, 4});
 
-  const auto along_x = pick(replica, {1, 5.5, 5.5}, look_direction(turn / 4, 0), 10);
+  const auto along_x = pick(replica, ShapeTable{}, {1, 5.5, 5.5}, look_direction(turn / 4, 0), 10);
   REQUIRE(along_x);
   CHECK(along_x->face == Direction::neg_x);
 
-  const auto down = pick(replica, {5.5, 9.5, 5.5}, look_direction(0, -turn / 4), 10);
+  const auto down = pick(replica, ShapeTable{}, {5.5, 9.5, 5.5}, look_direction(0, -turn / 4), 10);
   REQUIRE(down);
   CHECK(down->face == Direction::pos_y);
 
-  const auto inside = pick(replica, {5.5, 5.5, 5.5}, look_direction(0, 0), 10);
+  const auto inside = pick(replica, ShapeTable{}, {5.5, 5.5, 5.5}, look_direction(0, 0), 10);
   REQUIRE(inside);
   CHECK_FALSE(inside->face);
   CHECK_FALSE(place_against(*inside));
 
-  CHECK_FALSE(pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 3.9));  // out of reach
   CHECK_FALSE(
-      pick(replica, {5.5, 5.5, 1}, look_direction(turn / 2, 0), 100));  // leaves the shown chunks
-  CHECK_FALSE(pick(replica, {NAN, 5.5, 1}, look_direction(0, 0), 10));
-  CHECK_FALSE(pick(Replica{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
+      pick(replica, ShapeTable{}, {5.5, 5.5, 1}, look_direction(0, 0), 3.9));  // out of reach
+  CHECK_FALSE(pick(replica, ShapeTable{}, {5.5, 5.5, 1}, look_direction(turn / 2, 0),
+                   100));  // leaves the shown chunks
+  CHECK_FALSE(pick(replica, ShapeTable{}, {NAN, 5.5, 1}, look_direction(0, 0), 10));
+  CHECK_FALSE(pick(Replica{}, ShapeTable{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
 }

@@ -79,4 +79,34 @@ TEST_CASE_METHOD(MaterialSession, "another connection takes the table of its wel
   CHECK(session.offer(set({1, 1, 1}, kFirst), now, now).has_value());
 }
 
+TEST_CASE_METHOD(MaterialSession, "shapes that are given reach the client's table",
+                 "[session][materials]") {
+  const Shape slab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  open_with(kFeatureMaterials | kFeatureShapes);
+  CHECK((server.hello.features & kFeatureShapes) != 0);
+  receive(MaterialsAdded{kFirst, kLime});
+  CHECK(session.shapes_number() == 0);
+  receive(ShapesGiven{{{{1, slab}, {kFirst, slab}}}});
+  REQUIRE(session.is_open());
+  CHECK(session.welcome()->materials[1].shape == slab);
+  CHECK(session.welcome()->materials[kFirst].shape == slab);
+  CHECK(session.shapes_number() == 1);
+  ShapesGiven wrong{{{{2, slab}}}};
+  SECTION("a material that has one") { wrong.given.rows = {{1, slab}}; }
+  SECTION("a material that nobody knows") {
+    wrong.given.rows = {{static_cast<Material>(kFirst + 1), slab}};
+  }
+  SECTION("without the feature") {
+    session.disconnected();
+    open_with(kFeatureMaterials);
+    receive(wrong);
+    REQUIRE(session.end().has_value());
+    CHECK(session.end()->reason == GoodbyeReason::unexpected_message);
+    return;
+  }
+  receive(wrong);
+  REQUIRE(session.end().has_value() == (wrong.given.rows[0].material != 2));
+  if (session.end()) CHECK(session.end()->reason == GoodbyeReason::malformed_message);
+}
+
 }  // namespace runstone::test

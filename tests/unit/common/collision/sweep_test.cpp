@@ -84,14 +84,14 @@ TEST_CASE("no body falls through a place where nothing is loaded", "[collision]"
   const auto hit = sweep(world, {}, body_at(0.5, 4.5, 0.5), {0, -9, 0});
   REQUIRE(hit.has_value());
   CHECK(hit->fraction * 9 == Approx(0.5));
-  CHECK(overlaps(world, {}, body_at(0.5, 4.5, 0.5)));
+  CHECK(overlaps(world, MaterialSet{}, body_at(0.5, 4.5, 0.5)));
 }
 
 TEST_CASE("a body inside a voxel can leave it", "[collision]") {
   Room room;
   room.set({4, 4, 4});
   const BodyBox inside{{4.2, 4.2, 4.2}, {4.8, 4.8, 4.8}};
-  CHECK(overlaps(room, {}, inside));
+  CHECK(overlaps(room, MaterialSet{}, inside));
   CHECK_FALSE(sweep(room, {}, inside, {3, 0, 0}).has_value());
 }
 
