@@ -59,8 +59,7 @@ constexpr MinecraftProperty kOrientation =
 constexpr MinecraftProperty kSensorPhase = "sculk_sensor_phase=inactive|active|cooldown";
 
 struct StateRule {
-  // Names, separated by blanks. '*' stands for the begin or the end of a name.
-  std::string_view names;
+  std::string_view names;  // as rule_names() reads them
   // Ascending by key. Empty: no property.
   std::array<MinecraftProperty, 7> properties;
 };
@@ -216,6 +215,18 @@ constexpr StateRule kRules[] = {
     {"pale_hanging_moss", {"tip=true|false"}},
 };
 
+bool is_state_text(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+std::string_view values_of(MinecraftProperty property) {
+  return property.substr(property.find('=') + 1);
+}
+
+}  // namespace
+
 bool rule_names(std::string_view names, std::string_view name) {
   while (!names.empty()) {
     const std::size_t end = std::min(names.find(' '), names.size());
@@ -228,18 +239,6 @@ bool rule_names(std::string_view names, std::string_view name) {
   }
   return false;
 }
-
-bool is_state_text(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
-
-std::string_view values_of(MinecraftProperty property) {
-  return property.substr(property.find('=') + 1);
-}
-
-}  // namespace
 
 std::vector<MinecraftProperty> minecraft_properties(std::string_view name) {
   for (const StateRule& rule : kRules) {

@@ -1,6 +1,31 @@
 #include "common/shapes/turned_shape.hpp"
 
+#include <algorithm>
+#include <vector>
+
 namespace runstone {
+namespace {
+
+/// Returns the cells that boxes fill: bit x of row y + 16 z.
+std::array<std::uint16_t, 256> filled_rows(const Shape& shape) {
+  std::array<std::uint16_t, 256> out{};
+  for (const auto& [min, max] : shape.boxes) {
+    const unsigned bits = (1U << max[0]) - (1U << min[0]);
+    for (std::size_t z = min[2]; z < max[2]; ++z) {
+      for (std::size_t y = min[1]; y < max[1]; ++y)
+        out[y + 16 * z] = static_cast<std::uint16_t>(out[y + 16 * z] | bits);
+    }
+  }
+  return out;
+}
+
+std::vector<ShapeBox> sorted_boxes(const Shape& shape) {
+  std::vector<ShapeBox> out = shape.boxes;
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
 
 Shape turned(const Shape& shape, std::array<Axis, 3> along, std::uint8_t flips) {
   Shape out = shape;
@@ -28,6 +53,12 @@ Shape turned_about_y(const Shape& shape, unsigned quarters) {
     default:
       return shape;
   }
+}
+
+bool look_alike(const Shape& a, const Shape& b) {
+  if (a.form != b.form || a.is_cube() != b.is_cube()) return false;
+  if (a.form == ShapeForm::crossed) return sorted_boxes(a) == sorted_boxes(b);
+  return filled_rows(a) == filled_rows(b);
 }
 
 }  // namespace runstone

@@ -18,4 +18,9 @@ Shape turned(const Shape& shape, std::array<Axis, 3> along, std::uint8_t flips);
 /// (+x), after two turns south, and after three west.
 Shape turned_about_y(const Shape& shape, unsigned quarters);
 
+/// Returns true if two shapes look alike: their boxes fill the same cells, or they have the same
+/// crossed planes. Their boxes may differ. Requires valid shapes. Cost: O(boxes), at most some
+/// microseconds.
+bool look_alike(const Shape& a, const Shape& b);
+
 }  // namespace runstone

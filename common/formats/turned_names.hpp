@@ -1,0 +1,27 @@
+// The names of materials that are turned or mirrored with a build. Nothing else records that two
+// materials are one block in two states: the states in the names say it.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/core/coords.hpp"
+
+namespace runstone {
+
+/// Returns the name of the material that `name` becomes when a build is turned. `along` and `flips` are
+/// those of turned() (common/shapes/turned_shape.hpp).
+///   - Blocks of Minecraft change the states that say where a block faces and which sides it joins:
+///     facing, axis, rotation, north to down, shape, hinge, half, type and others. If both blocks have
+///     a shape, that of the result looks like the turned shape.
+///   - Nodes of Luanti that have a shape change their param2.
+///   - Any other name changes the same states in its brackets. States that are not written stay so.
+/// A name without such states is returned unchanged. Returns nullopt if there is no such state, such
+/// as a torch upside down. The result is a name of 1 .. 64 bytes, but no table need have it. Requires
+/// each axis once. Cost: O(rules + bytes), and some shapes.
+std::optional<std::string> turned_material_name(std::string_view name, std::array<Axis, 3> along,
+                                                std::uint8_t flips);
+
+}  // namespace runstone
