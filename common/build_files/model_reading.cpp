@@ -25,6 +25,7 @@ VoxeliseOptions voxelise_options(const ModelReading& reading, const Model& model
   options.is_solid = reading.is_solid;
   options.surface =
       reading.surface.value_or(reading.is_solid ? SurfaceMode::none : SurfaceMode::separating_6);
+  options.turn = options.turn.rotated_about_y(reading.quarters);
   options.fills_overlaps = reading.fills_overlaps;
   options.colours_max = kModelColoursMax;
   options.should_continue = reading.file.should_continue;

@@ -29,6 +29,8 @@ struct ModelReading {
   std::optional<SurfaceMode> surface = std::nullopt;
   /// Where closed parts overlap, the inside is filled, too.
   bool fills_overlaps = false;
+  /// Quarter turns about the axis that points up, 0 .. 3, to the left as seen from above.
+  int quarters = 0;
   ModelFileOptions file;
 };
 

@@ -305,15 +305,6 @@ MaterialInfo written_material(const std::string& name) {
   return out;
 }
 
-/// Returns the name of a material for a node with states. They are a part of it if they say how the
-/// node's shape lies.
-std::string name_with_param2(std::string name, const std::string& states) {
-  const std::string whole = name + '[' + states + ']';
-  if (states.empty() || whole.size() > kMaterialNameBytesMax) return name;
-  const auto lying = shape_of_material_name(whole);
-  return lying && lying != shape_of_material_name(name) ? whole : name;
-}
-
 }  // namespace
 
 MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
@@ -326,7 +317,7 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
     return written_material(name);
   const Look look = look_of(name);
   MaterialInfo out;
-  out.name = name_with_param2(material_name(name), node.states);
+  out.name = node_material_name(material_name(name), node.states);
   const std::optional<Shape> shape = shape_of_material_name(out.name);
   out.colour = {static_cast<std::uint8_t>(look.rgb >> 16), static_cast<std::uint8_t>(look.rgb >> 8),
                 static_cast<std::uint8_t>(look.rgb), 255};

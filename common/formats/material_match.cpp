@@ -8,6 +8,7 @@
 #include "common/core/text.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/shape_names.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 namespace {
@@ -25,7 +26,8 @@ std::string hash_text(const std::string& name) {
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  const bool has_states = block_of_minecraft_material(name).has_value();
+  const bool has_states =
+      block_of_minecraft_material(name).has_value() || states_in_name(name) == material.states;
   if (!material.states.empty() && !has_states) name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);

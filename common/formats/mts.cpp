@@ -16,6 +16,7 @@
 #include "common/formats/grid_pieces.hpp"
 #include "common/formats/inflate_source.hpp"
 #include "common/formats/luanti_names.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 namespace {
@@ -121,8 +122,13 @@ std::string mts_name(const std::string& name) {
 
 MtsNode mts_node(const BuildMaterial& material) {
   if (material.row.visibility == Visibility::empty) return {"air", 0};
+  // A name may have the param2, too (node_material_name()).
+  const std::string& name = material.row.name;
+  const std::string_view in_name = states_in_name(name);
   std::string_view states = material.states;
-  MtsNode out{mts_name(material.row.name), 0};
+  const bool has_states = in_name.starts_with(kMtsParam) && (states.empty() || states == in_name);
+  if (has_states) states = in_name;
+  MtsNode out{mts_name(has_states ? name.substr(0, name.find('[')) : name), 0};
   // The param2 is the last of the states.
   const std::size_t at = states.rfind(kMtsParam);
   if (at != std::string_view::npos && (at == 0 || states[at - 1] == ',')) {

@@ -30,6 +30,11 @@ void add_model_options(CLI::App& app, ModelReading& reading) {
          },
          "model: the axis of the file that points up; default: z for .stl and .ply, otherwise y")
       ->check(CLI::IsMember({"y", "z"}));
+  app.add_option_function<int>(
+         "--turn", [&reading](const int& degrees) { reading.quarters = degrees / 90; },
+         "0, 90, 180 or 270 degrees to the left as seen from above, for builds and models; default "
+         "0")
+      ->check(CLI::IsMember({0, 90, 180, 270}));
 }
 
 }  // namespace runstone
