@@ -68,8 +68,7 @@ bool turn_block(const ForeignBlock& named, const Lie& lie, BuildMaterial& materi
 bool turn_node(const Lie& lie, BuildMaterial& material) {
   const std::string node = material.row.name.substr(0, material.row.name.find('['));
   const bool is_written = !material.states.empty();
-  const auto after =
-      lie.name(is_written ? node + '[' + material.states + ']' : material.row.name);
+  const auto after = lie.name(is_written ? node + '[' + material.states + ']' : material.row.name);
   if (!after || (!is_written && after->size() > kMaterialNameBytesMax)) return false;
   const std::string states(states_in_name(*after));
   material.row.name = is_written ? node_material_name(node, states) : *after;
@@ -137,8 +136,9 @@ Result<TurnedFileBuild> turned_file_build(const FileBuild& build, const Orientat
 
 std::string stuck_notice(std::size_t stuck) {
   if (stuck == 0) return {};
-  return std::to_string(stuck) + (stuck == 1 ? " material has" : " materials have") +
-         " no state for the new direction, and lie as before";
+  if (stuck == 1) return "1 material has no state for the new direction, and lies as before";
+  return std::to_string(stuck) +
+         " materials have no state for the new direction, and lie as before";
 }
 
 }  // namespace runstone

@@ -20,9 +20,7 @@ struct MaterialStates {
   std::map<std::string, std::string, std::less<>> states;
 
   /// Returns the part of the family behind its namespace.
-  std::string_view path() const {
-    return std::string_view(family).substr(family.find(':') + 1);
-  }
+  std::string_view path() const { return std::string_view(family).substr(family.find(':') + 1); }
   /// Returns the value of a key, or an empty text if it is missing.
   std::string_view get(std::string_view key) const;
   bool has(std::string_view key) const { return states.find(key) != states.end(); }

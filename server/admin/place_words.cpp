@@ -47,7 +47,8 @@ void match_nearest(std::span<const BuildMaterial> materials, const MaterialTable
   std::map<std::pair<MaterialColour, Visibility>, Material> found;
   for (const std::size_t i : match.missing) {
     const MaterialRow& row = materials[i].row;
-    if (const auto member = nearest_member(table, states_of_material(world_name_of(materials[i])))) {
+    if (const auto member =
+            nearest_member(table, states_of_material(world_name_of(materials[i])))) {
       match.ids[i] = *member;
       continue;
     }
@@ -71,8 +72,7 @@ Result<std::shared_ptr<MatchedBuild>, std::string> match_build(WorldReader& read
   out->materials = std::move(turned_build->build.materials);
   out->stuck = turned_build->stuck;
   out->match = match_by_name(out->materials, *table);
-  if (words.missing == MissingMaterials::nearest)
-    match_nearest(out->materials, *table, out->match);
+  if (words.missing == MissingMaterials::nearest) match_nearest(out->materials, *table, out->match);
   if (words.missing == MissingMaterials::refused && !out->match.missing.empty()) {
     return failure(missing_text(out->materials, out->match) +
                    "; repeat the line with `materials add` (rows of the table stay for ever) or "

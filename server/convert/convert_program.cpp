@@ -64,9 +64,8 @@ Result<void, std::string> map_materials(const ConvertOptions& options, FileBuild
 /// Turns a build. A model was turned when it was read.
 Result<void, std::string> turn(const ConvertOptions& options, FileBuild& build, std::ostream& out) {
   if (options.read_model.quarters == 0 || is_model_file(options.in)) return {};
-  auto done =
-      turned_file_build(build, Orientation{}.rotated_about_y(options.read_model.quarters),
-                        static_cast<std::size_t>(options.memory_mib) << 20);
+  auto done = turned_file_build(build, Orientation{}.rotated_about_y(options.read_model.quarters),
+                                static_cast<std::size_t>(options.memory_mib) << 20);
   if (!done) return failure(options.in + ": it cannot be turned: " + done.error().what);
   build = std::move(done->build);
   if (const std::string notice = stuck_notice(done->stuck); !notice.empty()) out << notice << '\n';
