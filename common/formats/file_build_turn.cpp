@@ -67,8 +67,10 @@ bool turn_block(const ForeignBlock& named, const Lie& lie, BuildMaterial& materi
 /// Turns a node of Luanti, whose states may be in its name, too.
 bool turn_node(const Lie& lie, BuildMaterial& material) {
   const std::string node = material.row.name.substr(0, material.row.name.find('['));
-  const bool is_written = !material.states.empty();
-  const auto after = lie.name(is_written ? node + '[' + material.states + ']' : material.row.name);
+  // A node with param2 0 has no states. It gets them as a reader of files gives them.
+  const bool is_written = !material.states.empty() || material.row.name == node;
+  const auto after = lie.name(
+      material.states.empty() ? material.row.name : node + '[' + material.states + ']');
   if (!after || (!is_written && after->size() > kMaterialNameBytesMax)) return false;
   const std::string states(states_in_name(*after));
   material.row.name = is_written ? node_material_name(node, states) : *after;

@@ -30,7 +30,7 @@ Result<FileBuild> named_build(const BuildInfo& info, const Build& build,
   std::vector<std::optional<Material>> palette;
   for (const BuildMaterial& material : materials)
     palette.emplace_back(ids.at(Key{material.row.name, material.states}));
-  auto made = with_materials(build, palette, bytes_max);
+  auto made = with_materials(build, palette, bytes_max, PaletteOrder::ascending);
   if (!made) return failure(made.error());
   FileBuild out{info, *std::move(made), {}};
   for (const Material id : out.build->palette()) out.materials.push_back(*by_id.at(id));
