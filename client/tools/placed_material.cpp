@@ -98,7 +98,8 @@ class ClickStates {
   void choose(MaterialStates& states) const {
     const std::string_view path = states.path();
     if (states.has("facing")) choose_facing(path, states);
-    if (states.has("half") && !path.ends_with("_door") && is_any(states.get("half"), "bottom", "top"))
+    if (states.has("half") && !path.ends_with("_door") &&
+        is_any(states.get("half"), "bottom", "top"))
       states.states["half"] = is_upper() ? "top" : "bottom";
     if (states.has("type") && is_any(states.get("type"), "bottom", "top"))
       states.states["type"] = is_upper() ? "top" : "bottom";
@@ -107,7 +108,8 @@ class ClickStates {
       constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
       states.states["axis"] = kAxes[static_cast<std::size_t>(axis_of(click_.face))];
     }
-    if (states.has("face")) states.states["face"] = is_on_side() ? "wall" : is_upper() ? "ceiling" : "floor";
+    if (states.has("face"))
+      states.states["face"] = is_on_side() ? "wall" : is_upper() ? "ceiling" : "floor";
     if (states.has("rotation")) states.states["rotation"] = facing_rotation(click_.look);
     if (states.has("hanging") && path.ends_with("lantern"))
       states.states["hanging"] = click_.face == Direction::neg_y ? "true" : "false";
@@ -137,9 +139,9 @@ class ClickStates {
     Orientation lie = Orientation{}.rotated_about_y(quarters);
     const std::string_view path = std::string_view(family).substr(family.find(':') + 1);
     if (is_upper() && rule_names("stair_* slab_* trapdoor*", path)) lie = lie.mirrored(Axis::y);
-    const auto name = turned_node_name(
-        node_before(family), {lie.along(Axis::x), lie.along(Axis::y), lie.along(Axis::z)},
-        lie.flips);
+    const auto name =
+        turned_node_name(node_before(family),
+                         {lie.along(Axis::x), lie.along(Axis::y), lie.along(Axis::z)}, lie.flips);
     return name && !name->empty() ? *name : family;
   }
 

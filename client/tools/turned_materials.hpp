@@ -26,9 +26,10 @@ std::optional<Material> turned_material(Material material, const Orientation& or
 
 /// The materials of a palette when it is turned.
 struct TurnedMaterials {
-  std::vector<std::optional<Material>> ids;  // by entry; none is nullopt. As with_materials() takes them
-  bool is_changed = false;                   // an entry became another material
-  std::size_t stuck = 0;                     // entries that have no turned form in this world
+  std::vector<std::optional<Material>>
+      ids;                  // by entry; none is nullopt. As with_materials() takes them
+  bool is_changed = false;  // an entry became another material
+  std::size_t stuck = 0;    // entries that have no turned form in this world
 };
 TurnedMaterials turned_materials(std::span<const Material> palette, const Orientation& orientation,
                                  const MaterialTable& table);

@@ -52,7 +52,8 @@ bool joins(Material material, std::optional<Material> neighbour, Direction to,
   const JoinKind kind = join_kind_of(material, table), other = join_kind_of(*neighbour, table);
   if (other != JoinKind::none) {
     if (kind != JoinKind::fence) return other != JoinKind::fence;
-    return other == kind && is_of_nether_brick(table[material].name) == is_of_nether_brick(info.name);
+    return other == kind &&
+           is_of_nether_brick(table[material].name) == is_of_nether_brick(info.name);
   }
   const MaterialStates states = states_of_material(info.name);
   if (ends_with_word(states.path(), "fence_gate")) {

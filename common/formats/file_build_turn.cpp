@@ -69,8 +69,8 @@ bool turn_node(const Lie& lie, BuildMaterial& material) {
   const std::string node = material.row.name.substr(0, material.row.name.find('['));
   // A node with param2 0 has no states. It gets them as a reader of files gives them.
   const bool is_written = !material.states.empty() || material.row.name == node;
-  const auto after = lie.name(
-      material.states.empty() ? material.row.name : node + '[' + material.states + ']');
+  const auto after =
+      lie.name(material.states.empty() ? material.row.name : node + '[' + material.states + ']');
   if (!after || (!is_written && after->size() > kMaterialNameBytesMax)) return false;
   const std::string states(states_in_name(*after));
   material.row.name = is_written ? node_material_name(node, states) : *after;

@@ -13,24 +13,47 @@ constexpr LookDirection kNorth{0, -0.2, -0.97}, kEast{0.97, -0.2, 0}, kSouth{0, 
 
 /// A table of every member of a block, in which the other states have their defaults.
 MaterialTable full_table() {
-  return hands_table(
-      {"stone", "minecraft:oak_stairs", "minecraft:oak_stairs[facing=east]",
-       "minecraft:oak_stairs[facing=south]", "minecraft:oak_stairs[facing=west]",
-       "minecraft:oak_stairs[half=top]", "minecraft:oak_stairs[facing=east,half=top]",
-       "minecraft:oak_slab", "minecraft:oak_slab[type=top]", "minecraft:oak_log",
-       "minecraft:oak_log[axis=x]", "minecraft:oak_log[axis=z]", "minecraft:oak_door",
-       "minecraft:oak_door[facing=east]", "minecraft:furnace", "minecraft:furnace[facing=west]",
-       "minecraft:furnace[facing=south]", "minecraft:torch", "minecraft:wall_torch",
-       "minecraft:wall_torch[facing=east]", "minecraft:ladder[facing=west]", "minecraft:ladder",
-       "minecraft:stone_button", "minecraft:stone_button[face=floor]",
-       "minecraft:stone_button[face=ceiling]", "minecraft:oak_sign",
-       "minecraft:oak_sign[rotation=4]", "minecraft:oak_sign[rotation=8]",
-       "minecraft:oak_wall_sign[facing=south]", "minecraft:oak_trapdoor",
-       "minecraft:oak_trapdoor[facing=east,half=top]", "minecraft:barrel",
-       "minecraft:barrel[facing=up]", "minecraft:lantern", "minecraft:lantern[hanging=true]",
-       "minecraft:rail", "minecraft:rail[shape=east_west]", "minecraft:oak_fence_gate",
-       "minecraft:oak_fence_gate[facing=east]", "minecraft:end_rod",
-       "minecraft:end_rod[facing=down]"});
+  return hands_table({"stone",
+                      "minecraft:oak_stairs",
+                      "minecraft:oak_stairs[facing=east]",
+                      "minecraft:oak_stairs[facing=south]",
+                      "minecraft:oak_stairs[facing=west]",
+                      "minecraft:oak_stairs[half=top]",
+                      "minecraft:oak_stairs[facing=east,half=top]",
+                      "minecraft:oak_slab",
+                      "minecraft:oak_slab[type=top]",
+                      "minecraft:oak_log",
+                      "minecraft:oak_log[axis=x]",
+                      "minecraft:oak_log[axis=z]",
+                      "minecraft:oak_door",
+                      "minecraft:oak_door[facing=east]",
+                      "minecraft:furnace",
+                      "minecraft:furnace[facing=west]",
+                      "minecraft:furnace[facing=south]",
+                      "minecraft:torch",
+                      "minecraft:wall_torch",
+                      "minecraft:wall_torch[facing=east]",
+                      "minecraft:ladder[facing=west]",
+                      "minecraft:ladder",
+                      "minecraft:stone_button",
+                      "minecraft:stone_button[face=floor]",
+                      "minecraft:stone_button[face=ceiling]",
+                      "minecraft:oak_sign",
+                      "minecraft:oak_sign[rotation=4]",
+                      "minecraft:oak_sign[rotation=8]",
+                      "minecraft:oak_wall_sign[facing=south]",
+                      "minecraft:oak_trapdoor",
+                      "minecraft:oak_trapdoor[facing=east,half=top]",
+                      "minecraft:barrel",
+                      "minecraft:barrel[facing=up]",
+                      "minecraft:lantern",
+                      "minecraft:lantern[hanging=true]",
+                      "minecraft:rail",
+                      "minecraft:rail[shape=east_west]",
+                      "minecraft:oak_fence_gate",
+                      "minecraft:oak_fence_gate[facing=east]",
+                      "minecraft:end_rod",
+                      "minecraft:end_rod[facing=down]"});
 }
 
 std::string placed(std::string_view held, Direction face, double height,
@@ -105,11 +128,10 @@ TEST_CASE("what hangs on a wall hangs on the face that was clicked", "[tools][ha
 
 TEST_CASE("materials without states, and names of a table's own, are placed as their names say",
           "[tools][hands]") {
-  const MaterialTable table =
-      hands_table({"stone", "fir_stairs[facing=north]", "fir_stairs[facing=east]",
-                   "stairs:stair_wood", "stairs:stair_wood[param2=1]", "stairs:slab_wood",
-                   "stairs:slab_wood[param2=20]", "default:torch_wall[param2=2]",
-                   "default:torch_wall[param2=3]"});
+  const MaterialTable table = hands_table(
+      {"stone", "fir_stairs[facing=north]", "fir_stairs[facing=east]", "stairs:stair_wood",
+       "stairs:stair_wood[param2=1]", "stairs:slab_wood", "stairs:slab_wood[param2=20]",
+       "default:torch_wall[param2=2]", "default:torch_wall[param2=3]"});
   const PlacedClick east{Direction::pos_y, 1, kEast};
   CHECK(placed_material(1, east, table) == 1);
   CHECK(placed_material(kEmpty, east, table) == kEmpty);

@@ -17,9 +17,8 @@ MaterialTable stairs_table() {
       hands_table({"stone", "minecraft:oak_stairs", "minecraft:oak_stairs[facing=east]",
                    "minecraft:oak_stairs[facing=south]", "minecraft:oak_stairs[facing=west]",
                    "minecraft:oak_slab", "minecraft:torch", "minecraft:birch_stairs"});
-  for (const auto& [name, box] :
-       {std::pair{"bench[a]", ShapeBox{{0, 0, 0}, {16, 8, 4}}},
-        std::pair{"bench[b]", ShapeBox{{0, 0, 0}, {4, 8, 16}}}}) {
+  for (const auto& [name, box] : {std::pair{"bench[a]", ShapeBox{{0, 0, 0}, {16, 8, 4}}},
+                                  std::pair{"bench[b]", ShapeBox{{0, 0, 0}, {4, 8, 16}}}}) {
     MaterialInfo info;
     info.name = name;
     info.shape = {ShapeForm::boxes, {box}};
@@ -42,8 +41,8 @@ TEST_CASE("a material of a world becomes the one with the turned name", "[tools]
         "minecraft:oak_stairs[facing=west]");
   CHECK(turned_name(table, "minecraft:oak_stairs[facing=west]", kTurnLeft) ==
         "minecraft:oak_stairs[facing=south]");
-  CHECK(turned_name(table, "minecraft:oak_stairs[facing=east]",
-                    Orientation{}.mirrored(Axis::x)) == "minecraft:oak_stairs[facing=west]");
+  CHECK(turned_name(table, "minecraft:oak_stairs[facing=east]", Orientation{}.mirrored(Axis::x)) ==
+        "minecraft:oak_stairs[facing=west]");
   CHECK(turned_name(table, "minecraft:oak_slab", kTurnLeft) == "minecraft:oak_slab");
   CHECK(turned_name(table, "stone", kTurnLeft) == "stone");
   CHECK(turned_material(kEmpty, kTurnLeft, table) == kEmpty);

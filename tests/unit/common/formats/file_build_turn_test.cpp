@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/luanti_block.hpp"
+#include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/schematic_names.hpp"
 #include "common/formats/schematic_reader.hpp"
 #include "common/formats/schematic_writer.hpp"
@@ -25,7 +25,8 @@ std::string text(const BuildMaterial& material) {
   return material.row.name + '|' + material.states;
 }
 
-const Format kSchem{"schematic", ".schem", read_schematic, material_of_schematic_block, write_schem};
+const Format kSchem{"schematic", ".schem", read_schematic, material_of_schematic_block,
+                    write_schem};
 
 /// Turns to the left as seen from above: north goes to west.
 std::string left(const BuildMaterial& material) {
@@ -109,8 +110,8 @@ TEST_CASE("a shape of its own is turned with its material", "[formats][turn]") {
 }
 
 TEST_CASE("a material that no state turns stays, and is counted", "[formats][turn]") {
-  const FileBuild build = row_of_materials({block_material("minecraft:torch", ""),
-                                            block_material("minecraft:stone", "")});
+  const FileBuild build = row_of_materials(
+      {block_material("minecraft:torch", ""), block_material("minecraft:stone", "")});
   const auto done = turned_file_build(build, Orientation{}.mirrored(Axis::y));
   REQUIRE(done);
   CHECK(done->stuck == 1);

@@ -213,8 +213,7 @@ TEST_CASE("a schematic that runstone-convert turns four times is equal, states i
   CHECK(once.build->sides() == VoxelPos{4, 2, 3});
   // East goes to north.
   CHECK(cell_texts(once)[0].find("|axis=x|") != std::string::npos);
-  CHECK(once.materials[1].states ==
-        "facing=north,half=top,shape=outer_left,waterlogged=false");
+  CHECK(once.materials[1].states == "facing=north,half=top,shape=outer_left,waterlogged=false");
   CHECK(bytes_of(folder / "4.schem") == bytes_of(folder / "0.schem"));
   CHECK(bytes_of(folder / "1.schem") != bytes_of(folder / "0.schem"));
   REQUIRE(convert({folder / "1.schem", folder / "back.schem", "--turn", "270"}).code == 0);
