@@ -70,7 +70,8 @@ Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs
 }
 
 Result<void, std::string> EditTool::propose_beside(const ToolEdits& made, TimeUs now_us) {
-  if (made && made->edits.size() == 1 && made->edits.front().material != kEmpty) {
+  const bool is_one = made && (made->edits.size() == 1 || made->has_followers);
+  if (is_one && made->edits.front().material != kEmpty) {
     const auto* const voxel = std::get_if<SetVoxel>(&made->edits.front().shape);
     if (voxel != nullptr && player_.is_in(voxel->at))
       return failure("you stand there: step back first");
@@ -92,10 +93,19 @@ Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us
   if (session_.replica().opened() && needs_build(*made)) return build(*made);
   const std::vector<EditDescriptor>& edits = made->edits;
   for (std::size_t i = 0; i < edits.size(); ++i) {
-    if (auto done = propose(edits[i], now_us, now_us, part_of_action(i, edits.size())); !done)
+    const ActionPart part = part_of_action(i, edits.size());
+    if (made->has_followers && i > 0) {
+      follow(edits[i], now_us);
+    } else if (auto done = propose(edits[i], now_us, now_us, part); !done) {
       return done;
+    }
   }
   return {};
+}
+
+void EditTool::follow(const EditDescriptor& edit, TimeUs now_us) {
+  const auto seq = session_.offer(edit, now_us, now_us, action_);
+  if (seq) recorder_.submitted(*seq, now_us);
 }
 
 bool EditTool::needs_build(const ToolAction& action) const {

@@ -1,6 +1,7 @@
 #include "client/play/play.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include "client/play/player_actions.hpp"
 #include "client/play/time_travel.hpp"
@@ -179,8 +180,13 @@ void Play::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* order = std::get_if<RollbackOrder>(&action)) static_cast<void>(carry_out(*order));
   if (const auto* order = std::get_if<LibraryOrder>(&action)) panels_.library().carry_out(*order);
   if (const auto* command = std::get_if<ToolCommand>(&action)) {
-    if (const auto done = tool_.carry_out(*command, now_us); !done)
+    const auto done = tool_.carry_out(*command, now_us);
+    const std::string& notice = tool_.box().turn_notice();
+    if (!done) {
       notify(done.error(), NoticeKind::warning);
+    } else if (std::holds_alternative<ClipboardTurn>(*command) && !notice.empty()) {
+      notify(notice, NoticeKind::warning);
+    }
   }
 }
 

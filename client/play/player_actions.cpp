@@ -34,6 +34,12 @@ KeyAnswer words(const Result<void, std::string>& done, const char* text) {
   return std::string(text);
 }
 
+KeyAnswer turn_words(const ToolBox& box, const Result<void, std::string>& done, const char* text) {
+  KeyAnswer out = words(done, text);
+  if (out && !box.turn_notice().empty()) *out += ": " + box.turn_notice();
+  return out;
+}
+
 KeyAnswer next_symmetry(EditTool& tool) {
   Symmetry next = tool.box().symmetry();
   const auto kind = (static_cast<unsigned>(next.kind) + 1) % 5;
@@ -85,9 +91,9 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
     case Action::clear_selection:
       return words(tool.propose(box.fill(kEmpty), now_us), "cleared");
     case Action::rotate:
-      return words(box.rotate(1), "the clipboard is turned");
+      return turn_words(box, box.rotate(1), "the clipboard is turned");
     case Action::mirror:
-      return words(box.mirror(Axis::x), "the clipboard is mirrored");
+      return turn_words(box, box.mirror(Axis::x), "the clipboard is mirrored");
     case Action::symmetry:
       return next_symmetry(tool);
     case Action::preview:

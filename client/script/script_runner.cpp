@@ -7,6 +7,8 @@
 
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
+#include "client/tools/placed_material.hpp"
+#include "client/tools/turned_materials.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/key_text.hpp"
 
@@ -280,6 +282,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
   const auto mask = resolve_mask(c.mask);
   if (!at || !mask) return Progress::stop;
   auto build = turned(*clipboard->second.build, c.orientation);
+  if (build) {
+    const TurnedMaterials now =
+        turned_materials((*build)->palette(), c.orientation, host_.tool_box().materials());
+    if (now.is_changed) build = with_materials(**build, now.ids);
+  }
   if (!build) return give_up("cannot paste \"" + c.name + "\": " + words_of(build.error()));
   if (!is_in_world(*at, (*build)->sides()))
     return give_up("cannot paste \"" + c.name + "\": it reaches outside the world");
@@ -307,7 +314,10 @@ ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
     fail("nothing to place against within reach");
     return Progress::done;
   }
-  return propose({SetVoxel{*at}, {}, *material});
+  Aim aim = host_.aim();
+  aim.hit = hit;
+  const Material placed = placed_material(*material, click_of(aim), host_.tool_box().materials());
+  return propose({SetVoxel{*at}, {}, placed});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {

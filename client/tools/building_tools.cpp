@@ -5,13 +5,15 @@
 
 #include "client/tools/build_words.hpp"
 #include "client/tools/cell_list.hpp"
+#include "client/tools/placed_material.hpp"
 #include "client/tools/shown_voxels.hpp"
 #include "client/tools/surface_flood.hpp"
+#include "client/tools/voxel_joins.hpp"
 
 namespace runstone {
 namespace {
 
-/// Sets or removes one voxel.
+/// Sets or removes one voxel. It lies as the click means, and joins its neighbours.
 class VoxelTool final : public Tool {
  public:
   VoxelTool() : Tool("voxel", "one voxel; hold the button for more", {}) {}
@@ -19,7 +21,18 @@ class VoxelTool final : public Tool {
 };
 
 ToolEdits VoxelTool::plan(const ToolInput& input) const {
-  return std::vector{EditDescriptor{SetVoxel{input.target}, {}, material_of(input)}};
+  Material material = material_of(input);
+  const auto& hit = input.aim.hit;
+  // A place that is typed was not clicked.
+  if (hit && hit->face && moved(hit->voxel, *hit->face, 1) == input.target)
+    material = placed_material(material, click_of(input.aim), input.materials);
+  ShownVoxels shown(input.replica);
+  ToolAction out(joined_edits(input.target, material, input.materials,
+                              [&](VoxelPos at) { return shown.at(at); }));
+  // What joins on the other side of a symmetry is another voxel.
+  if (input.has_copies) out.edits.resize(1);
+  out.has_followers = out.edits.size() > 1;
+  return out;
 }
 
 /// Fills or clears the box between two corners.

@@ -5,6 +5,7 @@
 
 #include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
+#include "client/tools/turned_materials.hpp"
 #include "common/builds/build_transforms.hpp"
 
 namespace runstone {
@@ -17,6 +18,7 @@ std::int32_t& along(VoxelPos& at, Axis axis) {
 struct Mirror {
   Axis axis;
   std::int32_t centre2;
+  const MaterialTable& materials;
 
   void turn(VoxelPos& at) const { along(at, axis) = centre2 - along(at, axis); }
   void operator()(SetVoxel& s) const { turn(s.at); }
@@ -34,6 +36,8 @@ struct Mirror {
     const auto sides = s.orientation.rotated(s.clipboard->extent()).sides();
     std::int32_t& low = along(s.at, axis);
     low = centre2 - (low + sides[static_cast<std::size_t>(axis)] - 1);
+    // An orientation turns cells, not materials: these are as they lie in the world.
+    s.clipboard = with_turned_materials(s.clipboard, Orientation{}.mirrored(axis), materials);
     s.orientation = s.orientation.mirrored(axis);
   }
   void operator()(RightsEdit&) const {}
@@ -42,26 +46,37 @@ struct Mirror {
   void operator()(ShapesEdit&) const {}
 };
 
+/// Appends an edit unless it has the voxels of another one. A copy onto itself has, although its
+/// material may be mirrored.
 void append_new(std::vector<EditDescriptor>& to, EditDescriptor edit) {
-  if (std::find(to.begin(), to.end(), edit) == to.end()) to.push_back(std::move(edit));
+  const bool is_known = std::any_of(
+      to.begin(), to.end(), [&](const EditDescriptor& other) { return other.shape == edit.shape; });
+  if (!is_known) to.push_back(std::move(edit));
 }
 
 }  // namespace
 
-EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2) {
+EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2,
+                        const MaterialTable& materials) {
   EditDescriptor out = edit;
-  std::visit(Mirror{axis, centre2}, out.shape);
+  std::visit(Mirror{axis, centre2, materials}, out.shape);
+  const auto mirror = [&](Material& material) {
+    material =
+        turned_material(material, Orientation{}.mirrored(axis), materials).value_or(material);
+  };
+  mirror(out.material);
+  mirror(out.mask.material);
   return out;
 }
 
-std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
-                                        const Symmetry& symmetry) {
+std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits, const Symmetry& symmetry,
+                                        const MaterialTable& materials) {
   if (symmetry.kind == SymmetryKind::none) return edits;
   const auto in_x = [&](const EditDescriptor& e) {
-    return mirrored(e, Axis::x, symmetry.centre2_x);
+    return mirrored(e, Axis::x, symmetry.centre2_x, materials);
   };
   const auto in_z = [&](const EditDescriptor& e) {
-    return mirrored(e, Axis::z, symmetry.centre2_z);
+    return mirrored(e, Axis::z, symmetry.centre2_z, materials);
   };
   std::vector<EditDescriptor> out;
   for (const EditDescriptor& edit : edits) {
@@ -75,7 +90,8 @@ std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
   return merge_edits(std::move(out));
 }
 
-Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, bool along_z) {
+Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, bool along_z,
+                                          const MaterialTable& materials) {
   if (build != build_) {
     forget();
     build_ = build;
@@ -87,14 +103,19 @@ Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, b
     if (along_z) orientation = orientation.mirrored(Axis::z);
     auto made = turned(*build, orientation);
     if (!made) return failure(made.error());
+    const TurnedMaterials now = turned_materials((*made)->palette(), orientation, materials);
+    if (now.is_changed) made = with_materials(**made, now.ids);
+    if (!made) return failure(made.error());
     form = *std::move(made);
   }
   return form;
 }
 
 Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
-                                            MirroredBuilds& builds) {
-  ToolAction out(with_copies(std::move(action.edits), symmetry));
+                                            MirroredBuilds& builds,
+                                            const MaterialTable& materials) {
+  ToolAction out(with_copies(std::move(action.edits), symmetry, materials));
+  out.has_followers = action.has_followers && symmetry.kind == SymmetryKind::none;
   for (const BuildPaste& paste : action.pastes) {
     out.pastes.push_back(paste);
     using Kind = SymmetryKind;
@@ -104,7 +125,7 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
       const bool is_made = kind == Kind::both || (kind == Kind::x && x && !z) ||
                            (kind == Kind::z && !x && z) || (kind == Kind::point && x && z);
       if (!is_made) continue;
-      auto build = builds.mirrored(paste.build, x, z);
+      auto build = builds.mirrored(paste.build, x, z, materials);
       if (!build) return failure(words_of(build.error()));
       BuildPaste copy = paste;
       const VoxelPos sides = paste.build->sides();

@@ -10,6 +10,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/materials/material_table.hpp"
 
 namespace runstone {
 
@@ -29,22 +30,25 @@ struct Symmetry {
   friend bool operator==(const Symmetry&, const Symmetry&) = default;
 };
 
-/// Returns the edit mirrored along an axis: the voxel at coordinate v moves to centre2 - v.
-/// Requires a valid edit that has voxels.
-EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2);
+/// Returns the edit mirrored along an axis: the voxel at coordinate v moves to centre2 - v, and
+/// materials become their mirrored forms (turned_material()). Requires a valid edit that has voxels.
+EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2,
+                        const MaterialTable& materials);
 
 /// Returns the edits and their copies, each once. If there are copies, they are merged into one
 /// edit where merge_edits() can do it.
-std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits,
-                                        const Symmetry& symmetry);
+std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits, const Symmetry& symmetry,
+                                        const MaterialTable& materials);
 
 /// The mirrored forms of one build, so that a build that is pasted again and again is mirrored once.
 /// One thread.
 class MirroredBuilds {
  public:
-  /// Returns the build mirrored along x, z or both. Keeps the forms of the last build that was asked
-  /// for. Fails as turned() does. Cost: that of turned() for a new form, otherwise O(1).
-  Result<BuildPtr> mirrored(const BuildPtr& build, bool along_x, bool along_z);
+  /// Returns the build mirrored along x, z or both, with the mirrored materials. Keeps the forms of the
+  /// last build that was asked for. Call forget() when the table changes. Fails as turned() does. Cost:
+  /// that of turned() for a new form, otherwise O(1).
+  Result<BuildPtr> mirrored(const BuildPtr& build, bool along_x, bool along_z,
+                            const MaterialTable& materials);
   void forget() { *this = MirroredBuilds(); }
 
  private:
@@ -56,6 +60,6 @@ class MirroredBuilds {
 /// of its pastes. Fails with words for the player if a mirrored build takes too much memory, or if a
 /// copy of a paste reaches outside the world.
 Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
-                                            MirroredBuilds& builds);
+                                            MirroredBuilds& builds, const MaterialTable& materials);
 
 }  // namespace runstone

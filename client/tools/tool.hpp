@@ -15,6 +15,7 @@
 #include "client/tools/tool_action.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/materials/material_table.hpp"
 
 namespace runstone {
 
@@ -46,6 +47,8 @@ struct ToolInput {
   VoxelPos target;                   // the voxel that this click chooses
   const std::optional<VoxelBox>& selection;
   const ToolClipboard& clipboard;
+  const MaterialTable& materials;
+  bool has_copies = false;  // the symmetry makes copies of the edits
 };
 
 class Tool {

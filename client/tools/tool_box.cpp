@@ -11,12 +11,17 @@
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
+#include "client/tools/placed_material.hpp"
+#include "client/tools/turned_materials.hpp"
 #include "common/builds/build_builder.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/build_info.hpp"
+#include "common/formats/material_family.hpp"
+#include "common/formats/turned_names.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
+#include "common/shapes/turned_shape.hpp"
 
 namespace runstone {
 namespace {
@@ -158,14 +163,15 @@ Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton butt
 
 ToolEdits ToolBox::plan(const Replica& replica, const Aim& aim, ToolButton button,
                         std::span<const VoxelPos> points, VoxelPos target) {
-  auto made = tool().plan({replica, aim, button, points, target, selection_, clipboard_});
+  auto made = tool().plan({replica, aim, button, points, target, selection_, clipboard_, materials_,
+                           symmetry_.kind != SymmetryKind::none});
   if (!made) return made;
   for (const EditDescriptor& edit : made->edits) {
     // A box may be longer than one descriptor has it: then it is cut.
     if (std::holds_alternative<FillBox>(edit.shape)) continue;
     if (const auto ok = validate(edit); !ok) return failure(ok.error().what);
   }
-  return with_copies(*std::move(made), symmetry_, mirrored_);
+  return with_copies(*std::move(made), symmetry_, mirrored_, materials_);
 }
 
 ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton button) {
@@ -397,13 +403,41 @@ Result<void, std::string> ToolBox::rotate(int quarters) {
 Result<void, std::string> ToolBox::mirror(Axis axis) { return turn(Orientation{}.mirrored(axis)); }
 
 Result<void, std::string> ToolBox::turn(const Orientation& orientation) {
+  turn_notice_.clear();
   if (!clipboard_.build || orientation == Orientation{}) return {};
   auto made = turned(*clipboard_.build, orientation);
+  if (made) made = with_turned_rows(*std::move(made), orientation);
   if (!made) return failure("cannot turn the clipboard: " + words_of(made.error()));
-  // The palette of a turned build has the same order, and so have the rows.
   hold_clipboard(*std::move(made), clipboard_.empty);
   ++clipboard_changes_;
   return {};
+}
+
+Result<BuildPtr> ToolBox::with_turned_rows(BuildPtr build, const Orientation& orientation) {
+  // The palette of a turned build has the same order, and so have the rows.
+  if (materials_.size() == 1) {
+    // No world is open: its table will have the names.
+    const std::array<Axis, 3> along = {orientation.along(Axis::x), orientation.along(Axis::y),
+                                       orientation.along(Axis::z)};
+    for (MaterialRow& row : clipboard_rows_) {
+      row.name = turned_material_name(row.name, along, orientation.flips).value_or(row.name);
+      row.shape = turned(row.shape, along, orientation.flips);
+    }
+    return build;
+  }
+  const TurnedMaterials now = turned_materials(build->palette(), orientation, materials_);
+  if (now.is_changed) {
+    auto made = with_materials(*build, now.ids);
+    if (!made) return failure(made.error());
+    build = *std::move(made);
+    clipboard_rows_.clear();
+    for (const Material material : build->palette()) {
+      clipboard_rows_.push_back(materials_.knows(material) ? row_of(materials_[material])
+                                                           : MaterialRow{});
+    }
+  }
+  turn_notice_ = stuck_text(now.stuck);
+  return build;
 }
 
 void ToolBox::set_symmetry(const Symmetry& symmetry) {
@@ -418,6 +452,7 @@ void ToolBox::show_preview(bool is_shown) {
 
 std::string ToolBox::set_materials(const MaterialTable& materials) {
   materials_ = materials;
+  mirrored_.forget();
   const MeshMaterialsPtr meshed = mesh_materials_of(materials);
   preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
@@ -429,7 +464,9 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
 
 Material ToolBox::material_of_row(const MaterialRow& row) const {
   if (row.visibility == Visibility::empty) return kEmpty;
-  return materials_.find(row.name).value_or(nearest_material(row, materials_));
+  if (const auto same = materials_.find(row.name)) return *same;
+  if (const auto member = nearest_member(materials_, states_of_material(row.name))) return *member;
+  return nearest_material(row, materials_);
 }
 
 std::string ToolBox::fit_clipboard() {
@@ -438,9 +475,11 @@ std::string ToolBox::fit_clipboard() {
   std::vector<MaterialRow> rows;
   std::string lacking;
   std::size_t lacking_count = 0;
+  bool has_member = false;  // of the family of one that is lacking
   for (const MaterialRow& row : clipboard_rows_) {
     palette.push_back(material_of_row(row));
     if (materials_.find(row.name) || row.visibility == Visibility::empty) continue;
+    has_member |= nearest_member(materials_, states_of_material(row.name)).has_value();
     if (++lacking_count <= kLackingListed) lacking += (lacking.empty() ? "" : ", ") + row.name;
   }
   auto made = with_materials(*clipboard_.build, palette);
@@ -461,7 +500,8 @@ std::string ToolBox::fit_clipboard() {
   if (lacking_count == 0) return {};
   if (lacking_count > kLackingListed)
     lacking += " and " + std::to_string(lacking_count - kLackingListed) + " more";
-  return "the nearest colours take the place of materials that this world lacks: " + lacking;
+  return std::string(has_member ? "other states or " : "") +
+         "the nearest colours take the place of materials that this world lacks: " + lacking;
 }
 
 bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max) {
@@ -472,6 +512,9 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     wanted.voxel = aim.hit->voxel;
     wanted.face = aim.hit->face;
     wanted.seen = aim.hit->material;
+    // The look says how the voxel lies.
+    if (chosen_ == 0 && button == ToolButton::place && aim.hit->face)
+      wanted.held = placed_material(aim.held, click_of(aim), materials_);
   }
   // A refusal may end without a change of what is watched, for example when a chunk arrives.
   const bool is_planned_again =

@@ -94,19 +94,25 @@ class ToolBox {
   /// palette. Its materials are found by their names; returns what set_materials() returns. Before
   /// set_materials() they are found when it is called. Requires one row for each palette entry.
   std::string set_clipboard(BuildPtr build, EmptyCells empty, std::vector<MaterialRow> rows);
-  /// Turns the clipboard by quarter turns about the vertical axis.
+  /// Turns the clipboard by quarter turns about the vertical axis, with its materials
+  /// (turned_materials.hpp).
   Result<void, std::string> rotate(int quarters);
-  /// Mirrors the clipboard along an axis of the world.
+  /// Mirrors the clipboard along an axis of the world, with its materials.
   Result<void, std::string> mirror(Axis axis);
+  /// Returns what the last rotate() or mirror() could not do, as a sentence for the player, or an empty
+  /// text.
+  const std::string& turn_notice() const { return turn_notice_; }
 
   const Symmetry& symmetry() const { return symmetry_; }
   /// Sets the symmetry. It applies to the edits of tools, not to those of the selection.
   void set_symmetry(const Symmetry& symmetry);
 
   /// Takes the materials of the world. The clipboard of another world gets the ids that materials
-  /// of the same names have in this world. Those with the nearest colours take the place of materials
-  /// that the world lacks; the returned text names these, and is empty if there are none.
+  /// of the same names have in this world. Other members of their families, and otherwise those with
+  /// the nearest colours, take the place of materials that the world lacks; the returned text names
+  /// these, and is empty if there are none.
   std::string set_materials(const MaterialTable& materials);
+  const MaterialTable& materials() const { return materials_; }
 
   void show_preview(bool is_shown);
   bool is_preview_shown() const { return is_preview_shown_; }
@@ -132,6 +138,8 @@ class ToolBox {
   Result<void, std::string> turn(const Orientation& orientation);
   /// Sets the clipboard, whose rows are set already.
   void hold_clipboard(BuildPtr build, EmptyCells empty);
+  /// Gives a build that was turned its materials, and sets clipboard_rows_ and turn_notice_.
+  Result<BuildPtr> with_turned_rows(BuildPtr build, const Orientation& orientation);
   /// Returns the material of this world for a row of another one.
   Material material_of_row(const MaterialRow& row) const;
   /// Gives the clipboard the materials of this world, by the names in its rows.
@@ -157,6 +165,7 @@ class ToolBox {
   ToolClipboard clipboard_;
   std::vector<MaterialRow> clipboard_rows_;  // by palette entry of the clipboard
   std::uint64_t clipboard_changes_ = 0;
+  std::string turn_notice_;
   Symmetry symmetry_;
   MirroredBuilds mirrored_;
   MaterialTable materials_;

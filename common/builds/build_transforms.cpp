@@ -256,10 +256,17 @@ Result<BuildPtr> stacked(const Build& build, VoxelPos offset, std::int32_t times
 
 Result<BuildPtr> with_materials(const Build& build,
                                 std::span<const std::optional<Material>> palette,
-                                std::size_t bytes_max) {
+                                std::size_t bytes_max, PaletteOrder order) {
   RUNSTONE_ASSERT(palette.size() == build.palette().size());
   auto out = BuildBuilder::of(build.cuts(), bytes_max);
   if (!out) return failure(out.error());
+  if (order == PaletteOrder::ascending) {
+    std::vector<std::optional<Material>> sorted(palette.begin(), palette.end());
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& material : sorted) {
+      if (material) static_cast<void>(out->number_of(*material));
+    }
+  }
   std::vector<std::uint16_t> numbers = {0};
   for (const auto& material : palette)
     numbers.push_back(material ? out->number_of(*material).value_or(0) : std::uint16_t{0});

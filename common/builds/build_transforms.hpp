@@ -33,13 +33,19 @@ Result<BuildPtr> stacked(const Build& build, VoxelPos offset, std::int32_t times
 /// negative. Requires that stacked() succeeds with these values.
 VoxelPos stack_corner(VoxelPos offset, std::int32_t times);
 
+enum class PaletteOrder : std::uint8_t {
+  kept,       // of the palette before; of equal entries the place of the first
+  ascending,  // by id, so that equal cells make equal palettes
+};
+
 /// Returns the build with other materials, by palette entry. Cells of an entry without a new material
 /// become untouched. Entries may become equal. Fails with bad_value if no cell is left touched, and
 /// with limit_exceeded if the result takes more than `bytes_max`. Requires one entry for each of
 /// the palette. Cost: O(sections + runs).
 Result<BuildPtr> with_materials(const Build& build,
                                 std::span<const std::optional<Material>> palette,
-                                std::size_t bytes_max = kBuildBytesMax);
+                                std::size_t bytes_max = kBuildBytesMax,
+                                PaletteOrder order = PaletteOrder::kept);
 
 /// Returns cells of a build in which later touched cells replace those before. Requires the same
 /// extent. The result is in the axis order of `below`. Cost: O(runs), and that of reorder() if the

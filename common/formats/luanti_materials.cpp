@@ -318,9 +318,8 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
     return written_material(name);
   const Look look = look_of(name);
   MaterialInfo out;
-  out.name = material_name(name);
-  const std::optional<Shape> shape = shape_of_material_name(
-      node.states.empty() ? out.name : out.name + '[' + node.states + ']');
+  out.name = node_material_name(material_name(name), node.states);
+  const std::optional<Shape> shape = shape_of_material_name(out.name);
   out.colour = {static_cast<std::uint8_t>(look.rgb >> 16), static_cast<std::uint8_t>(look.rgb >> 8),
                 static_cast<std::uint8_t>(look.rgb), 255};
   switch (look.kind) {

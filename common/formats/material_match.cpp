@@ -8,6 +8,7 @@
 #include "common/core/text.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/shape_names.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 namespace {
@@ -31,8 +32,9 @@ bool has_states_in_name(const BuildMaterial& material) {
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  if (!material.states.empty() && !has_states_in_name(material))
-    name += '[' + material.states + ']';
+  const bool has_states =
+      has_states_in_name(material) || states_in_name(name) == material.states;
+  if (!material.states.empty() && !has_states) name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);
   return std::string(cut_utf8(name, kMaterialNameBytesMax - ending.size())) + ending;

@@ -15,6 +15,7 @@
 #include "common/formats/grid_pieces.hpp"
 #include "common/formats/inflate_source.hpp"
 #include "common/formats/luanti_names.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 namespace {
@@ -115,8 +116,10 @@ LuantiNode mts_node(const BuildMaterial& material) {
   if (material.row.visibility == Visibility::empty) return {"air"};
   std::string_view states = material.states;
   LuantiNode out{material.row.name};
-  // The materials of a world have the states in their names.
-  if (states.empty()) out = split_luanti_param2(material.row.name);
+  // The materials of a world have the states in their names, and those of a file may have them there
+  // as well (node_material_name()).
+  if (states.empty() || states_in_name(material.row.name) == states)
+    out = split_luanti_param2(material.row.name);
   out.name = mts_name(out.name);
   // The param2 is the last of the states.
   const std::size_t last = states.rfind(',') + 1;  // 0 if there is one state or none

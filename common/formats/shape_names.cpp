@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 
+#include "common/core/material_row.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_shapes.hpp"
 #include "common/shapes/shape_kinds.hpp"
@@ -210,6 +211,14 @@ std::optional<Shape> shape_of_material_name(std::string_view name) {
   }
   const auto block = block_of_minecraft_material(name);
   return block ? shape_of_minecraft_block(*block) : std::nullopt;
+}
+
+std::string node_material_name(std::string_view node, std::string_view states) {
+  std::string whole(node);
+  whole.append("[").append(states).append("]");
+  if (states.empty() || whole.size() > kMaterialNameBytesMax) return std::string(node);
+  const auto lying = shape_of_material_name(whole);
+  return lying && lying != shape_of_material_name(node) ? whole : std::string(node);
 }
 
 std::optional<std::string> turned_node_name(std::string_view name, std::array<Axis, 3> along,

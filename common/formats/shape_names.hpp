@@ -22,6 +22,10 @@ namespace runstone {
 /// bytes).
 std::optional<Shape> shape_of_material_name(std::string_view name);
 
+/// Returns the name of the material for a node of Luanti with states, such as "param2=3". They are in
+/// brackets behind the name of the node if they say how its shape lies, and are left out otherwise.
+std::string node_material_name(std::string_view node, std::string_view states);
+
 /// Returns the name of the node of Luanti that is `name` turned (common/shapes/turned_shape.hpp): it
 /// has another param2. Returns nullopt if no rule names the node, and an empty text if no param2 makes
 /// it. Cost: O(rules + bytes), and 24 shapes.

@@ -68,6 +68,17 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
   return found->second;
 }
 
+std::vector<Material> MaterialTable::family(std::string_view name) const {
+  std::vector<Material> out;
+  if (const auto bare = find(name)) out.push_back(*bare);
+  for (const char mark : {'[', '{', '~'}) {
+    const std::string begin = std::string(name) + mark;
+    for (auto at = ids_.lower_bound(begin); at != ids_.end() && at->first.starts_with(begin); ++at)
+      out.push_back(at->second);
+  }
+  return out;
+}
+
 Result<Material> MaterialTable::add(MaterialInfo info) {
   if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, kTableIsFull);
   if (const auto sound =

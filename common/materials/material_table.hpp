@@ -63,6 +63,9 @@ class MaterialTable {
   /// Requires knows(id).
   const MaterialInfo& operator[](Material id) const { return rows_[id]; }
   std::optional<Material> find(std::string_view name) const;
+  /// Returns the materials whose name is `name`, or begins with it and one of the characters that
+  /// precede states in a name, [ { and ~. Cost: O(log size + result).
+  std::vector<Material> family(std::string_view name) const;
   std::span<const MaterialInfo> rows() const { return rows_; }
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with

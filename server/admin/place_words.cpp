@@ -12,6 +12,8 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
+#include "common/formats/file_build_turn.hpp"
+#include "common/formats/material_family.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/materials/nearest_material.hpp"
 #include "server/rollback/count_text.hpp"
@@ -21,11 +23,11 @@ namespace {
 
 constexpr std::size_t kMissingListed = 8;
 
-std::string missing_text(const FileBuild& build, const MaterialMatch& match) {
+std::string missing_text(std::span<const BuildMaterial> materials, const MaterialMatch& match) {
   std::string text = "this world lacks " + counted(match.missing.size(), "material") + " of it: ";
   const std::size_t listed = std::min(match.missing.size(), kMissingListed);
   for (std::size_t i = 0; i < listed; ++i)
-    text += (i == 0 ? "" : ", ") + world_name_of(build.materials[match.missing[i]]);
+    text += (i == 0 ? "" : ", ") + world_name_of(materials[match.missing[i]]);
   if (listed < match.missing.size())
     text += " and " + std::to_string(match.missing.size() - listed) + " more";
   return text;
@@ -35,15 +37,22 @@ std::string missing_text(const FileBuild& build, const MaterialMatch& match) {
 struct MatchedBuild {
   BuildPtr build;  // turned; its materials are those of the file
   std::vector<BuildMaterial> materials;
+  std::size_t stuck = 0;  // materials that no state turns
   MaterialMatch match;
 };
 
-/// Gives each missing material the nearest one of the table. Cost: O(looks that differ * table).
+/// Gives each missing material the nearest one of its family, or the nearest colour of the table if the
+/// table lacks the family. Cost: O(looks that differ * table + members of the families).
 void match_nearest(std::span<const BuildMaterial> materials, const MaterialTable& table,
                    MaterialMatch& match) {
   std::map<std::pair<MaterialColour, Visibility>, Material> found;
   for (const std::size_t i : match.missing) {
     const MaterialRow& row = materials[i].row;
+    if (const auto member =
+            nearest_member(table, states_of_material(world_name_of(materials[i])))) {
+      match.ids[i] = *member;
+      continue;
+    }
     const auto [known, is_new] = found.try_emplace({row.colour, row.visibility}, kEmpty);
     if (is_new) known->second = nearest_material(row, table);
     match.ids[i] = known->second;
@@ -57,23 +66,21 @@ Result<std::shared_ptr<MatchedBuild>, std::string> match_build(WorldReader& read
                                                                const PlaceWords& words) {
   const auto table = reader.materials();
   if (!table) return failure(table.error().message());
-  auto turned_build = turned(*build.build, words.orientation);
+  auto turned_build = turned_file_build(build, words.orientation);
   if (!turned_build) return failure(std::string(turned_build.error().what));
   auto out = std::make_shared<MatchedBuild>();
-  // The palette of a turned build has the order of the palette before.
-  RUNSTONE_ASSERT((*turned_build)->palette() == build.build->palette());
-  out->build = *std::move(turned_build);
-  out->materials = build.materials;
-  out->match = match_by_name(build.materials, *table);
-  if (words.missing == MissingMaterials::nearest)
-    match_nearest(build.materials, *table, out->match);
+  out->build = std::move(turned_build->build.build);
+  out->materials = std::move(turned_build->build.materials);
+  out->stuck = turned_build->stuck;
+  out->match = match_by_name(out->materials, *table);
+  if (words.missing == MissingMaterials::nearest) match_nearest(out->materials, *table, out->match);
   if (words.missing == MissingMaterials::refused && !out->match.missing.empty()) {
-    return failure(missing_text(build, out->match) +
+    return failure(missing_text(out->materials, out->match) +
                    "; repeat the line with `materials add` (rows of the table stay for ever) or "
-                   "`materials nearest` (the nearest colours of this world)");
+                   "`materials nearest` (other states, and the nearest colours of this world)");
   }
   if (out->match.missing.size() > kPlacedMaterialsMax) {
-    return failure(missing_text(build, out->match) + "; one command adds at most " +
+    return failure(missing_text(out->materials, out->match) + "; one command adds at most " +
                    std::to_string(kPlacedMaterialsMax) + ": `materials nearest` adds none");
   }
   return out;
@@ -186,6 +193,7 @@ void place_build(const CommandCall& call, const std::string& command, const std:
         order.empty = words.empty;
         if (const auto why = call.services.placing.refusal(order))
           return call.refuse(command + ": " + *why);
+        if (const auto notice = stuck_notice(made->stuck); !notice.empty()) call.report(notice);
         if (const auto done = add_missing(call, *made); !done)
           return call.refuse(command + ": " + done.error());
         call.on_worker(

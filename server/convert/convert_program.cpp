@@ -11,7 +11,9 @@
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/core/version.hpp"
+#include "common/edits/clipboard/orientation.hpp"
 #include "common/formats/file_build.hpp"
+#include "common/formats/file_build_turn.hpp"
 #include "common/formats/mapped_build.hpp"
 #include "server/convert/model_options.hpp"
 #include "server/mapping/material_map_file.hpp"
@@ -59,6 +61,17 @@ Result<void, std::string> map_materials(const ConvertOptions& options, FileBuild
   return {};
 }
 
+/// Turns a build. A model was turned when it was read.
+Result<void, std::string> turn(const ConvertOptions& options, FileBuild& build, std::ostream& out) {
+  if (options.read_model.quarters == 0 || is_model_file(options.in)) return {};
+  auto done = turned_file_build(build, Orientation{}.rotated_about_y(options.read_model.quarters),
+                                static_cast<std::size_t>(options.memory_mib) << 20);
+  if (!done) return failure(options.in + ": it cannot be turned: " + done.error().what);
+  build = std::move(done->build);
+  if (const std::string notice = stuck_notice(done->stuck); !notice.empty()) out << notice << '\n';
+  return {};
+}
+
 Result<void, std::string> convert(const ConvertOptions& options, std::ostream& out) {
   if (!options.out.empty()) {
     if (auto why = file_refusal(options.out, true); !why.empty()) return failure(std::move(why));
@@ -68,6 +81,7 @@ Result<void, std::string> convert(const ConvertOptions& options, std::ostream& o
   auto build = read(options, out);
   if (!build) return failure(build.error());
   if (auto mapped = map_materials(options, *build, out); !mapped) return mapped;
+  if (auto done = turn(options, *build, out); !done) return done;
   if (!options.out.empty()) {
     const auto written = write_build_to_file(options.out, *build, options.writing);
     if (!written) return failure(written.error());

@@ -46,7 +46,8 @@ void add_model_options(CLI::App& app, ModelChoices& choices) {
   add(kFillOverlapsWord, "fill the inside also where closed parts of it overlap");
   add(kUpWord,
       "y or z, the axis of the file that points up; default: z for .stl and .ply, otherwise y");
-  add(kTurnWord, "0, 90, 180 or 270 degrees to the left as seen from above; default 0");
+  add(kTurnWord,
+      "0, 90, 180 or 270 degrees to the left as seen from above, for builds as well; default 0");
 }
 
 }  // namespace runstone

@@ -8,12 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "common/build_files/model_reading.hpp"
+#include "common/edits/clipboard/orientation.hpp"
 #include "common/materials/palette.hpp"
 #include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/import/import_builds.hpp"
 #include "server/import/import_luanti.hpp"
 #include "server/import/mapped_parts.hpp"
+#include "server/import/turned_parts.hpp"
 #include "server/mapping/material_map_file.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
@@ -258,10 +261,21 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
                                      request.model)
                    : open_minecraft_parts(request.source, request.keep_all);
   if (!parts) return failure(parts.error());
-  if (chosen == nullptr) return import_parts(request, **parts, out);
-  MappedParts mapped(*std::move(parts), *chosen);
-  const auto done = import_parts(request, mapped, out);
-  if (done) print_unused_rows(request, chosen, mapped.applied(), out);
+  std::unique_ptr<ImportParts> all = *std::move(parts);
+  const MappedParts* mapped = nullptr;
+  if (chosen != nullptr) {
+    auto made = std::make_unique<MappedParts>(std::move(all), *chosen);
+    mapped = made.get();
+    all = std::move(made);
+  }
+  // A map has the names of the file, so the build is turned after it. A model was turned when it was
+  // read.
+  const int quarters = request.model.quarters;
+  if (request.kind == ImportKind::file && quarters != 0 && !is_model_file(request.source)) {
+    all = std::make_unique<TurnedParts>(std::move(all), Orientation{}.rotated_about_y(quarters));
+  }
+  const auto done = import_parts(request, *all, out);
+  if (done && mapped != nullptr) print_unused_rows(request, chosen, mapped->applied(), out);
   return done;
 }
 

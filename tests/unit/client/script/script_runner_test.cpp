@@ -58,6 +58,43 @@ TEST_CASE_METHOD(ScriptBench, "a paste has the copied voxels, turned as the comm
   CHECK(a.clipboard->extent() == Extent{1, 1, 1});
 }
 
+namespace {
+
+/// Material 5 is stairs that ascend to the north, 6 to 8 those to the east, south and west.
+MaterialTable script_stairs() {
+  MaterialTable table;
+  for (const char* name :
+       {"a", "b", "c", "d", "minecraft:oak_stairs", "minecraft:oak_stairs[facing=east]",
+        "minecraft:oak_stairs[facing=south]", "minecraft:oak_stairs[facing=west]"}) {
+    MaterialInfo info;
+    info.name = name;
+    REQUIRE(table.add(std::move(info)));
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE_METHOD(ScriptBench, "a paste turns the materials with the cells", "[bots]") {
+  static_cast<void>(host.tools.set_materials(script_stairs()));
+  run("copy a 0 0 0 0 0 0\npaste a 1 2 3 rotate 1\npaste a 1 2 3 mirror z\n");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 2);
+  // To the left: north goes to west.
+  const auto& left = std::get<runstone::Paste>(host.edits[0].edit.shape);
+  CHECK(left.clipboard->at({0, 0, 0}) == Material{8});
+  const auto& mirrored = std::get<runstone::Paste>(host.edits[1].edit.shape);
+  CHECK(mirrored.clipboard->at({0, 0, 0}) == Material{7});
+}
+
+TEST_CASE_METHOD(ScriptBench, "place lays a material as the look means", "[bots]") {
+  static_cast<void>(host.tools.set_materials(script_stairs()));
+  host.hit = RayHit{{4, 5, 6}, 1, Direction::pos_y, 3};
+  run("place stone");  // the look of the host is south
+  REQUIRE(host.edits.size() == 1);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{4, 6, 6}}, {}, 7});
+}
+
 TEST_CASE_METHOD(ScriptBench, "a solid copy leaves the voxels alone where it is empty", "[bots]") {
   run("copy a 0 0 0 1 0 0 solid\npaste a 1 2 3\n");
   REQUIRE(host.edits.size() == 1);

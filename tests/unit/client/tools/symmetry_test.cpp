@@ -36,7 +36,7 @@ TEST_CASE("a mirrored edit changes the mirrored voxels", "[tools][property]") {
         plain.show_flat();
         other.show_flat();
         plain.predict({edit});
-        other.predict({mirrored(edit, axis, centre2)});
+        other.predict({mirrored(edit, axis, centre2, {})});
         for (VoxelPos p{-kHalf, 0, 0}; p.x < kHalf; ++p.x) {
           for (p.y = -6; p.y < 8; ++p.y) {
             for (p.z = -kHalf; p.z < kHalf; ++p.z) {
@@ -54,14 +54,14 @@ TEST_CASE("a mirrored edit changes the mirrored voxels", "[tools][property]") {
 
 TEST_CASE("symmetric copies become one edit, and a copy onto itself counts once", "[tools]") {
   const std::vector<EditDescriptor> edits = {{FillSphere{{9, 0, 0}, 3}, {}, 2}};
-  CHECK(with_copies(edits, {SymmetryKind::none, 0, 0}) == edits);
-  CHECK(with_copies({{SetVoxel{{0, 0, 0}}, {}, 2}}, {SymmetryKind::x, 0, 0}) ==
+  CHECK(with_copies(edits, {SymmetryKind::none, 0, 0}, {}) == edits);
+  CHECK(with_copies({{SetVoxel{{0, 0, 0}}, {}, 2}}, {SymmetryKind::x, 0, 0}, {}) ==
         std::vector<EditDescriptor>{{SetVoxel{{0, 0, 0}}, {}, 2}});
-  const auto both = with_copies(edits, {SymmetryKind::both, 0, 11});
+  const auto both = with_copies(edits, {SymmetryKind::both, 0, 11}, {});
   REQUIRE(both.size() == 1);
   CHECK(bounding_box(both[0]) == VoxelBox{{-12, -3, -3}, {13, 4, 15}});
   // The plane is too far away for one paste.
-  CHECK(with_copies(edits, {SymmetryKind::point, 400, 0}).size() == 2);
+  CHECK(with_copies(edits, {SymmetryKind::point, 400, 0}, {}).size() == 2);
 }
 
 TEST_CASE("merged edits have the effect of the edits one after another", "[tools][property]") {

@@ -10,6 +10,8 @@
 
 #include "common/formats/file_build.hpp"
 #include "common/formats/height_map.hpp"
+#include "common/formats/minecraft_blocks.hpp"
+#include "common/formats/schematic_writer.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
@@ -227,6 +229,39 @@ TEST_CASE("runstone-convert takes the colours of a height map from a second file
   write_bytes(folder / "narrow.png", *written(write_colour_map, narrow));
   CHECK(refusal(land, folder / "narrow.png").find("the colour map has another size") !=
         std::string::npos);
+}
+
+TEST_CASE("a schematic that runstone-convert turns four times is equal, states included",
+          "[convert]") {
+  const TempFolder folder;
+  const std::string states = "facing=east,half=top,shape=outer_left,waterlogged=false";
+  const MaterialRow stairs =
+      row_of(material_of_minecraft_block({"minecraft:oak_stairs", states}, true));
+  const MaterialRow log =
+      row_of(material_of_minecraft_block({"minecraft:oak_log", "axis=z"}, true));
+  const FileBuild build =
+      file_build({3, 2, 4}, {{stairs, states}, {log, "axis=z"}}, [](VoxelPos at) {
+        return static_cast<std::uint16_t>(at.x == 2 ? 2 : at.z == 0 ? 1 : 0);
+      });
+  write_bytes(folder / "made.schem", *written(write_schem, build));
+  REQUIRE(convert({folder / "made.schem", folder / "0.schem"}).code == 0);
+  for (int i = 0; i < 4; ++i) {
+    const auto name = [&](int number) { return folder / (std::to_string(number) + ".schem"); };
+    const Outcome done = convert({name(i), name(i + 1), "--turn", "90"});
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(done.out.find("no state") == std::string::npos);
+  }
+  const FileBuild once = read_back(folder / "1.schem");
+  CHECK(once.build->sides() == VoxelPos{4, 2, 3});
+  // East goes to north.
+  CHECK(cell_texts(once)[0].find("|axis=x|") != std::string::npos);
+  CHECK(once.materials[1].states == "facing=north,half=top,shape=outer_left,waterlogged=false");
+  CHECK(bytes_of(folder / "4.schem") == bytes_of(folder / "0.schem"));
+  CHECK(bytes_of(folder / "1.schem") != bytes_of(folder / "0.schem"));
+  REQUIRE(convert({folder / "1.schem", folder / "back.schem", "--turn", "270"}).code == 0);
+  CHECK(bytes_of(folder / "back.schem") == bytes_of(folder / "0.schem"));
+  CHECK(convert({folder / "0.schem", folder / "bad.schem", "--turn", "45"}).code != 0);
 }
 
 TEST_CASE("runstone-convert refuses with the file and the reason, and keeps an old file",

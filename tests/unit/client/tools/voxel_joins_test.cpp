@@ -1,0 +1,190 @@
+#include "client/tools/voxel_joins.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "common/formats/minecraft_blocks.hpp"
+#include "tests/unit/client/tools/hands_table.hpp"
+#include "tests/unit/client/tools/tool_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+/// Every member of a fence, a pane and a wall.
+MaterialTable joins_table() {
+  MaterialTable out =
+      hands_table({"stone", "water", "minecraft:oak_leaves", "minecraft:oak_stairs",
+                   "minecraft:oak_fence_gate", "minecraft:oak_fence_gate[facing=east]",
+                   "minecraft:nether_brick_fence", "minecraft:nether_brick_fence[west=true]"});
+  const auto add = [&](std::string name) {
+    MaterialInfo info;
+    info.shape = shape_of_material_name(name).value_or(Shape{});
+    REQUIRE_FALSE(info.shape.is_cube());
+    info.name = std::move(name);
+    REQUIRE(out.add(std::move(info)));
+  };
+  for (unsigned bits = 0; bits < 16; ++bits) {
+    for (const auto& [block, value] :
+         {std::pair{"minecraft:oak_fence", "true"}, std::pair{"minecraft:glass_pane", "true"},
+          std::pair{"minecraft:cobblestone_wall", "low"}}) {
+      std::string states;
+      unsigned bit = 1;
+      for (const char* side : {"east", "north", "south", "west"}) {
+        if ((bits & bit) != 0)
+          states += (states.empty() ? "" : ",") + std::string(side) + "=" + value;
+        bit *= 2;
+      }
+      add(minecraft_material_name({block, states}));
+    }
+  }
+  add("minecraft:cobblestone_wall[east=low,up=false,west=low]");
+  return out;
+}
+
+struct JoinBench {
+  MaterialTable table = joins_table();
+  std::map<VoxelPos, Material> voxels;
+  bool is_known = true;
+
+  void set(VoxelPos at, std::string_view name) { voxels[at] = id_in(table, name); }
+  std::vector<EditDescriptor> edits(VoxelPos at, std::string_view name) const {
+    return joined_edits(at, name.empty() ? kEmpty : id_in(table, name), table,
+                        [&](VoxelPos pos) -> std::optional<Material> {
+                          if (!is_known) return std::nullopt;
+                          const auto found = voxels.find(pos);
+                          return found == voxels.end() ? kEmpty : found->second;
+                        });
+  }
+  /// Carries out the edits, and returns their number.
+  std::size_t place(VoxelPos at, std::string_view name) {
+    const auto made = edits(at, name);
+    for (const EditDescriptor& edit : made) {
+      REQUIRE(validate(edit));
+      Material& voxel = voxels[std::get<SetVoxel>(edit.shape).at];
+      if (edit.mask.kind == MaskKind::only_material) CHECK(voxel == edit.mask.material);
+      voxel = edit.material;
+    }
+    return made.size();
+  }
+  std::string name(VoxelPos at) const {
+    const std::string& full = table[voxels.at(at)].name;
+    return full.substr(full.find(':') + 1);
+  }
+};
+
+constexpr VoxelPos kHere{0, 0, 0}, kEast{1, 0, 0}, kWest{-1, 0, 0}, kNorth{0, 0, -1},
+    kSouth{0, 0, 1};
+
+}  // namespace
+
+TEST_CASE_METHOD(JoinBench, "fences in a row join, and part when one is removed",
+                 "[tools][hands]") {
+  CHECK(place(kHere, "minecraft:oak_fence") == 1);
+  CHECK(name(kHere) == "oak_fence");
+  CHECK(place(kEast, "minecraft:oak_fence") == 2);
+  CHECK(name(kHere) == "oak_fence[east=true]");
+  CHECK(name(kEast) == "oak_fence[west=true]");
+  // The states of the held member do not matter.
+  CHECK(place(kWest, "minecraft:oak_fence[north=true]") == 2);
+  CHECK(name(kWest) == "oak_fence[east=true]");
+  CHECK(name(kHere) == "oak_fence[east=true,west=true]");
+  CHECK(place(kHere, "") == 3);
+  CHECK(name(kEast) == "oak_fence");
+  CHECK(name(kWest) == "oak_fence");
+}
+
+TEST_CASE_METHOD(JoinBench, "a cross has five edits", "[tools][hands]") {
+  for (const VoxelPos at : {kEast, kWest, kNorth, kSouth}) place(at, "minecraft:glass_pane");
+  CHECK(place(kHere, "minecraft:glass_pane") == 5);
+  CHECK(name(kHere) == "glass_pane[east=true,north=true,south=true,west=true]");
+  CHECK(name(kSouth) == "glass_pane[north=true]");
+}
+
+TEST_CASE_METHOD(JoinBench, "cubes and sides that are filled are joined, other voxels are not",
+                 "[tools][hands]") {
+  set(kEast, "stone");
+  set(kWest, "minecraft:oak_leaves");
+  set(kNorth, "minecraft:oak_stairs");  // its full side is north
+  set(kSouth, "minecraft:oak_stairs");
+  CHECK(place(kHere, "minecraft:oak_fence") == 1);
+  CHECK(name(kHere) == "oak_fence[east=true,south=true]");
+  // A cube beside a fence changes it.
+  place({5, 0, 5}, "minecraft:oak_fence");
+  CHECK(place({6, 0, 5}, "stone") == 2);
+  CHECK(name({5, 0, 5}) == "oak_fence[east=true]");
+}
+
+TEST_CASE_METHOD(JoinBench, "fences join gates along their sides, and only fences of their kind",
+                 "[tools][hands]") {
+  set(kEast, "minecraft:oak_fence_gate");  // it faces north, so it spans x
+  set(kSouth, "minecraft:oak_fence_gate");
+  set(kNorth, "minecraft:cobblestone_wall");
+  set(kWest, "minecraft:nether_brick_fence");
+  place(kHere, "minecraft:oak_fence");
+  CHECK(name(kHere) == "oak_fence[east=true]");
+  CHECK(name(kNorth) == "cobblestone_wall");
+  CHECK(name(kWest) == "nether_brick_fence");
+  set(kSouth, "minecraft:oak_fence_gate[facing=east]");
+  place(kHere, "minecraft:glass_pane");
+  CHECK(name(kHere) == "glass_pane[north=true]");
+  place(kHere, "minecraft:cobblestone_wall");
+  CHECK(name(kHere) == "cobblestone_wall[east=low,north=low,south=low]");
+}
+
+TEST_CASE_METHOD(JoinBench, "a straight wall has no post", "[tools][hands]") {
+  set(kEast, "minecraft:cobblestone_wall");
+  set(kWest, "minecraft:cobblestone_wall");
+  CHECK(place(kHere, "minecraft:cobblestone_wall") == 3);
+  CHECK(name(kHere) == "cobblestone_wall[east=low,up=false,west=low]");
+  CHECK(name(kEast) == "cobblestone_wall[west=low]");
+  CHECK(place(kNorth, "minecraft:cobblestone_wall") == 2);
+  CHECK(name(kHere) == "cobblestone_wall[east=low,north=low,west=low]");
+}
+
+TEST_CASE_METHOD(JoinBench, "a neighbour keeps its other sides", "[tools][hands]") {
+  set(kEast, "minecraft:oak_fence[north=true]");  // as it was imported
+  place(kHere, "minecraft:oak_fence");
+  CHECK(name(kEast) == "oak_fence[north=true,west=true]");
+}
+
+TEST_CASE_METHOD(JoinBench, "only members of the table are set", "[tools][hands]") {
+  set(kEast, "minecraft:nether_brick_fence");
+  CHECK(place(kHere, "minecraft:nether_brick_fence") == 2);
+  CHECK(name(kHere) == "nether_brick_fence");  // one that joins east is missing
+  CHECK(name(kEast) == "nether_brick_fence[west=true]");
+  is_known = false;
+  CHECK(place({9, 0, 9}, "minecraft:oak_fence") == 1);
+}
+
+TEST_CASE("the voxel tool joins fences, as edits that follow the first one", "[tools][hands]") {
+  ToolBench bench;
+  bench.show_flat();
+  const MaterialTable table = joins_table();
+  static_cast<void>(bench.box.set_materials(table));
+  const Material fence = id_in(table, "minecraft:oak_fence");
+  const auto press = [&](VoxelPos at, ToolButton button) {
+    const auto made =
+        bench.box.press(bench.replica, bench.aim_at(at, Direction::pos_y, fence), button);
+    REQUIRE(made);
+    bench.predict(*made);
+    CHECK(made->has_followers == (made->edits.size() > 1));
+    return made->edits.size();
+  };
+  CHECK(press({3, -1, 3}, ToolButton::place) == 1);
+  CHECK(press({4, -1, 3}, ToolButton::place) == 2);
+  CHECK(bench.at({3, 0, 3}) == id_in(table, "minecraft:oak_fence[east=true]"));
+  CHECK(bench.at({4, 0, 3}) == id_in(table, "minecraft:oak_fence[west=true]"));
+  CHECK(press({4, 0, 3}, ToolButton::clear) == 2);
+  CHECK(bench.at({3, 0, 3}) == fence);
+  // Copies change no neighbours.
+  bench.box.set_symmetry({SymmetryKind::x, 0, 0});
+  const auto made = bench.box.press(
+      bench.replica, bench.aim_at({4, -1, 3}, Direction::pos_y, fence), ToolButton::place);
+  REQUIRE(made);
+  bench.predict(*made);
+  CHECK(bench.at({3, 0, 3}) == fence);
+  CHECK(bench.at({4, 0, 3}) == id_in(table, "minecraft:oak_fence[west=true]"));
+  CHECK(bench.at({-4, 0, 3}) == id_in(table, "minecraft:oak_fence[east=true]"));
+}
+
+}  // namespace runstone::test
