@@ -53,8 +53,6 @@ std::string plain_path(const std::string& path) {
   return plain;
 }
 
-std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
-
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -62,6 +60,8 @@ int hex_digit(char c) {
 }
 
 }  // namespace
+
+std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 std::string percent_decoded(const std::string& text) {
   std::string out;

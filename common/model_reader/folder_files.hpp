@@ -44,5 +44,7 @@ class FolderFiles : public Assimp::IOSystem {
 /// Returns the text with the bytes in place of each "%20" and the like, as addresses in .gltf have
 /// them.
 std::string percent_decoded(const std::string& text);
+/// Returns the part of a path behind its last slash or backslash.
+std::string last_name(const std::string& path);
 
 }  // namespace runstone

@@ -57,8 +57,6 @@ void read_png_sides(ByteView bytes, int& width, int& height) {
   height = side(20);
 }
 
-std::string last_name(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
-
 }  // namespace
 
 Result<Bytes, ModelFolder::Refusal> TextureReader::load(const std::string& path) const {
