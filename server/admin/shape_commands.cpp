@@ -29,7 +29,7 @@ std::vector<GivenShape> shapes_of_names(const MaterialTable& table) {
   return rows;
 }
 
-Result<bool, std::string> parse_preview(WordReader& reader) {
+Result<bool, std::string> parse_shapes_preview(WordReader& reader) {
   const bool is_preview = reader.take_word("preview");
   if (!reader.at_end())
     reader.wrong("materials shapes \"" + reader.peek() + "\": preview comes after it, or nothing");
@@ -68,7 +68,7 @@ void give_shapes_of_names(const CommandCall& call, bool is_preview) {
 constexpr std::array<CommandRow, 1> kShapeRows = {{
     {"materials shapes", kLocal,
      "materials shapes [preview]  give materials the shapes that their names say",
-     parsed_by<parse_preview, give_shapes_of_names>()},
+     parsed_by<parse_shapes_preview, give_shapes_of_names>()},
 }};
 
 }  // namespace

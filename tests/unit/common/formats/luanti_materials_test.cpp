@@ -25,7 +25,7 @@ TEST_CASE("air and nodes that are not generated are air", "[formats]") {
   }
 }
 
-TEST_CASE("ground is opaque, water and glass are transparent, plants are empty", "[formats]") {
+TEST_CASE("ground is opaque, water and glass are transparent, plants have a shape", "[formats]") {
   CHECK(visibility_of("default:stone") == Visibility::opaque);
   CHECK(visibility_of("default:acacia_leaves") == Visibility::opaque);
   CHECK(visibility_of("default:sand_with_kelp") == Visibility::opaque);
@@ -35,13 +35,31 @@ TEST_CASE("ground is opaque, water and glass are transparent, plants are empty",
   CHECK(material_of("default:lava_source", false).body == MaterialBody::liquid);
   CHECK(material_of("default:glass", false).body == MaterialBody::solid);
   CHECK(material_of("default:grass_3", true).body == MaterialBody::passable);
-  CHECK(visibility_of("default:grass_3") == Visibility::empty);
-  CHECK(visibility_of("default:grass_3", true) == Visibility::transparent);
-  CHECK(visibility_of("default:torch_wall") == Visibility::empty);
-  CHECK(visibility_of("flowers:some_new_flower") == Visibility::empty);
-  CHECK(visibility_of("farming:wheat_5") == Visibility::empty);
+  for (const char* plant :
+       {"default:grass_3", "default:torch_wall", "flowers:some_new_flower", "farming:wheat_5"}) {
+    CAPTURE(plant);
+    const MaterialInfo info = material_of(plant, false);
+    CHECK(info.visibility == Visibility::opaque);
+    CHECK(info.body == MaterialBody::passable);
+    CHECK_FALSE(info.shape.is_cube());
+    CHECK(material_of(plant, true) == info);
+  }
   CHECK(visibility_of("farming:straw") == Visibility::opaque);
   CHECK(visibility_of("othermod:marble") == Visibility::opaque);
+}
+
+TEST_CASE("a param2 that says how a shape lies is a part of the name", "[formats]") {
+  const auto with = [](const char* name, const char* states) {
+    return material_of_luanti_node({name, states}, false);
+  };
+  const MaterialInfo turned = with("stairs:stair_wood", "param2=3");
+  CHECK(turned.name == "stairs:stair_wood[param2=3]");
+  CHECK(turned.shape != with("stairs:stair_wood", "").shape);
+  CHECK_FALSE(turned.shape.is_cube());
+  CHECK(with("stairs:stair_wood", "").name == "stairs:stair_wood");
+  CHECK(with("default:stone", "param2=3").name == "default:stone");
+  const std::string longest = "stairs:stair_" + std::string(kMaterialNameBytesMax - 13, 'a');
+  CHECK(with(longest.c_str(), "param2=3").name == longest);
 }
 
 TEST_CASE("stairs and walls have the colour of their material", "[formats]") {

@@ -231,22 +231,39 @@ TEST_CASE("blocks look like what they are", "[formats]") {
     CHECK(look_at("minecraft:waxed_oxidized_cut_copper_slab").colour ==
           look_at("minecraft:oxidized_copper").colour);
   }
-  SECTION("thin blocks are empty, unless all are kept") {
+  SECTION("thin blocks with a shape are kept, and one walks through them") {
     for (const char* name : {"torch", "poppy", "short_grass", "oak_sapling", "rail", "lever",
                              "stone_button", "white_carpet", "oak_wall_sign", "red_banner",
                              "redstone_wire", "wall_torch", "potted_poppy", "cobweb", "ladder"}) {
       CAPTURE(name);
-      CHECK(look_at(std::string("minecraft:") + name).visibility == Visibility::empty);
-      const MaterialInfo kept = look_at(std::string("minecraft:") + name, "", true);
-      CHECK(kept.visibility == Visibility::transparent);
+      const MaterialInfo kept = look_at(std::string("minecraft:") + name);
+      CHECK(kept.visibility == Visibility::opaque);
       CHECK(kept.body == MaterialBody::passable);
+      CHECK_FALSE(kept.shape.is_cube());
+      CHECK(look_at(std::string("minecraft:") + name, "", true) == kept);
     }
+  }
+  SECTION("thin blocks without a shape are empty, unless all are kept") {
+    CHECK(look_at("minecraft:barrier").visibility == Visibility::empty);
+    const MaterialInfo kept = look_at("minecraft:barrier", "", true);
+    CHECK(kept.visibility == Visibility::transparent);
+    CHECK(kept.body == MaterialBody::passable);
+    CHECK(kept.shape.is_cube());
+  }
+  SECTION("solid blocks have the shape of their states") {
+    const MaterialInfo slab = look_at("minecraft:oak_slab");
+    CHECK(slab.body == MaterialBody::solid);
+    CHECK(slab.shape == Shape{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}});
+    CHECK(look_at("minecraft:oak_slab", "type=double").shape.is_cube());
+    CHECK(look_at("minecraft:stone").shape.is_cube());
+    CHECK(look_at("minecraft:glass_pane").visibility == Visibility::transparent);
+    CHECK_FALSE(look_at("minecraft:glass_pane").shape.is_cube());
   }
   SECTION("what stands in water becomes water") {
     CHECK(look_at("minecraft:seagrass").name == "minecraft:water");
     CHECK(look_at("minecraft:kelp", "age=3").name == "minecraft:water");
     CHECK(look_at("minecraft:tube_coral").name == "minecraft:water");
-    CHECK(look_at("minecraft:tube_coral", "waterlogged=false").visibility == Visibility::empty);
+    CHECK(look_at("minecraft:tube_coral", "waterlogged=false").visibility == Visibility::opaque);
     CHECK(look_at("minecraft:ladder", "waterlogged=true").name == "minecraft:water");
     CHECK(look_at("minecraft:kelp", "", true).name == "minecraft:kelp");
   }

@@ -161,7 +161,7 @@ TEST_CASE("blocks of an .rsb that are removed, repeated or moved are noticed", "
 
 TEST_CASE("an .rsb of another version, and a file that is none, are refused with words", "[rsb]") {
   Bytes file = rsb_of(small_build(), 0);
-  file[8] = 2;
+  file[8] = 3;
   auto error = read_rsb(file).error;
   REQUIRE(error.has_value());
   CHECK(error->error.code == ErrorCode::bad_version);
@@ -171,6 +171,31 @@ TEST_CASE("an .rsb of another version, and a file that is none, are refused with
   error = read_rsb(file).error;
   REQUIRE(error.has_value());
   CHECK(error->message() == "mark at byte 0: is not an .rsb file");
+}
+
+TEST_CASE("an .rsb has version 2 if a material has a shape", "[rsb][shapes]") {
+  SampleBuild build = small_build();
+  CHECK(rsb_of(build, 0)[8] == 1);
+  const Shape plant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  BuildMaterial& shaped = *std::find_if(
+      build.materials.begin(), build.materials.end(),
+      [](const BuildMaterial& each) { return each.row.visibility != Visibility::empty; });
+  shaped.row.shape = plant;
+  Bytes file = rsb_of(build, 0);
+  CHECK(file[8] == 2);
+  const RsbContents read = read_rsb(file);
+  if (read.error) FAIL(read.error->message());
+  CHECK(read.build.materials == build.materials);
+  CHECK(read.build.sections == build.sections);
+  file[8] = 1;  // bit 5 is unknown in version 1
+  CHECK(read_rsb(file).error.has_value());
+  Bytes without = rsb_of(small_build(), 0);
+  without[8] = 2;
+  const auto error = read_rsb(without).error;
+  REQUIRE(error.has_value());
+  CHECK(error->error.code == ErrorCode::not_canonical);
+  shaped.row.shape.boxes[0].max[0] = 1;  // an empty box
+  CHECK(write_error(build).has_value());
 }
 
 TEST_CASE("wrong fields of an .rsb under correct checksums are named", "[rsb]") {
