@@ -92,6 +92,8 @@ Result<void, std::string> add_missing(const CommandCall& call, MatchedBuild& mad
   std::vector<MaterialRow> rows;
   for (const std::size_t i : made.match.missing) {
     MaterialRow row = world_row_of(made.materials[i]);
+    // `materials shapes` gives what the name says once the old follower has ended.
+    if (call.world().cluster().shapes_refusal()) row.shape = {};
     // Somebody may have added it meanwhile, and two materials may have one name.
     if (table.find(row.name) || !index.try_emplace(row.name, rows.size()).second) continue;
     rows.push_back(std::move(row));

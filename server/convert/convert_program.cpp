@@ -128,7 +128,7 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_flag("--list", options.lists, "list the materials, as the rows of a map name them");
   app.add_flag_callback(
       "--only-cubes", [&options] { options.keep_all = false; },
-      "leave out blocks that are no whole cubes, such as plants and torches");
+      "leave out blocks that are no cubes and have no shape");
   add_model_options(app, options.read_model);
   app.add_flag("--close-t-junctions", options.model.closes_t_junctions,
                "models: let each edge of a triangle end where an edge of its neighbour ends");

@@ -40,6 +40,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureResume) return "resume";
   if (feature == kFeatureServerList) return "server list";
   if (feature == kFeatureBuilds) return "builds";
+  if (feature == kFeatureShapes) return "shapes";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 

@@ -245,6 +245,25 @@ TEST_CASE("a server that cannot read a correction does not follow a world whose 
   CHECK(bench.server.cluster().follower_count() == 1);
 }
 
+TEST_CASE("no shapes go to a follower that cannot read them", "[world][servers][shapes]") {
+  constexpr std::uint64_t kOlder = kFeaturesOfServers & ~kFeatureShapeRecords;
+  WorldBench bench;
+  const auto refused = [&] { return bench.server.cluster().shapes_refusal().has_value(); };
+  handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+  CHECK_FALSE(refused());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  CHECK(refused());
+  bench.server.disconnected(kLink + 1);
+  CHECK_FALSE(refused());
+  const GivenShape slab{1, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}};
+  REQUIRE(bench.server.changes().give_shapes({slab}, bench.now()).has_value());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::wrong_protocol);
+  CHECK(bench.environment.closed[0].text ==
+        "this world has materials with shapes: start a version that can read this");
+}
+
 TEST_CASE("the features of servers are in force for no player", "[world][servers][clock]") {
   WorldBench bench;
   CHECK((handshake(bench, 1, 3, ~std::uint64_t{0}) & kFeaturesOfServers) == 0);

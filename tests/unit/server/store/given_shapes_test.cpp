@@ -1,0 +1,131 @@
+// Shapes of the materials of a world on disk: from record to record, compacted, copied, and the format.
+#include <catch2/catch.hpp>
+
+#include "server/store/copy_stored_world.hpp"
+#include "server/store/sqlite_backend.hpp"
+#include "server/store/world_schema.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
+
+namespace runstone::test {
+namespace {
+
+const Shape kSlab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+const Shape kPlant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+
+EditRecord record_of_shapes(Sequence seq, const std::vector<GivenShape>& rows) {
+  EditRecord record;
+  record.version = {1, seq};
+  record.op = {0, 5, seq};
+  record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
+  record.cause = Cause::materials;
+  record.edit = shapes_edit({rows});
+  return record;
+}
+
+/// Makes a world whose edits 5 and 20 of 30 give shapes, with a keyframe at 10.
+void make_shaped_world(const std::string& place) {
+  auto store = *create_world(place, sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  SplitMix64 rng(7);
+  auto records = sample_records(rng, 1, 1, 30);
+  records[4] = record_of_shapes(5, {{1, kSlab}});
+  records[19] = record_of_shapes(20, {{2, kPlant}});
+  REQUIRE(store->append({}, records).has_value());
+  REQUIRE(store->save_keyframe({}, Keyframe{{records[9].version, records[9].time_us}, 0, {}})
+              .has_value());
+}
+
+std::string format_of(const TempPlace& place, const std::string& world) {
+  if (place.is_postgres()) return std::to_string(kWorldFormatOfShapes);
+  return raw_sql(world + "/world.sqlite", "PRAGMA user_version");
+}
+
+}  // namespace
+
+TEST_CASE("materials have the shapes of the log, from sequence to sequence",
+          "[store][materials][shapes]") {
+  TempPlace place;
+  make_shaped_world(place / "w");
+  const auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK((*store->materials(4))[1].shape.is_cube());
+  CHECK((*store->materials(5))[1].shape == kSlab);
+  CHECK((*store->materials(19))[2].shape.is_cube());
+  CHECK((*store->materials())[2].shape == kPlant);
+  CHECK(store->meta().materials[1].shape.is_cube());
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("shapes are kept when the log is compacted", "[store][materials][shapes]") {
+  TempPlace place;
+  make_shaped_world(place / "w");
+  MaterialTable all;
+  {
+    auto store = *open_world(place / "w", StoreAccess::read_write);
+    all = *store->materials();
+    REQUIRE(store->compact(10).has_value());
+    CHECK(*store->materials() == all);
+    CHECK(store->meta().materials[1].shape == kSlab);
+    CHECK(store->meta().materials[2].shape.is_cube());
+    CHECK(store->check().has_value());
+  }
+  const auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(*store->materials() == all);
+}
+
+TEST_CASE("records of shapes that do not fit the table are refused", "[store][materials][shapes]") {
+  TempPlace place;
+  const auto store = *create_world(place / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  const auto beyond = static_cast<Material>(store->meta().materials.size());
+  const auto refused = [&](const std::vector<EditRecord>& records) {
+    const auto written = store->append({}, records);
+    REQUIRE_FALSE(written.has_value());
+    CHECK(written.error().kind == StoreError::Kind::bad_request);
+    CHECK(*store->last_sequence() == 0);
+  };
+  refused({record_of_shapes(1, {{beyond, kSlab}})});
+  refused({record_of_shapes(1, {{1, kSlab}}), record_of_shapes(2, {{1, kPlant}})});
+  CHECK(store->append({}, std::vector{record_of_shapes(1, {{1, kSlab}})}).has_value());
+}
+
+TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
+          "[store][materials][shapes]") {
+  TempPlace place;
+  const std::string shaped = place / "shaped", plain = place / "plain", copy = place / "copy";
+  make_shaped_world(shaped);
+  CHECK(format_of(place, shaped) == std::to_string(kWorldFormatOfShapes));
+  {
+    auto store = *create_world(plain, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+  }
+  if (!place.is_postgres()) CHECK(format_of(place, plain) == std::to_string(kWorldFormat));
+  REQUIRE(copy_stored_world(shaped, copy).has_value());
+  {
+    auto store = *open_world(copy, StoreAccess::read_write);
+    CHECK((*store->materials())[1].shape == kSlab);
+    CHECK(store->library_rows()->empty());
+    CHECK(store->check().has_value());
+  }
+  CHECK(format_of(place, copy) == std::to_string(kWorldFormatOfShapes));
+}
+
+TEST_CASE("a world that is created with shapes is of format 8", "[store][materials][shapes]") {
+  TempPlace place;
+  WorldMeta meta = sample_meta();
+  REQUIRE(meta.materials.give_shapes(std::vector<GivenShape>{{1, kSlab}}).has_value());
+  {
+    auto store = *create_world(place / "w", meta);
+    REQUIRE(store->raise_epoch().has_value());
+    CHECK(*store->materials() == meta.materials);
+  }
+  {
+    const auto store = *open_world(place / "w", StoreAccess::read_write);
+    CHECK(*store->materials() == meta.materials);
+    CHECK(store->check().has_value());
+  }
+  CHECK(format_of(place, place / "w") == std::to_string(kWorldFormatOfShapes));
+}
+
+}  // namespace runstone::test

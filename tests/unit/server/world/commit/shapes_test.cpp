@@ -1,0 +1,178 @@
+// Shapes that are given while people play: who gets them, in which order, and what is refused.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <utility>
+
+#include "server/world/commit/changes.hpp"
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+const Shape kSlab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+const Shape kPlant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+constexpr std::uint64_t kBoth = kFeatureMaterials | kFeatureShapes;
+constexpr Material kNew = 5;  // the bench has air and four others
+
+MaterialRow row_with(const char* name, const Shape& shape) {
+  MaterialRow row{name, {1, 2, 3, 255}, Visibility::opaque};
+  row.shape = shape;
+  return row;
+}
+
+struct ShapeBench : WorldBench {
+  using WorldBench::WorldBench;
+
+  /// Joins, and returns the welcome.
+  Welcome join_with(SessionId session, std::uint8_t who, std::uint64_t features) {
+    const auto [h, welcome] = greet(session, who, features);
+    server.received(session, client_auth(who, h, welcome), now());
+    REQUIRE(environment.messages<SessionAccepted>(session, kEdge).size() == 1);
+    return welcome;
+  }
+  std::pair<Hello, Welcome> greet(SessionId session, std::uint8_t who, std::uint64_t features) {
+    server.connected(session, now());
+    Hello h = hello(who);
+    h.features = features;
+    server.received(session, h, now());
+    return {h, environment.messages<Welcome>(session, 0).at(0)};
+  }
+  std::vector<ShapesGiven> given_to(SessionId session) const {
+    return environment.messages<ShapesGiven>(session, kEdge);
+  }
+  /// Returns the welcome's table with everything that followed it.
+  MaterialTable followed(SessionId session, MaterialTable table) const {
+    for (const MaterialsAdded& m : environment.messages<MaterialsAdded>(session, kEdge))
+      REQUIRE(table.append(m.first, m.rows).has_value());
+    for (const ShapesGiven& m : given_to(session))
+      REQUIRE(table.give_shapes(m.given.rows).has_value());
+    return table;
+  }
+  Sequence give(const std::vector<GivenShape>& rows) {
+    const auto given = server.changes().give_shapes(rows, now());
+    INFO((given ? "" : given.error()));
+    REQUIRE(given.has_value());
+    return *given;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("given shapes are a record, and reach the sessions with the feature",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  const Welcome with = bench.join_with(1, 1, kBoth);
+  bench.join_with(2, 2, kFeatureMaterials);
+  CHECK(bench.give({{3, kPlant}, {1, kSlab}}) == 1);
+  const EditRecord& record = bench.environment.records.back();
+  CHECK(record.cause == Cause::materials);
+  CHECK(record.op.author == 0);
+  CHECK(validate_fields(record).has_value());
+  CHECK(*given_shapes_of(record.edit) == GivenShapes{{{1, kSlab}, {3, kPlant}}});
+  REQUIRE(bench.given_to(1).size() == 1);
+  CHECK(bench.given_to(1)[0].given == GivenShapes{{{1, kSlab}, {3, kPlant}}});
+  CHECK(bench.given_to(2).empty());
+  CHECK(bench.environment.closed.empty());
+  const MaterialTable& table = bench.server.order().materials();
+  CHECK(bench.followed(1, with.materials) == table);
+
+  // Those who join later have the shapes in Welcome, with the feature only.
+  const Welcome later = bench.join_with(3, 3, kBoth);
+  CHECK(later.materials == table);
+  CHECK(bench.given_to(3).empty());
+  const Welcome old = bench.join_with(4, 4, kFeatureMaterials);
+  CHECK(old.materials.size() == table.size());
+  CHECK(old.materials[1].shape.is_cube());
+  CHECK((old.features & kFeatureShapes) == 0);
+}
+
+TEST_CASE("new materials with shapes are two records, and the rows come first",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  const Welcome with = bench.join_with(1, 1, kBoth);
+  const Welcome without = bench.join_with(2, 2, kFeatureMaterials);
+  const std::vector<MaterialRow> rows = {row_with("slab", kSlab), row_with("stone", {}),
+                                         row_with("plant", kPlant)};
+  const auto added = bench.server.changes().add_materials(rows, bench.now());
+  REQUIRE(added.has_value());
+  CHECK(added->first == kNew);
+  CHECK(added->seq == 2);
+  const auto& records = bench.environment.records;
+  REQUIRE(records.size() == 2);
+  REQUIRE(added_materials_of(records[0].edit) != nullptr);
+  CHECK(added_materials_of(records[0].edit)->rows[0].shape.is_cube());
+  CHECK(*given_shapes_of(records[1].edit) ==
+        GivenShapes{{{kNew, kSlab}, {static_cast<Material>(kNew + 2), kPlant}}});
+  const MaterialTable& table = bench.server.order().materials();
+  CHECK(table[kNew].shape == kSlab);
+  CHECK(bench.followed(1, with.materials) == table);
+  CHECK(bench.followed(2, without.materials)[kNew].shape.is_cube());
+  const auto& sent = bench.environment.sent;
+  const auto place = [&](MessageKind kind) {
+    return std::ranges::find_if(sent, [&](const auto& each) {
+             return each.session == 1 && each.message.kind == kind;
+           }) - sent.begin();
+  };
+  CHECK(place(kKindOf<MaterialsAdded>) < place(kKindOf<ShapesGiven>));
+}
+
+TEST_CASE("shapes that are given during a handshake follow session accepted",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  const auto [h, welcome] = bench.greet(1, 1, kBoth);
+  bench.give({{2, kSlab}});
+  const auto added =
+      bench.server.changes().add_materials({row_with("plant", kPlant)}, bench.now());
+  REQUIRE(added.has_value());
+  bench.give({{1, kPlant}});
+  CHECK(bench.given_to(1).empty());
+  bench.server.received(1, bench.client_auth(1, h, welcome), bench.now());
+  REQUIRE(bench.environment.messages<SessionAccepted>(1, kEdge).size() == 1);
+  CHECK(bench.given_to(1).size() == 1);
+  CHECK(bench.followed(1, welcome.materials) == bench.server.order().materials());
+}
+
+TEST_CASE("many shapes are several records and messages", "[world][materials][shapes]") {
+  ShapeBench bench;
+  const Welcome welcome = bench.join_with(1, 1, kBoth);
+  std::vector<GivenShape> given;
+  for (std::size_t part = 0; part < 2; ++part) {
+    std::vector<MaterialRow> rows;
+    for (std::size_t i = 0; i < 400; ++i)
+      rows.push_back({std::to_string(part) + "_" + std::to_string(i), {1, 2, 3, 255}, {}});
+    for (MaterialRow& row : rows) row.visibility = Visibility::opaque;
+    REQUIRE(bench.server.changes().add_materials(rows, bench.now()).has_value());
+  }
+  for (std::size_t i = 0; i < 800; ++i) {
+    given.push_back({static_cast<Material>(kNew + i),
+                     {ShapeForm::boxes,
+                      {{{static_cast<std::uint8_t>(i & 15), static_cast<std::uint8_t>(i >> 4 & 15),
+                         static_cast<std::uint8_t>(i >> 8)},
+                        {16, 16, 16}}}}});
+  }
+  given[0].shape = kSlab;
+  bench.give(given);
+  CHECK(bench.environment.records.size() == 2 + 4);
+  CHECK(bench.given_to(1).size() == 4);
+  CHECK(bench.followed(1, welcome.materials) == bench.server.order().materials());
+}
+
+TEST_CASE("shapes that do not fit the table are refused, all of them or none",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  const auto refusal = [&](const std::vector<GivenShape>& rows) {
+    const auto given = bench.server.changes().give_shapes(rows, bench.now());
+    REQUIRE_FALSE(given.has_value());
+    return given.error();
+  };
+  bench.give({{1, kSlab}});
+  CHECK(refusal({{2, kSlab}, {1, kPlant}}) == "a shape is given to a material that has one");
+  CHECK(refusal({{2, kSlab}, {kNew, kPlant}}) ==
+        "a shape is given to a material that does not exist");
+  CHECK(bench.server.order().materials()[2].shape.is_cube());
+  CHECK(bench.environment.records.size() == 1);
+  bench.environment.log_room = false;
+  CHECK(refusal({{2, kSlab}}).find("try again later") != std::string::npos);
+}
+
+}  // namespace runstone::test
