@@ -32,8 +32,7 @@ bool has_states_in_name(const BuildMaterial& material) {
 
 std::string world_name_of(const BuildMaterial& material) {
   std::string name = material.row.name;
-  const bool has_states =
-      has_states_in_name(material) || states_in_name(name) == material.states;
+  const bool has_states = has_states_in_name(material) || states_in_name(name) == material.states;
   if (!material.states.empty() && !has_states) name += '[' + material.states + ']';
   if (name.size() <= kMaterialNameBytesMax) return name;
   const std::string ending = '~' + hash_text(name);

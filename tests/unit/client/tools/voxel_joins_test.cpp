@@ -72,42 +72,43 @@ struct JoinBench {
   }
 };
 
-constexpr VoxelPos kHere{0, 0, 0}, kEast{1, 0, 0}, kWest{-1, 0, 0}, kNorth{0, 0, -1},
-    kSouth{0, 0, 1};
+constexpr VoxelPos kHereVoxel{0, 0, 0}, kEastVoxel{1, 0, 0}, kWestVoxel{-1, 0, 0},
+    kNorthVoxel{0, 0, -1}, kSouthVoxel{0, 0, 1};
 
 }  // namespace
 
 TEST_CASE_METHOD(JoinBench, "fences in a row join, and part when one is removed",
                  "[tools][hands]") {
-  CHECK(place(kHere, "minecraft:oak_fence") == 1);
-  CHECK(name(kHere) == "oak_fence");
-  CHECK(place(kEast, "minecraft:oak_fence") == 2);
-  CHECK(name(kHere) == "oak_fence[east=true]");
-  CHECK(name(kEast) == "oak_fence[west=true]");
+  CHECK(place(kHereVoxel, "minecraft:oak_fence") == 1);
+  CHECK(name(kHereVoxel) == "oak_fence");
+  CHECK(place(kEastVoxel, "minecraft:oak_fence") == 2);
+  CHECK(name(kHereVoxel) == "oak_fence[east=true]");
+  CHECK(name(kEastVoxel) == "oak_fence[west=true]");
   // The states of the held member do not matter.
-  CHECK(place(kWest, "minecraft:oak_fence[north=true]") == 2);
-  CHECK(name(kWest) == "oak_fence[east=true]");
-  CHECK(name(kHere) == "oak_fence[east=true,west=true]");
-  CHECK(place(kHere, "") == 3);
-  CHECK(name(kEast) == "oak_fence");
-  CHECK(name(kWest) == "oak_fence");
+  CHECK(place(kWestVoxel, "minecraft:oak_fence[north=true]") == 2);
+  CHECK(name(kWestVoxel) == "oak_fence[east=true]");
+  CHECK(name(kHereVoxel) == "oak_fence[east=true,west=true]");
+  CHECK(place(kHereVoxel, "") == 3);
+  CHECK(name(kEastVoxel) == "oak_fence");
+  CHECK(name(kWestVoxel) == "oak_fence");
 }
 
 TEST_CASE_METHOD(JoinBench, "a cross has five edits", "[tools][hands]") {
-  for (const VoxelPos at : {kEast, kWest, kNorth, kSouth}) place(at, "minecraft:glass_pane");
-  CHECK(place(kHere, "minecraft:glass_pane") == 5);
-  CHECK(name(kHere) == "glass_pane[east=true,north=true,south=true,west=true]");
-  CHECK(name(kSouth) == "glass_pane[north=true]");
+  for (const VoxelPos at : {kEastVoxel, kWestVoxel, kNorthVoxel, kSouthVoxel})
+    place(at, "minecraft:glass_pane");
+  CHECK(place(kHereVoxel, "minecraft:glass_pane") == 5);
+  CHECK(name(kHereVoxel) == "glass_pane[east=true,north=true,south=true,west=true]");
+  CHECK(name(kSouthVoxel) == "glass_pane[north=true]");
 }
 
 TEST_CASE_METHOD(JoinBench, "cubes and sides that are filled are joined, other voxels are not",
                  "[tools][hands]") {
-  set(kEast, "stone");
-  set(kWest, "minecraft:oak_leaves");
-  set(kNorth, "minecraft:oak_stairs");  // its full side is north
-  set(kSouth, "minecraft:oak_stairs");
-  CHECK(place(kHere, "minecraft:oak_fence") == 1);
-  CHECK(name(kHere) == "oak_fence[east=true,south=true]");
+  set(kEastVoxel, "stone");
+  set(kWestVoxel, "minecraft:oak_leaves");
+  set(kNorthVoxel, "minecraft:oak_stairs");  // its full side is north
+  set(kSouthVoxel, "minecraft:oak_stairs");
+  CHECK(place(kHereVoxel, "minecraft:oak_fence") == 1);
+  CHECK(name(kHereVoxel) == "oak_fence[east=true,south=true]");
   // A cube beside a fence changes it.
   place({5, 0, 5}, "minecraft:oak_fence");
   CHECK(place({6, 0, 5}, "stone") == 2);
@@ -116,42 +117,42 @@ TEST_CASE_METHOD(JoinBench, "cubes and sides that are filled are joined, other v
 
 TEST_CASE_METHOD(JoinBench, "fences join gates along their sides, and only fences of their kind",
                  "[tools][hands]") {
-  set(kEast, "minecraft:oak_fence_gate");  // it faces north, so it spans x
-  set(kSouth, "minecraft:oak_fence_gate");
-  set(kNorth, "minecraft:cobblestone_wall");
-  set(kWest, "minecraft:nether_brick_fence");
-  place(kHere, "minecraft:oak_fence");
-  CHECK(name(kHere) == "oak_fence[east=true]");
-  CHECK(name(kNorth) == "cobblestone_wall");
-  CHECK(name(kWest) == "nether_brick_fence");
-  set(kSouth, "minecraft:oak_fence_gate[facing=east]");
-  place(kHere, "minecraft:glass_pane");
-  CHECK(name(kHere) == "glass_pane[north=true]");
-  place(kHere, "minecraft:cobblestone_wall");
-  CHECK(name(kHere) == "cobblestone_wall[east=low,north=low,south=low]");
+  set(kEastVoxel, "minecraft:oak_fence_gate");  // it faces north, so it spans x
+  set(kSouthVoxel, "minecraft:oak_fence_gate");
+  set(kNorthVoxel, "minecraft:cobblestone_wall");
+  set(kWestVoxel, "minecraft:nether_brick_fence");
+  place(kHereVoxel, "minecraft:oak_fence");
+  CHECK(name(kHereVoxel) == "oak_fence[east=true]");
+  CHECK(name(kNorthVoxel) == "cobblestone_wall");
+  CHECK(name(kWestVoxel) == "nether_brick_fence");
+  set(kSouthVoxel, "minecraft:oak_fence_gate[facing=east]");
+  place(kHereVoxel, "minecraft:glass_pane");
+  CHECK(name(kHereVoxel) == "glass_pane[north=true]");
+  place(kHereVoxel, "minecraft:cobblestone_wall");
+  CHECK(name(kHereVoxel) == "cobblestone_wall[east=low,north=low,south=low]");
 }
 
 TEST_CASE_METHOD(JoinBench, "a straight wall has no post", "[tools][hands]") {
-  set(kEast, "minecraft:cobblestone_wall");
-  set(kWest, "minecraft:cobblestone_wall");
-  CHECK(place(kHere, "minecraft:cobblestone_wall") == 3);
-  CHECK(name(kHere) == "cobblestone_wall[east=low,up=false,west=low]");
-  CHECK(name(kEast) == "cobblestone_wall[west=low]");
-  CHECK(place(kNorth, "minecraft:cobblestone_wall") == 2);
-  CHECK(name(kHere) == "cobblestone_wall[east=low,north=low,west=low]");
+  set(kEastVoxel, "minecraft:cobblestone_wall");
+  set(kWestVoxel, "minecraft:cobblestone_wall");
+  CHECK(place(kHereVoxel, "minecraft:cobblestone_wall") == 3);
+  CHECK(name(kHereVoxel) == "cobblestone_wall[east=low,up=false,west=low]");
+  CHECK(name(kEastVoxel) == "cobblestone_wall[west=low]");
+  CHECK(place(kNorthVoxel, "minecraft:cobblestone_wall") == 2);
+  CHECK(name(kHereVoxel) == "cobblestone_wall[east=low,north=low,west=low]");
 }
 
 TEST_CASE_METHOD(JoinBench, "a neighbour keeps its other sides", "[tools][hands]") {
-  set(kEast, "minecraft:oak_fence[north=true]");  // as it was imported
-  place(kHere, "minecraft:oak_fence");
-  CHECK(name(kEast) == "oak_fence[north=true,west=true]");
+  set(kEastVoxel, "minecraft:oak_fence[north=true]");  // as it was imported
+  place(kHereVoxel, "minecraft:oak_fence");
+  CHECK(name(kEastVoxel) == "oak_fence[north=true,west=true]");
 }
 
 TEST_CASE_METHOD(JoinBench, "only members of the table are set", "[tools][hands]") {
-  set(kEast, "minecraft:nether_brick_fence");
-  CHECK(place(kHere, "minecraft:nether_brick_fence") == 2);
-  CHECK(name(kHere) == "nether_brick_fence");  // one that joins east is missing
-  CHECK(name(kEast) == "nether_brick_fence[west=true]");
+  set(kEastVoxel, "minecraft:nether_brick_fence");
+  CHECK(place(kHereVoxel, "minecraft:nether_brick_fence") == 2);
+  CHECK(name(kHereVoxel) == "nether_brick_fence");  // one that joins east is missing
+  CHECK(name(kEastVoxel) == "nether_brick_fence[west=true]");
   is_known = false;
   CHECK(place({9, 0, 9}, "minecraft:oak_fence") == 1);
 }

@@ -87,7 +87,7 @@ struct ToolWindowBench {
 
 // Distances from the left border of the window. In the first every row has something to click.
 constexpr double kRow = 30, kSliderLow = 11, kSliderMiddle = 110, kSecondChoice = 120, kApply = 175,
-                 kByVoxels = 16, kHollow = 75, kByMetres = 130, kSize = 220;
+                 kByVoxels = 16, kHollow = 75, kByMetres = 130, kSizeField = 220;
 
 }  // namespace
 
@@ -264,7 +264,7 @@ TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes vox
   CHECK(files.back().file == "/tmp/other.glb");
   // A size out of its range has words, and the button is dead.
   click(x(kByVoxels), size_y);
-  click(x(kSize), size_y);
+  click(x(kSizeField), size_y);
   type("5000");
   const auto count = files.size();
   click(x(kRow), below() - 18);
