@@ -70,8 +70,8 @@ TEST_CASE("an .obj is written with its materials beside it, and both or none", "
 
 TEST_CASE("levels of detail of an .obj or .ply are files of their own", "[build_files]") {
   const TempFolder folder;
-  ModelWriting writing;
-  writing.levels = 2;
+  FileWriting writing;
+  writing.model.levels = 2;
   const auto text_of = [&](const std::string& name) {
     std::ifstream in(folder / name);
     return std::string{std::istreambuf_iterator<char>(in), {}};

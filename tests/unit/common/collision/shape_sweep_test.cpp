@@ -12,8 +12,8 @@
 namespace runstone::test {
 namespace {
 
-constexpr std::int32_t kEdge = 16;
-constexpr Material kStone = 1, kSlab = 2, kOdd = 3;
+constexpr std::int32_t kShapeEdge = 16;
+constexpr Material kShapeStone = 1, kSlab = 2, kOdd = 3;
 
 const ShapeTable& shapes() {
   static const std::vector<Shape> by_material = {
@@ -35,7 +35,7 @@ const Obstacles& obstacles() {
 /// Chunks of a small world in which a test sets voxels.
 class ShapeRoom final : public VoxelSpace {
  public:
-  ShapeRoom() : VoxelSpace(kEdge) {}
+  ShapeRoom() : VoxelSpace(kShapeEdge) {}
   void set(LocalPos at, Material material) {
     fill(chunk_, index_of(at, chunk_.extent, chunk_.order), 1, material);
   }
@@ -44,8 +44,8 @@ class ShapeRoom final : public VoxelSpace {
   }
 
  private:
-  RunChunk chunk_ = uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::yzx);
-  RunChunk empty_ = uniform_chunk(Extent::cube(kEdge), kEmpty);
+  RunChunk chunk_ = uniform_chunk(Extent::cube(kShapeEdge), kEmpty, AxisOrder::yzx);
+  RunChunk empty_ = uniform_chunk(Extent::cube(kShapeEdge), kEmpty);
 };
 
 /// Places of the ends of a box by axis.
@@ -71,7 +71,7 @@ Ends moved(const BodyBox& body, const WorldPos& by, double fraction) {
 
 TEST_CASE("a body falls onto a slab and slides along its upper face", "[collision]") {
   ShapeRoom room;
-  for (std::uint8_t x = 0; x < kEdge; ++x) room.set({x, 3, 8}, kSlab);
+  for (std::uint8_t x = 0; x < kShapeEdge; ++x) room.set({x, 3, 8}, kSlab);
   const BodyBox body{{2, 5, 8.2}, {2.6, 6.8, 8.8}};
   const auto hit = sweep(room, obstacles(), body, {0, -3, 0});
   REQUIRE(hit.has_value());
@@ -96,14 +96,14 @@ TEST_CASE("a body stops before the first cube or box on its way, and nowhere els
     std::vector<Ends> solid;
     std::set<std::array<int, 3>> set;
     for (int i = 0; i < 40; ++i) {
-      const LocalPos at{static_cast<std::uint8_t>(rng.below(kEdge)),
-                        static_cast<std::uint8_t>(rng.below(kEdge)),
-                        static_cast<std::uint8_t>(rng.below(kEdge))};
+      const LocalPos at{static_cast<std::uint8_t>(rng.below(kShapeEdge)),
+                        static_cast<std::uint8_t>(rng.below(kShapeEdge)),
+                        static_cast<std::uint8_t>(rng.below(kShapeEdge))};
       if (!set.insert({at.x, at.y, at.z}).second) continue;
-      const auto material = static_cast<Material>(kStone + rng.below(3));
+      const auto material = static_cast<Material>(kShapeStone + rng.below(3));
       room.set(at, material);
       const Shape cube{ShapeForm::boxes, {ShapeBox{}}};
-      for (const ShapeBox& box : (material == kStone ? cube : shapes()[material].shape).boxes) {
+      for (const ShapeBox& box : (material == kShapeStone ? cube : shapes()[material].shape).boxes) {
         Ends ends;
         const std::array<double, 3> corner = {double(at.x), double(at.y), double(at.z)};
         for (std::size_t a = 0; a < 3; ++a) {

@@ -94,7 +94,7 @@ Bytes level_bytes(const std::string& file, const FileBuild& build, const ModelWr
         out.insert(out.end(), bytes.begin(), bytes.end());
         return true;
       },
-      writing);
+      {writing});
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
   return out;
@@ -264,7 +264,7 @@ TEST_CASE("levels count for the size of a file", "[model_writers]") {
     ModelWriting writing;
     writing.is_welded = false;
     writing.levels = levels;
-    const auto done = write_file_build("a.gltf", build, [](ByteView) { return false; }, writing);
+    const auto done = write_file_build("a.gltf", build, [](ByteView) { return false; }, {writing});
     return done ? "" : done.error();
   };
   CHECK(error_of(0) == "a.gltf: cannot be written");
