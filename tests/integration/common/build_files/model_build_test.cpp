@@ -64,7 +64,7 @@ TEST_CASE("a build that is written as a model is read as the same voxels", "[bui
     const std::string file = folder / name;
     ModelWriting writing;
     writing.levels = 2;  // only the finest one is read
-    REQUIRE(write_build_to_file(file, house, writing));
+    REQUIRE(write_build_to_file(file, house, {writing}));
     std::vector<std::string> notices;
     BuildReading reading = model_reading();
     reading.notice = [&](const std::string& line) { notices.push_back(line); };
