@@ -76,8 +76,7 @@ static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax,
 // FlatBuffers verifier: nesting and number of tables of the largest valid message.
 inline constexpr unsigned kVerifierDepthMax = 8;
 inline constexpr unsigned kVerifierTablesMax = 2 * kMaterialCountMax + 16;
-static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 40) +
-                      kTableShapesMax * kShapeBytesMax <=
+static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 40) + kTableShapesMax * kShapeBytesMax <=
                   kServerControlBytesMax,
               "a full material table fits Welcome, with its shapes");
 

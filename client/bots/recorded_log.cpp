@@ -56,7 +56,8 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
     }
     if (const GivenShapes* given = given_shapes_of(record.edit)) {
       const auto shaped = log.materials.give_shapes(given->rows);
-      if (!shaped) wrong = "edit " + std::to_string(record.version.seq) + ": " + shaped.error().what;
+      if (!shaped)
+        wrong = "edit " + std::to_string(record.version.seq) + ": " + shaped.error().what;
       return shaped.has_value();
     }
     if (!has_voxels(record.edit)) return true;  // the live world has rights of its own

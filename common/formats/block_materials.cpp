@@ -32,9 +32,8 @@ Result<MaterialTable> BlockMaterials::make_table() {
     const auto mapped =
         map_ != nullptr ? map_->apply({row_of(info), block.states}, applied_) : std::nullopt;
     if (mapped) {
-      info = {mapped->name, mapped->colour, mapped->visibility,
-              std::nullopt, mapped->body,   mapped->look,
-              mapped->shape};
+      info = {mapped->name, mapped->colour, mapped->visibility, std::nullopt,
+              mapped->body, mapped->look,   mapped->shape};
     } else if (map_ != nullptr) {
       kept.try_emplace(info.name, info);
     }

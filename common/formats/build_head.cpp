@@ -99,9 +99,8 @@ void encode_build_material(const BuildMaterial& material, Bytes& out) {
 }
 
 bool has_shape(std::span<const BuildMaterial> materials) {
-  return std::any_of(materials.begin(), materials.end(), [](const BuildMaterial& material) {
-    return !material.row.shape.is_cube();
-  });
+  return std::any_of(materials.begin(), materials.end(),
+                     [](const BuildMaterial& material) { return !material.row.shape.is_cube(); });
 }
 
 Result<void> decode_build_materials(ByteView in, std::uint32_t count, bool with_shapes,

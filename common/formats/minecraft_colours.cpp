@@ -9,8 +9,8 @@
 
 #include "common/core/hash.hpp"
 #include "common/formats/minecraft_blocks.hpp"
-#include "common/formats/shape_names.hpp"
 #include "common/formats/minecraft_states.hpp"
+#include "common/formats/shape_names.hpp"
 #include "common/materials/default_look.hpp"
 
 namespace runstone {

@@ -115,8 +115,9 @@ RsbResult<void> RsbReader::read_materials(std::uint32_t material_count, bool wit
   if (const auto sound = validate_build_materials(materials_); !sound)
     return failure_at(sound.error(), "materials", begin);
   if (with_shapes && !has_shape(materials_)) {
-    return failure_at({ErrorCode::not_canonical, "no material has a shape in a file of version 2", 0},
-                      "materials", begin);
+    return failure_at(
+        {ErrorCode::not_canonical, "no material has a shape in a file of version 2", 0},
+        "materials", begin);
   }
   return {};
 }

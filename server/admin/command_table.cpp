@@ -108,9 +108,10 @@ const CommandRow* find_text_command(std::string_view line, std::string_view& tex
 const std::vector<CommandRow>& command_table() {
   static const std::vector<CommandRow> table = [] {
     std::vector<CommandRow> rows;
-    for (const auto& part : {player_commands(), ground_commands(), moderation_commands(),
-                             rollback_commands(), role_commands(), password_commands(),
-                             clock_commands(), library_commands(), shape_commands(), host_commands()})
+    for (const auto& part :
+         {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
+          role_commands(), password_commands(), clock_commands(), library_commands(),
+          shape_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -47,9 +47,8 @@ void add_materials(const CommandCall& call, const std::string& file) {
       [call, file](const std::vector<MaterialFileRow>& read) {
         std::vector<MaterialRow> rows;
         for (const MaterialFileRow& each : read) rows.push_back(each.row);
-        const bool has_shape = std::any_of(rows.begin(), rows.end(), [](const MaterialRow& row) {
-          return !row.shape.is_cube();
-        });
+        const bool has_shape = std::any_of(
+            rows.begin(), rows.end(), [](const MaterialRow& row) { return !row.shape.is_cube(); });
         const auto why = has_shape ? call.world().cluster().shapes_refusal() : std::nullopt;
         if (why) return call.refuse("materials add: " + *why);
         const auto added = call.world().changes().add_materials(rows, call.now);

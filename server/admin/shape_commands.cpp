@@ -54,8 +54,8 @@ void give_shapes_of_names(const CommandCall& call, bool is_preview) {
           return call.answer("every material has the shape that its name says: nothing is changed");
         const std::string count = counted(rows.size(), "material");
         if (is_preview)
-          return call.answer(count + " would get a shape, for ever: " +
-                             given_names_text(rows, table));
+          return call.answer(count +
+                             " would get a shape, for ever: " + given_names_text(rows, table));
         if (const auto why = call.world().cluster().shapes_refusal())
           return call.refuse("materials shapes: " + *why);
         const auto given = call.world().changes().give_shapes(rows, call.now);

@@ -12,7 +12,7 @@
 namespace runstone {
 
 struct AddedMaterials {
-  Material first = 1;             // id of the first row: the table's size before
+  Material first = 1;  // id of the first row: the table's size before
   /// 1 .. kAddedMaterialsMax; their names differ. They are cubes: another record gives them shapes.
   std::vector<MaterialRow> rows;
   friend bool operator==(const AddedMaterials&, const AddedMaterials&) = default;

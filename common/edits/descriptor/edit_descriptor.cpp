@@ -274,9 +274,9 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
-      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
-      EditKind::shapes};
+      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
+      EditKind::fill_stroke, EditKind::paste,    EditKind::rights,
+      EditKind::materials,   EditKind::library,  EditKind::shapes};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];

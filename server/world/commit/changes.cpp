@@ -173,7 +173,8 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   std::vector<GivenShape> given;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     added.rows[i].shape = {};
-    if (!rows[i].shape.is_cube()) given.push_back({static_cast<Material>(first + i), rows[i].shape});
+    if (!rows[i].shape.is_cube())
+      given.push_back({static_cast<Material>(first + i), rows[i].shape});
   }
   if (!given.empty()) {
     MaterialTable with_shapes = table;

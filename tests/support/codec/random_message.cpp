@@ -106,8 +106,8 @@ Shape any_shape(SplitMix64& rng) {
     ShapeBox box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.min[axis] = static_cast<std::uint8_t>(rng.below(kShapeUnits));
-      box.max[axis] = static_cast<std::uint8_t>(box.min[axis] + 1 +
-                                                rng.below(std::uint32_t{kShapeUnits} - box.min[axis]));
+      box.max[axis] = static_cast<std::uint8_t>(
+          box.min[axis] + 1 + rng.below(std::uint32_t{kShapeUnits} - box.min[axis]));
     }
     shape.boxes.push_back(box);
   }

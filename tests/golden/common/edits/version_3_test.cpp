@@ -39,17 +39,17 @@ void check_bytes_of(const EditDescriptor& edit, const Bytes& golden) {
 TEST_CASE("the bytes of changes of the library are pinned", "[edits][golden]") {
   check_bytes_of(library_edit(RemoveBuild{300}), {0x0a, 0x00, 0x00, 0x02, 0xac, 0x02});
   check_bytes_of(library_edit(golden_build()),
-                      {0x0a, 0x00, 0x00, 0x01,                          // added
-                       0x45, 0x02, 0x01,                                // sides
-                       0x09, 0x80, 0x01, 0xd8, 0x04,                    // origin
-                       0xac, 0x02,                                      // created
-                       0x04, 'M',  'i',  'l',  'l',                     // name
-                       0x04, 'z',  'o',  0xc3, 0xab,                    // author
-                       0x01, 0x04, 'w',  'o',  'o',  'd',               // tags
-                       0x89, 0x01,                                      // touched cells
-                       0xc9, 0x02,                                      // bytes of the file
-                       0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,  // digest of the file
-                       0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00});
+                 {0x0a, 0x00, 0x00, 0x01,                          // added
+                  0x45, 0x02, 0x01,                                // sides
+                  0x09, 0x80, 0x01, 0xd8, 0x04,                    // origin
+                  0xac, 0x02,                                      // created
+                  0x04, 'M',  'i',  'l',  'l',                     // name
+                  0x04, 'z',  'o',  0xc3, 0xab,                    // author
+                  0x01, 0x04, 'w',  'o',  'o',  'd',               // tags
+                  0x89, 0x01,                                      // touched cells
+                  0xc9, 0x02,                                      // bytes of the file
+                  0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,  // digest of the file
+                  0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00});
 }
 
 TEST_CASE("the bytes of given shapes are pinned", "[edits][golden]") {

@@ -85,8 +85,8 @@ TEST_CASE("shapes are cut into records of the right size", "[edits]") {
 TEST_CASE("bytes of given shapes that are cut, too long or not canonical are refused", "[edits]") {
   const Bytes good = encode(shapes_edit({{{300, box_shape(8)}, {301, box_shape(4)}}}));
   // Kind, mask, material; shapes - 1; two shapes of five bytes; rows - 1; step and number of each.
-  REQUIRE(good == Bytes{0x0b, 0x00, 0x00, 0x01, 0x00, 0x01, 0xf0, 0x30, 0xf0, 0x00, 0x01,
-                        0xf0, 0x70, 0xf0, 0x01, 0xab, 0x02, 0x01, 0x00, 0x00});
+  REQUIRE(good == Bytes{0x0b, 0x00, 0x00, 0x01, 0x00, 0x01, 0xf0, 0x30, 0xf0, 0x00,
+                        0x01, 0xf0, 0x70, 0xf0, 0x01, 0xab, 0x02, 0x01, 0x00, 0x00});
   for (std::size_t size = 0; size < good.size(); ++size)
     CHECK_FALSE(decode_descriptor(ByteView(good).first(size)).has_value());
   const auto refused = [&](std::size_t at, std::uint8_t byte) {
@@ -106,8 +106,8 @@ TEST_CASE("bytes of given shapes that are cut, too long or not canonical are ref
   longer.push_back(0);
   CHECK_FALSE(decode_descriptor(longer).has_value());
   // Material 65536.
-  const Bytes beyond = {0x0b, 0x00, 0x00, 0x00, 0x00, 0x01, 0xf0, 0x30, 0xf0,
-                        0x00, 0xff, 0xff, 0x03, 0x00};
+  const Bytes beyond = {0x0b, 0x00, 0x00, 0x00, 0x00, 0x01, 0xf0,
+                        0x30, 0xf0, 0x00, 0xff, 0xff, 0x03, 0x00};
   CHECK_FALSE(decode_descriptor(beyond).has_value());
 }
 

@@ -109,9 +109,10 @@ TEST_CASE("new materials with shapes are two records, and the rows come first",
   CHECK(bench.followed(2, without.materials)[kNew].shape.is_cube());
   const auto& sent = bench.environment.sent;
   const auto place = [&](MessageKind kind) {
-    return std::ranges::find_if(sent, [&](const auto& each) {
-             return each.session == 1 && each.message.kind == kind;
-           }) - sent.begin();
+    return std::ranges::find_if(
+               sent,
+               [&](const auto& each) { return each.session == 1 && each.message.kind == kind; }) -
+           sent.begin();
   };
   CHECK(place(kKindOf<MaterialsAdded>) < place(kKindOf<ShapesGiven>));
 }
@@ -121,8 +122,7 @@ TEST_CASE("shapes that are given during a handshake follow session accepted",
   ShapeBench bench;
   const auto [h, welcome] = bench.greet(1, 1, kBoth);
   bench.give({{2, kSlab}});
-  const auto added =
-      bench.server.changes().add_materials({row_with("plant", kPlant)}, bench.now());
+  const auto added = bench.server.changes().add_materials({row_with("plant", kPlant)}, bench.now());
   REQUIRE(added.has_value());
   bench.give({{1, kPlant}});
   CHECK(bench.given_to(1).empty());
