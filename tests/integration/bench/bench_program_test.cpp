@@ -127,7 +127,7 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   const auto document = nlohmann::json::parse(text_of(json));
   CHECK(document.at("rows").size() == rows.size());
   CHECK(document.at("repetitions") == 3);
-  CHECK(document.at("summary").size() == 15);
+  CHECK(document.at("summary").size() == 16);
   CHECK(output.out.find("| rdm |") != std::string::npos);
 }
 

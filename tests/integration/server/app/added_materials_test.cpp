@@ -1,4 +1,5 @@
 // Added materials after kill -9, in a compacted world, in an exported log and in a backup.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -148,6 +149,73 @@ TEST_CASE("materials of a later record follow those that a compaction kept",
   CHECK(table.find("teal") == kLime + 1);
   CHECK(table.find("plum") == kLime + 2);
   CHECK(run_replay({"verify", "--world", world}).code == 0);
+}
+
+TEST_CASE("clients with the feature have the shapes of a world, live and after a restart",
+          "[integration][materials][shapes]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "shapes.toml";
+  std::ofstream(file) << "[[material]]\nname = \"half\"\ncolour = \"#80ff20\"\n"
+                         "shape = [[0,0,0,16,8,16]]\n"
+                         "[[material]]\nname = \"minecraft:oak_slab\"\ncolour = \"#806040\"\n";
+  const Shape half{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  const auto slab = static_cast<Material>(kLime + 1);
+  const auto welcome_of = [](RawClient& client, std::uint64_t features, std::uint8_t who) {
+    client.features = features;
+    REQUIRE(client.join(who, 40 + who).has_value());
+    return client.welcome.materials;
+  };
+  {
+    const auto server = start_server(quiet_config(world), flat_creation());
+    RawClient shaped(server->port()), plain(server->port());
+    MaterialTable table = welcome_of(shaped, kFeatureMaterials | kFeatureShapes, 1);
+    welcome_of(plain, kFeatureMaterials, 2);
+    REQUIRE(control(world, {"materials", "add", file}).is_ok);
+    const auto added = shaped.next_of<MaterialsAdded>();
+    REQUIRE(added.has_value());
+    CHECK(added->rows[0].shape.is_cube());
+    REQUIRE(table.append(added->first, added->rows).has_value());
+    const auto first = shaped.next_of<ShapesGiven>();
+    REQUIRE(first.has_value());
+    CHECK(first->given == GivenShapes{{{kLime, half}}});
+    const auto preview = control(world, {"materials", "shapes", "preview"});
+    CHECK(preview.text.find("1 material would get a shape") != std::string::npos);
+    REQUIRE(control(world, {"materials", "shapes"}).is_ok);
+    const auto second = shaped.next_of<ShapesGiven>();
+    REQUIRE(second.has_value());
+    REQUIRE(second->given.rows.size() == 1);
+    CHECK(second->given.rows[0].material == slab);
+    // The other client hears of the rows alone.
+    plain.send(EditRequest{1, 0, {SetVoxel{{3, 70, 3}}, {}, kLime}});
+    std::vector<Message> before;
+    REQUIRE(plain.next_of<Commit>(&before).has_value());
+    CHECK(std::none_of(before.begin(), before.end(),
+                       [](const Message& m) { return std::holds_alternative<ShapesGiven>(m); }));
+    CHECK(server->stop().is_clean);
+  }
+  const auto check_restarted = [&] {
+    const auto server = start_server(quiet_config(world), flat_creation());
+    RawClient shaped(server->port()), plain(server->port());
+    const MaterialTable table = welcome_of(shaped, kFeatureMaterials | kFeatureShapes, 1);
+    CHECK(table[kLime].shape == half);
+    CHECK_FALSE(table[slab].shape.is_cube());
+    CHECK(welcome_of(plain, kFeatureMaterials, 2)[kLime].shape.is_cube());
+    CHECK(server->stop().is_clean);
+  };
+  check_restarted();
+  std::ostringstream out;
+  const std::string log = folder / "log.rlog", imported = folder / "imported";
+  {
+    auto store = *open_world(world, StoreAccess::read_only);
+    REQUIRE(export_rlog(*store, log, kSequenceMax).has_value());
+  }
+  const auto done = import_rlog({imported, log}, out);
+  REQUIRE(done.has_value());
+  CHECK(table_of(imported) == table_of(world));
+  succeed(compact_world({world, 0, false, false, true}, kCompactedUs, out));
+  check_restarted();
+  auto store = *open_world(world, StoreAccess::read_only);
+  CHECK(store->meta().materials[kLime].shape == half);
 }
 
 }  // namespace runstone::test
