@@ -126,7 +126,7 @@ Result<VoxelBox, std::string> make_luanti_world(const std::string& folder,
     if (!added) why = added.error();
     return added.has_value();
   };
-  const auto report = import_luanti(luanti, {.edge = kEdge, .keep_param2 = false}, sink);
+  const auto report = import_luanti(luanti, {.edge = kEdge, .only_cubes = true}, sink);
   if (!report) return failure(why.empty() ? report.error().message() : why);
   if (auto flushed = base->flush(); !flushed) return failure(flushed.error());
   return report->bounds;

@@ -57,7 +57,7 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
                               },
                               {}};
   const auto report = import_luanti(
-      folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes, .keep_param2 = false}, sink);
+      folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes, .only_cubes = true}, sink);
   if (!report) return failure(report.error().message());
   DenseBox dense{report->bounds, {}};
   const VoxelBox& box = dense.box;

@@ -306,9 +306,8 @@ MaterialInfo written_material(const std::string& name) {
   return out;
 }
 
-}  // namespace
-
-MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
+/// Returns the material of a node. Without `has_shapes`, none has one.
+MaterialInfo material_of_node(const ForeignBlock& node, bool keep_all, bool has_shapes) {
   const std::string& name = node.name;
   if (name == "air" || name == "ignore")
     return {"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt};
@@ -318,8 +317,10 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
     return written_material(name);
   const Look look = look_of(name);
   MaterialInfo out;
-  out.name = node_material_name(material_name(name), node.states);
-  const std::optional<Shape> shape = shape_of_material_name(out.name);
+  out.name =
+      has_shapes ? node_material_name(material_name(name), node.states) : material_name(name);
+  const std::optional<Shape> shape =
+      has_shapes ? shape_of_material_name(out.name) : std::optional<Shape>();
   out.colour = {static_cast<std::uint8_t>(look.rgb >> 16), static_cast<std::uint8_t>(look.rgb >> 8),
                 static_cast<std::uint8_t>(look.rgb), 255};
   switch (look.kind) {
@@ -346,6 +347,16 @@ MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
   // It is stored, so that every client draws the world alike.
   out.look = default_look(name, out.body);
   return out;
+}
+
+}  // namespace
+
+MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all) {
+  return material_of_node(node, keep_all, true);
+}
+
+MaterialInfo material_of_luanti_cube(const ForeignBlock& node, bool keep_all) {
+  return material_of_node(node, keep_all, false);
 }
 
 bool keeps_luanti_param2(std::string_view name) {

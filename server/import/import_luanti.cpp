@@ -202,7 +202,7 @@ Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
                                "has no blocks: start Luanti once with this world, so that there "
                                "is ground, or give the folder of another world"});
   Format nodes = *format;
-  if (!options.keep_param2) nodes.material_of = material_of_luanti_node;
+  if (options.only_cubes) nodes.material_of = material_of_luanti_cube;
   auto report = Importer(found->map, **map, nodes, options, sink).run();
   if (report) report->has_seed_map = found->has_seed_map;
   return report;

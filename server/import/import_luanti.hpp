@@ -29,9 +29,9 @@ struct LuantiImportOptions {
   bool keep_all = false;
   /// Chooses materials, if it is not null. It must outlive the import.
   const MaterialMap* map = nullptr;
-  /// True: names have the param2 as material_of_luanti_world_node() says. False: a material for each
-  /// name of a node. The benchmarks measure worlds so, as their figures were measured.
-  bool keep_param2 = true;
+  /// True: the materials are those of material_of_luanti_cube(). The benchmarks measure worlds so, as
+  /// their figures were measured.
+  bool only_cubes = false;
 };
 
 struct LuantiImportSink {

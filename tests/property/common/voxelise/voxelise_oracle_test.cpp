@@ -79,7 +79,8 @@ void compare_closed(const Model& mesh) {
     const auto both = voxel_grid(mesh, options_of(true, mode));
     REQUIRE(both.has_value());
     // A thin surface does not make what is closed thicker.
-    const bool is_wall = mode == SurfaceMode::separating_6 && both->result.rule == SolidRule::parity;
+    const bool is_wall =
+        mode == SurfaceMode::separating_6 && both->result.rule == SolidRule::parity;
     REQUIRE(first_difference(*both, [&](VoxelPos p) {
               if (solid->at(p) != kEmpty) return true;
               return is_wall ? oracle.is_wall(p) : surface->at(p) != kEmpty;

@@ -103,7 +103,8 @@ TEST_CASE("a body stops before the first cube or box on its way, and nowhere els
       const auto material = static_cast<Material>(kShapeStone + rng.below(3));
       room.set(at, material);
       const Shape cube{ShapeForm::boxes, {ShapeBox{}}};
-      for (const ShapeBox& box : (material == kShapeStone ? cube : shapes()[material].shape).boxes) {
+      for (const ShapeBox& box :
+           (material == kShapeStone ? cube : shapes()[material].shape).boxes) {
         Ends ends;
         const std::array<double, 3> corner = {double(at.x), double(at.y), double(at.z)};
         for (std::size_t a = 0; a < 3; ++a) {

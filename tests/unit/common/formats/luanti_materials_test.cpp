@@ -107,8 +107,7 @@ TEST_CASE("the param2 of a node of a world stays in its name if it is a directio
   CHECK(name_of("default:acacia_tree", "param2=255") == "default:acacia_tree[param2=255]");
   CHECK(name_of("runstone:red__bricks", "param2=3") == "red bricks[param2=3]");
   CHECK(name_of("stairs:stair_leaves", "param2=1") == "stairs:stair_leaves[param2=1]");
-  CHECK(name_of("default:torch", "param2=1", true) == "default:torch[param2=1]");
-  CHECK(name_of("default:torch", "param2=1") == "default:torch");  // is empty
+  CHECK(name_of("default:torch", "param2=1") == "default:torch[param2=1]");
   for (const char* name :
        {"default:water_flowing", "default:lava_flowing", "default:leaves", "default:pine_needles",
         "default:blueberry_bush_leaves_with_berries", "default:sand_with_kelp"})

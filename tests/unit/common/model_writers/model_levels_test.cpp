@@ -88,13 +88,12 @@ FileBuild level_boxes(SplitMix64& rng, VoxelPos sides) {
 
 Bytes level_bytes(const std::string& file, const FileBuild& build, const ModelWriting& writing) {
   Bytes out;
-  const auto done = write_file_build(
-      file, build,
-      [&](ByteView bytes) {
-        out.insert(out.end(), bytes.begin(), bytes.end());
-        return true;
-      },
-      {writing});
+  const auto done = write_file_build(file, build,
+                                     [&](ByteView bytes) {
+                                       out.insert(out.end(), bytes.begin(), bytes.end());
+                                       return true;
+                                     },
+                                     {writing});
   INFO((done ? "" : done.error()));
   REQUIRE(done.has_value());
   return out;

@@ -70,7 +70,8 @@ TEST_CASE("rows of every layer are its voxels in every orientation", "[mesh]") {
 TEST_CASE("rows of layers of many short runs are their voxels in every orientation", "[mesh]") {
   SplitMix64 rng(44);
   for (const AxisOrder order : kAxisOrders) {
-    for (const ChunkShape shape : {ChunkShape::noise, ChunkShape::checkerboard, ChunkShape::speckled}) {
+    for (const ChunkShape shape :
+         {ChunkShape::noise, ChunkShape::checkerboard, ChunkShape::speckled}) {
       check_layers<Row32>(random_chunk(rng, {32, 32, 32}, order, 2, shape));
       check_layers<Row32>(random_chunk(rng, {31, 9, 30}, order, 8, shape));
       check_layers<Row64>(random_chunk(rng, {64, 10, 33}, order, 2, shape));
