@@ -15,7 +15,7 @@
 
 namespace runstone::bench {
 
-/// What a way makes: the inside (SurfaceMode::none), or a surface.
+/// The result of a way: the inside (SurfaceMode::none), or a surface.
 using OracleShape = SurfaceMode;
 
 class OracleSample {

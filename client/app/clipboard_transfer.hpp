@@ -48,7 +48,7 @@ class ClipboardTransfer {
   FileState state() const;
 
  private:
-  /// What the two threads of one reading share.
+  /// The state that the two threads of one reading share.
   struct Reading {
     std::atomic<bool> is_wanted = true;
     std::atomic<double> share = -1;  // of the voxels of a model that are made; below 0: none yet

@@ -1,4 +1,4 @@
-// What meshers need of the materials of a world, made of its table.
+// Makes MeshMaterials, which meshers need, of the material table of a world.
 #pragma once
 #include "common/materials/material_table.hpp"
 #include "common/mesh/mesh_materials.hpp"

@@ -29,7 +29,7 @@ ToolEdits VoxelTool::plan(const ToolInput& input) const {
   ShownVoxels shown(input.replica);
   ToolAction out(joined_edits(input.target, material, input.materials,
                               [&](VoxelPos at) { return shown.at(at); }));
-  // What joins on the other side of a symmetry is another voxel.
+  // On the other side of a symmetry another voxel would join.
   if (input.has_copies) out.edits.resize(1);
   out.has_followers = out.edits.size() > 1;
   return out;

@@ -206,7 +206,7 @@ Material placed_material(Material held, const PlacedClick& click, const Material
   }
   MaterialStates wanted = before;
   if (rule_names(kStandsOrHangs, before.path())) {
-    // What stands has other states than what hangs on a wall.
+    // A torch that stands has other states than one that hangs on a wall.
     const bool hangs = chooses.is_on_side();
     const std::string other = standing_or_hanging(before.family, hangs);
     if (other != before.family && !table.family(other).empty()) wanted = states_of_material(other);
@@ -215,7 +215,7 @@ Material placed_material(Material held, const PlacedClick& click, const Material
   if (wanted.family == before.family && wanted.states == before.states) return held;
   const auto nearest = nearest_member(table, wanted);
   if (!nearest) return held;
-  // Of members that differ as much, the held one.
+  // The held one is taken of members that differ as much.
   const auto differing = [&](Material material) {
     const MaterialStates states = states_of_material(table[material].name);
     return std::count_if(wanted.states.begin(), wanted.states.end(), [&](const auto& state) {

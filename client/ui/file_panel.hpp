@@ -1,5 +1,5 @@
 // FilePanel: the part of the tool window in which the clipboard is read from a file or written to one.
-// Of a file with a model it asks how the model becomes voxels. It reads nothing itself: it returns what
+// It asks how a model becomes voxels, if the file has one. It reads nothing itself: it returns what
 // the user wants. One thread.
 #pragma once
 #include <optional>

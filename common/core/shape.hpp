@@ -1,5 +1,5 @@
 // Shape: the form of a voxel that is not a cube, such as a slab, stairs, a pane or a plant. It is a
-// property of the material: voxels, runs, edits and digests know nothing of it. All values are
+// property of the material: voxels, runs, edits and digests do not depend on it. All values are
 // integers, so that tables, records and messages hold the same values.
 #pragma once
 #include <array>

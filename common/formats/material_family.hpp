@@ -1,5 +1,5 @@
 // Families: the materials of a table that are one block in different states, such as the stairs of oak.
-// Nothing records a family: materials belong to one if their names are equal up to the states.
+// Materials belong to one family if their names are equal up to the states; no table records it.
 #pragma once
 #include <functional>
 #include <map>

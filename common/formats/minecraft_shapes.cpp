@@ -232,7 +232,7 @@ Shape grindstone_block(const ShapeStates& states) {
                               shape_box(12, 7, 5, 14, 13, 11), shape_box(2, 0, 6, 4, 7, 10),
                               shape_box(12, 0, 6, 14, 7, 10)});
   if (face == "ceiling") out = flipped_over(out);
-  // What lay below then lies south.
+  // The lower side then lies south.
   if (face == "wall") out = turned(out, {Axis::x, Axis::z, Axis::y}, 4);
   return faced(out, states.get("facing"));
 }

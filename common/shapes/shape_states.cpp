@@ -51,7 +51,7 @@ Shape faced(const Shape& north, std::string_view facing) {
 Shape upended(const Shape& up, std::string_view facing) {
   if (facing == "up") return up;
   if (facing == "down") return turned(up, {Axis::x, Axis::y, Axis::z}, 2);
-  // What lay above then lies north.
+  // The upper side then lies north.
   return faced(turned(up, {Axis::x, Axis::z, Axis::y}, 4), facing);
 }
 

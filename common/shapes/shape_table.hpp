@@ -35,7 +35,7 @@ class ShapeTable {
   /// Requires !is_cube(material).
   const Entry& operator[](Material material) const { return shapes_[number(material) - 1U]; }
   /// Returns a number that no other table of this process has but copies of this one, and 0 for an
-  /// empty table. What was made of the shapes is kept by it.
+  /// empty table. Caches of what was made of the shapes use it as a key.
   std::uint64_t serial() const { return serial_; }
 
  private:

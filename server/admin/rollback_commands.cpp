@@ -209,7 +209,7 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
   if (preview.filter.cause == Cause::rights)
     return failure("rollback preview cause \"rights\": rights undo SEQ takes these records back");
   if (preview.filter.cause == Cause::materials)
-    return failure("rollback preview cause \"materials\": added materials stay");
+    return failure("rollback preview cause \"materials\": added materials and shapes stay");
   if (preview.filter.cause == Cause::library)
     return failure("rollback preview cause \"library\": builds remove takes a build away");
   // A preview without filters would select the whole world, most likely by mistake.

@@ -37,9 +37,9 @@ std::string progress_text(const RestoreJob::Progress& p, TimeUs elapsed_us) {
 /// Returns true if nobody but the author is connected. Then nobody else's edits need the time between
 /// two slices.
 bool is_alone(const WorldServer& world, AuthorId author) {
-  if (world.session_count() == 0) return true;
+  if (world.session_count() != 1) return world.session_count() == 0;
   const auto online = world.people().online();
-  return world.session_count() == 1 && !online.empty() && online.front().author == author;
+  return !online.empty() && online.front().author == author;
 }
 
 std::string name_of(Cause cause) { return cause == Cause::undo ? "undo" : "redo"; }

@@ -61,10 +61,23 @@ StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord
 }
 
 StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
-  if (std::none_of(records.begin(), records.end(), [](const EditRecord& record) {
-        return given_shapes_of(record.edit) != nullptr;
-      }))
-    return {};
+  bool has_shapes = false, are_for_old_rows = false;
+  std::optional<Material> first_new;
+  for (const EditRecord& record : records) {
+    if (const AddedMaterials* added = added_materials_of(record.edit); added && !first_new)
+      first_new = added->first;
+    const GivenShapes* given = given_shapes_of(record.edit);
+    if (given == nullptr) continue;
+    has_shapes = true;
+    for (const GivenShape& row : given->rows)
+      are_for_old_rows = are_for_old_rows || !first_new || row.material < *first_new;
+  }
+  if (!has_shapes) return {};
+  // Tiles of voxels that became shapes are no longer right. The next opening of the world removes the
+  // tiles of other rules, and 0 is the number of none.
+  if (are_for_old_rows) {
+    if (auto put = meta_table_.put("tile_rules", std::int64_t{0}); !put) return put;
+  }
   if (auto put = meta_table_.put(kShapesKey, std::int64_t{1}); !put) return put;
   return raise_format(kWorldFormatOfShapes);
 }

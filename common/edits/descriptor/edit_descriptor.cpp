@@ -362,11 +362,12 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 }
 
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
-  auto edit = decode_descriptor(in);
-  if (edit && !has_voxels(*edit))
+  // By the kind alone, because the rest of such an edit costs time to check.
+  if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
+      in[0] <= static_cast<std::uint8_t>(EditKind::shapes))
     return fail(ErrorCode::unknown_kind,
                 "a change of rights, materials, shapes or the library is no edit of voxels");
-  return edit;
+  return decode_descriptor(in);
 }
 
 }  // namespace runstone

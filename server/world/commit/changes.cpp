@@ -176,12 +176,6 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
     if (!rows[i].shape.is_cube())
       given.push_back({static_cast<Material>(first + i), rows[i].shape});
   }
-  if (!given.empty()) {
-    MaterialTable with_shapes = table;
-    const auto appended = with_shapes.append(first, added.rows);
-    RUNSTONE_ASSERT(appended.has_value());
-    if (const auto fits = with_shapes.give_shapes(given); !fits) return refusal(fits.error().what);
-  }
   const OperationId op = order_.next_own_operation(0);
   std::vector<EditOffer> offers = {
       {op, Cause::materials, now.steady_us, materials_edit(std::move(added)), 0}};

@@ -90,6 +90,38 @@ TEST_CASE("records of shapes that do not fit the table are refused", "[store][ma
   CHECK(store->append({}, std::vector{record_of_shapes(1, {{1, kSlab}})}).has_value());
 }
 
+TEST_CASE("shapes of materials that were there before end the tiles that were made before",
+          "[store][materials][shapes][sqlite]") {
+  TempPlace place;
+  if (place.is_postgres()) return;
+  const std::string world = place / "w", file = world + "/world.sqlite";
+  const auto rules = [&] {
+    return raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'");
+  };
+  Material next = 0;
+  {
+    auto store = *create_world(world, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    next = static_cast<Material>(store->meta().materials.size());
+    EditRecord added = record_of_shapes(1, {});
+    added.edit = materials_edit({next, {{"ramp", {9, 9, 9, 255}}}});
+    REQUIRE(
+        store->append({}, std::vector{added, record_of_shapes(2, {{next, kSlab}})}).has_value());
+  }
+  const std::string today = rules();
+  CHECK(today != "0");
+  {
+    auto store = *open_world(world, StoreAccess::read_write);
+    REQUIRE(store->raise_epoch().has_value());
+    EditRecord given = record_of_shapes(3, {{1, kPlant}});
+    given.version.epoch = 2;
+    REQUIRE(store->append({}, std::vector{given}).has_value());
+  }
+  CHECK(rules() == "0");
+  static_cast<void>(*open_world(world, StoreAccess::read_write));
+  CHECK(rules() == today);
+}
+
 TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
           "[store][materials][shapes]") {
   TempPlace place;
