@@ -118,7 +118,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("rollback preview cause rights") ==
         "rollback preview cause \"rights\": rights undo SEQ takes these records back");
   CHECK(mistake("rollback preview cause materials") ==
-        "rollback preview cause \"materials\": added materials stay");
+        "rollback preview cause \"materials\": added materials and shapes stay");
   CHECK(mistake("log since yesterday") ==
         "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, "
         "1w) or when (2026-11-21T23:57:42Z, in UTC)");
