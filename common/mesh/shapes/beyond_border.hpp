@@ -22,7 +22,7 @@ class BeyondBorder {
   Material at(Direction d, std::uint64_t place) {
     Side& side = sides_[static_cast<std::size_t>(d)];
     const std::uint64_t u = place >> side.u_shift & 127, v = place >> side.v_shift & 127;
-    if (!side.layer.empty()) return side.layer[u + side.width * v];
+    if (!side.layer.empty()) return side.layer[static_cast<std::size_t>(u + side.width * v)];
     return look_up(d, static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v));
   }
 

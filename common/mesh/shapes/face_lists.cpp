@@ -59,7 +59,7 @@ std::size_t FaceLists::join(Quad* first, const Quad* end, Direction d, Axis alon
   for (std::size_t i = 0; i < count; ++i) {
     const Quad quad = first[i];
     const std::uint64_t key = quad.bits & ~ignored;
-    std::size_t slot = key * 0x9e37'79b9'7f4a'7c15 >> (64 - bits);
+    auto slot = static_cast<std::size_t>(key * 0x9e37'79b9'7f4a'7c15 >> (64 - bits));
     while (table_[slot] != 0 && (first[table_[slot] - 1].bits & ~ignored) != key)
       slot = (slot + 1) & last_slot;
     if (table_[slot] != 0) {
