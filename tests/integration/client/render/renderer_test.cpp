@@ -577,6 +577,37 @@ TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour",
   CHECK(centre({}) == none);
 }
 
+TEST_CASE("a ghost far away has no pattern of lines", "[render]") {
+  const auto context = context_or_warn(&make_egl_surfaceless_context);
+  if (!context) return;
+  Renderer renderer(context->loader());
+  renderer.set_materials(red_glass_and_blue());
+  ChunkMesh placed;
+  add(placed.opaque, {0, 4, 0, 32, 32, Direction::pos_y, kRed});
+  const auto mesh = std::make_shared<const ChunkMesh>(placed);
+  // Returns the difference of the brightest and the darkest pixel of the middle of the ghost.
+  const auto contrast = [&](double height) {
+    FrameContents contents;
+    contents.ghosts.push_back({{0, {0, 0, 0}}, kEdge, mesh, nullptr});
+    Camera camera = above();
+    camera.x = camera.z = 16;
+    camera.y = height;
+    renderer.draw(camera, 160, 120, contents);
+    const Image image = renderer.read_image();
+    int low = 255, high = 0;
+    for (int x = -3; x <= 3; ++x) {
+      for (int y = -3; y <= 3; ++y) {
+        const int green = pixel(image, 0.5 + x / 160.0, 0.5 + y / 120.0)[1];
+        low = std::min(low, green);
+        high = std::max(high, green);
+      }
+    }
+    return high - low;
+  };
+  CHECK(contrast(8) > 20);  // lines between cells
+  CHECK(contrast(205) <= 4);
+}
+
 TEST_CASE("halving averages four pixels", "[render]") {
   const Image image{3, 2, {0, 0, 0, 100, 0, 0, 9, 9, 9, 0, 40, 0, 100, 0, 0, 9, 9, 9}};
   const Image half = halved(image);
