@@ -133,7 +133,7 @@ Result<void> MaterialTable::append(Material first, std::span<const MaterialRow> 
   return {};
 }
 
-Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
+Result<void> MaterialTable::check_given(std::span<const GivenShape> given) const {
   std::set<Material> materials;
   ShapeCheck shapes(shapes_);
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -146,6 +146,11 @@ Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
     if (const auto sound = shapes.check(shape, rows_[material].visibility); !sound)
       return fail(sound.error().code, sound.error().what, i);
   }
+  return {};
+}
+
+Result<void> MaterialTable::give_shapes(std::span<const GivenShape> given) {
+  if (auto sound = check_given(given); !sound) return sound;
   for (const auto& [material, shape] : given) {
     rows_[material].shape = shape;
     shapes_.insert(shape);

@@ -83,11 +83,13 @@ class MaterialTable {
   /// check_rows() does, and with broken_invariant if `first` is not size(); then nothing changes.
   Result<void> append(Material first, std::span<const MaterialRow> rows);
 
-  /// Gives rows a shape. Fails with bad_value or limit_exceeded if a material is unknown, empty, has
-  /// a shape or occurs twice, or if a shape is a cube or check_shape() fails for it; then nothing
-  /// changes, and for more than kTableShapesMax different shapes. The error's offset is the number
+  /// Fails if the shapes cannot be given together: with bad_value if a material is unknown, empty,
+  /// has a shape or occurs twice, if a shape is a cube or check_shape() fails for it, and with
+  /// limit_exceeded for more than kTableShapesMax different shapes. The error's offset is the number
   /// of the entry. Cost: O(entries log size), and that of check_shape() for each shape that the table
   /// lacks.
+  Result<void> check_given(std::span<const GivenShape> given) const;
+  /// Gives rows a shape. Fails as check_given() does; then nothing changes.
   Result<void> give_shapes(std::span<const GivenShape> given);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;

@@ -9,9 +9,8 @@
 namespace runstone {
 namespace {
 
-/// The bytes of a file, and the memory of its build.
+/// The bytes of a file.
 constexpr std::size_t kFileBytesMax = std::size_t{1} << 30;
-constexpr std::size_t kFileBuildBytesMax = std::size_t{2} << 30;
 
 class FileParts final : public ImportParts {
  public:
@@ -27,7 +26,7 @@ class FileParts final : public ImportParts {
   Result<std::optional<ImportPart>, std::string> read(std::size_t, ImportFaults&) override {
     BuildReading reading;
     reading.foreign.keep_all = keep_all_;
-    reading.foreign.bytes_max = kFileBuildBytesMax;
+    reading.foreign.bytes_max = kPartBytesMax;
     reading.foreign.colours_file = colours_;
     reading.model = model_;
     notices_.clear();

@@ -18,6 +18,9 @@
 
 namespace runstone {
 
+/// The memory of the build of a part, at most.
+inline constexpr std::size_t kPartBytesMax = std::size_t{2} << 30;
+
 struct ImportPart {
   FileBuild build;
   VoxelPos at;  // of its lowest corner

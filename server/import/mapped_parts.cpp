@@ -5,18 +5,11 @@
 #include "common/formats/mapped_build.hpp"
 
 namespace runstone {
-namespace {
-
-/// The memory of a mapped build, as that of the largest part.
-constexpr std::size_t kMappedBytesMax = std::size_t{2} << 30;
-
-}  // namespace
-
 Result<std::optional<ImportPart>, std::string> MappedParts::read(std::size_t index,
                                                                  ImportFaults& faults) {
   auto part = parts_->read(index, faults);
   if (!part || !*part) return part;
-  auto build = mapped_build((*part)->build, map_, applied_, kMappedBytesMax);
+  auto build = mapped_build((*part)->build, map_, applied_, kPartBytesMax);
   if (!build) return failure("the map of materials: " + std::string(build.error().what));
   (*part)->build = *std::move(build);
   return part;

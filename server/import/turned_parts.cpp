@@ -6,18 +6,11 @@
 #include "common/formats/file_build_turn.hpp"
 
 namespace runstone {
-namespace {
-
-/// The memory of a turned build, as that of the largest part.
-constexpr std::size_t kTurnedBytesMax = std::size_t{2} << 30;
-
-}  // namespace
-
 Result<std::optional<ImportPart>, std::string> TurnedParts::read(std::size_t index,
                                                                  ImportFaults& faults) {
   auto part = parts_->read(index, faults);
   if (!part || !*part) return part;
-  auto turned = turned_file_build((*part)->build, orientation_, kTurnedBytesMax);
+  auto turned = turned_file_build((*part)->build, orientation_, kPartBytesMax);
   if (!turned) return failure("the build cannot be turned: " + std::string(turned.error().what));
   (*part)->build = std::move(turned->build);
   stuck_ = turned->stuck;

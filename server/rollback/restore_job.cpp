@@ -85,6 +85,8 @@ std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
   RestoreWork work;
   work.selection = order_.selection;
   work.end = world.order().durable();
+  // A pass counts only if more of the log is durable than at the last one.
+  const bool is_new_pass = work.end > std::exchange(last_end_, work.end);
   // Only the durable log can be read. The plan of a chunk whose last edit is not in it would have
   // an old version.
   for (std::size_t looked = waiting_.size(); looked > 0 && work.items.size() < limits_.work_chunks;
@@ -92,7 +94,8 @@ std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
     const ChunkKey key = waiting_.front();
     waiting_.pop_front();
     const bool is_durable = world.order().chunks().version(key).seq <= work.end;
-    if (!is_durable && ++passes_[key] >= kPassesMax) collisions_[key] = kCollisionsMax;
+    if (!is_durable && is_new_pass && ++passes_[key] >= kPassesMax)
+      collisions_[key] = kCollisionsMax;
     if (is_durable || is_careful(key)) {
       work.items.push_back({key, is_careful(key)});
     } else {

@@ -127,6 +127,7 @@ class RestoreJob {
   std::deque<RestoredChunk> planned_;  // to be written
   std::set<ChunkKey> begun_;           // chunks with some edits written, but not all
   std::map<ChunkKey, int> collisions_, passes_;
+  Sequence last_end_ = 0;  // durable at the last next_work()
   ClientSequence next_seq_;
   Progress progress_;
 };

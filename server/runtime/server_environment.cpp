@@ -142,7 +142,7 @@ void ServerEnvironment::load_chunk(const ChunkKey& key) {
 }
 
 void ServerEnvironment::make_tile(TileRequest request) {
-  tiles_.make(std::move(request), world_->order().materials(),
+  tiles_.make(std::move(request), world_->order().materials(), world_->order().newest_materials(),
               [this](const ChunkKey& key, const std::vector<MadeTile>& made, TileMaking::End end) {
                 if (end == TileMaking::End::stopped)
                   return world_->ground().tiles().stopped(key, made, read_clocks());
@@ -158,7 +158,8 @@ void ServerEnvironment::make_past_tile(SessionId session, TileRequest request) {
       return world_->ground().tiles().past_stopped(session, request, made, read_clocks());
     world_->ground().tiles().past_made(session, request, made, read_clocks());
   };
-  tiles_.make(std::move(request), world_->order().materials(), then);
+  tiles_.make(std::move(request), world_->order().materials(), world_->order().newest_materials(),
+              then);
 }
 
 void ServerEnvironment::tiles_edited(std::span<const ChunkKey> chunks, Sequence seq) {

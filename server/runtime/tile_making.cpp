@@ -42,16 +42,13 @@ bool TileMaking::is_current(const CachedChunk& copy) {
   return source_.is_current(copy.key, copy.version, copy.digest);
 }
 
-void TileMaking::make(TileRequest request, const MaterialTable& materials, Then then) {
-  const auto shapes = static_cast<std::size_t>(
-      std::count_if(materials.rows().begin(), materials.rows().end(),
-                    [](const MaterialInfo& row) { return !row.shape.is_cube(); }));
-  if (!visibility_ || materials_ != materials.size() || shapes_ != shapes) {
+void TileMaking::make(TileRequest request, const MaterialTable& materials, Sequence materials_seq,
+                      Then then) {
+  if (!visibility_ || materials_seq_ != materials_seq) {
     visibility_ =
         std::make_shared<const TileVisibility>(VisibilityTable(half_filled_visibilities(materials)),
                                                VisibilityTable(cube_visibilities(materials)));
-    materials_ = materials.size();
-    shapes_ = shapes;
+    materials_seq_ = materials_seq;
   }
   flush_edits();
   asio::thread_pool& threads = request.at ? *past_thread_ : *threads_;

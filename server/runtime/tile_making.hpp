@@ -40,8 +40,9 @@ class TileMaking {
   TileMaking(WorldStrand& strand, ChunkSource& chunks, const Generator& generator,
              std::int32_t edge, PastChunks past_chunks);
 
-  /// Makes a tile. `materials` are those in force.
-  void make(TileRequest request, const MaterialTable& materials, Then then);
+  /// Makes a tile. `materials` are those in force, and `materials_seq` is the newest record that
+  /// changed them.
+  void make(TileRequest request, const MaterialTable& materials, Sequence materials_seq, Then then);
   /// Records that `seq` is the newest edit of these chunks. It does not wait for the other threads.
   void edited(std::span<const ChunkKey> chunks, Sequence seq);
   /// Returns the newest edit below a tile, or 0. It may wait for the other threads for a moment.
@@ -72,8 +73,7 @@ class TileMaking {
   TileSource source_;
   const PastChunks past_chunks_;
   std::shared_ptr<const TileVisibility> visibility_;
-  // The rows of visibility_, and how many of them have a shape. Both only rise.
-  std::size_t materials_ = 0, shapes_ = 0;
+  Sequence materials_seq_ = 0;  // that of visibility_
   Tiles unsaved_;
   bool is_saving_ = false;
   const std::unique_ptr<asio::thread_pool> threads_ = low_priority_threads(kThreads);

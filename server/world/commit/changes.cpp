@@ -17,6 +17,8 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
 
 /// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it was
 /// not.
+constexpr const char* kNoRoomInLog = "the log has no room now (log_queue_records)";
+
 std::string why_not_ordered(const ServerEditsResult& result) {
   switch (result.state) {
     case ServerEditsResult::State::closed:
@@ -69,8 +71,7 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player || offer.is_of_large_action);
     if (need == DiskNeed::space ? !order_.log_has_room() : !order_.log_has_queue_room()) {
-      out.reason = order_.is_disk_full() ? order_.disk_reason()
-                                         : "the log has no room now (log_queue_records)";
+      out.reason = order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
       break;
     }
     if (order_.is_memory_full()) {
@@ -149,6 +150,17 @@ std::optional<std::string> Changes::accept_kept_jump(const std::optional<std::st
          *why;
 }
 
+ServerEditsResult Changes::order_all(const std::vector<EditOffer>& offers, const Clocks& now) {
+  commits_.commit_all(LargeEdits::paced, now);
+  if (order_.accepts_edits() && !order_.log_has_room(offers.size())) {
+    ServerEditsResult out;
+    out.state = ServerEditsResult::State::busy;
+    out.reason = order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
+    return out;
+  }
+  return order_edits(offers, 0, now);
+}
+
 void Changes::offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
                            std::vector<EditOffer>& offers) {
   while (!rows.empty()) {
@@ -180,28 +192,22 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   std::vector<EditOffer> offers = {
       {op, Cause::materials, now.steady_us, materials_edit(std::move(added)), 0}};
   offer_shapes(given, now, offers);
-  const ServerEditsResult ordered = order_edits(offers, 0, now);
-  if (ordered.state == ServerEditsResult::State::ordered)
-    return AddedAt{order_.newest_materials(), first};
-  if (ordered.count == 0) return refusal(why_not_ordered(ordered));
-  return refusal("the materials were added, but not all of their shapes: " +
-                 why_not_ordered(ordered));
+  const ServerEditsResult ordered = order_all(offers, now);
+  if (ordered.state != ServerEditsResult::State::ordered) return refusal(why_not_ordered(ordered));
+  return AddedAt{order_.newest_materials(), first};
 }
 
 Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
                                                    const Clocks& now) {
   RUNSTONE_ASSERT(!rows.empty());
   std::ranges::sort(rows, {}, &GivenShape::material);
-  MaterialTable with_shapes = order_.materials();
-  if (const auto fits = with_shapes.give_shapes(rows); !fits)
+  if (const auto fits = order_.materials().check_given(rows); !fits)
     return failure(std::string(fits.error().what));
   std::vector<EditOffer> offers;
   offer_shapes(rows, now, offers);
-  const ServerEditsResult ordered = order_edits(offers, 0, now);
-  if (ordered.state == ServerEditsResult::State::ordered) return order_.newest_materials();
-  const std::string why = why_not_ordered(ordered);
-  if (ordered.count == 0) return failure(why);
-  return failure("a part of the shapes was given; for the others " + why);
+  const ServerEditsResult ordered = order_all(offers, now);
+  if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
+  return order_.newest_materials();
 }
 
 Result<Sequence, std::string> Changes::change_library(const LibraryChange& change, AuthorId author,

@@ -71,16 +71,14 @@ class Changes {
   std::optional<std::string> accept_kept_jump(const std::optional<std::string>& refusal,
                                               const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log, and as records that
-  /// give them their shapes if they have some. All or none, but the log may have no more room behind
-  /// the first record: then the refusal says that the materials are there as cubes. Refuses bad rows
+  /// give them their shapes if they have some: all or none. Refuses bad rows
   /// (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them, and while the log
   /// takes no edits.
   Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,
                                                   const Clocks& now);
-  /// Orders shapes for materials of the world by the console, as records of the log: all or none,
-  /// but the log may have no more room behind the first record. Requires at least one row. Returns
-  /// the last record, or why it was refused, as a sentence: bad rows (MaterialTable::give_shapes())
-  /// and while the log takes no edits.
+  /// Orders shapes for materials of the world by the console, as records of the log: all or none.
+  /// Requires at least one row. Returns the last record, or why it was refused, as a sentence: bad
+  /// rows (MaterialTable::check_given()), and while the log takes no edits or lacks room for all.
   Result<Sequence, std::string> give_shapes(std::vector<GivenShape> rows, const Clocks& now);
 
   /// Orders the addition of a build by an author (0: the console), whose file is in the store. Returns
@@ -97,6 +95,8 @@ class Changes {
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);
   /// Appends the offers that give shapes. Requires rows that ascend by material.
+  /// Orders edits of the console, but none of them if the log lacks room for all.
+  ServerEditsResult order_all(const std::vector<EditOffer>& offers, const Clocks& now);
   void offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
                     std::vector<EditOffer>& offers);
   enum class DiskNeed {

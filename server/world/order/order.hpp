@@ -94,7 +94,9 @@ class Order {
 
   // The log.
   /// Returns true if the log takes another edit, besides those that are queued.
-  bool log_has_room() const { return environment_.log_has_room(authority_.queue().size() + 1); }
+  bool log_has_room(std::size_t records = 1) const {
+    return environment_.log_has_room(authority_.queue().size() + records);
+  }
   /// Returns true if a record of power may be ordered, such as a ban: also while the disk is full.
   bool log_has_queue_room() const {
     return environment_.log_has_queue_room(authority_.queue().size() + 1);

@@ -118,40 +118,61 @@ void Receipts::send_epoch_to_all() {
 }
 
 void Receipts::send_materials(Session& session) {
-  if (session.is_closed || session.is_relayed) return;
-  const MaterialTable& table = order_.materials();
-  std::size_t& known = sent_[session.id].materials;
-  if (known != table.size() && !session.has(kFeatureMaterials)) {
-    return sessions_.close(session, GoodbyeReason::closing,
-                           "the world has new materials: connect again");
-  }
-  while (known < table.size()) {
-    const MaterialsAdded message = rows_from(table, known);
-    if (!sessions_.send_or_close(session, message)) return;
-    known += message.rows.size();
-  }
-  send_shapes(session);
-}
-
-void Receipts::send_shapes(Session& session) {
-  std::size_t& known = sent_[session.id].shaped;
-  const auto shaped = order_.shaped().subspan(known);
-  if (shaped.empty() || !session.has(kFeatureShapes)) return;
-  std::vector<GivenShape> rows;
-  rows.reserve(shaped.size());
-  for (const Material material : shaped)
-    rows.push_back({material, order_.materials()[material].shape});
-  std::ranges::sort(rows, {}, &GivenShape::material);
-  for (std::span<const GivenShape> left(rows); !left.empty();) {
-    const ShapesGiven message{first_of(left)};
-    if (!sessions_.send_or_close(session, message)) return;
-    left = left.subspan(message.given.rows.size());
-  }
-  known = order_.shaped().size();
+  News news;
+  send_materials(session, news);
 }
 
 void Receipts::send_materials_to_all() {
-  for (Session* session : sessions_.open()) send_materials(*session);
+  News news;
+  for (Session* session : sessions_.open()) send_materials(*session, news);
+}
+
+void Receipts::send_materials(Session& session, News& news) {
+  if (session.is_closed || session.is_relayed) return;
+  Sent& sent = sent_[session.id];
+  if (sent.materials != order_.materials().size()) {
+    if (!session.has(kFeatureMaterials)) {
+      return sessions_.close(session, GoodbyeReason::closing,
+                             "the world has new materials: connect again");
+    }
+    const auto [rows, is_new] = news.rows.try_emplace(sent.materials);
+    if (is_new) rows->second = messages_of_rows(sent.materials);
+    for (const EncodedMessage& message : rows->second) {
+      if (!sessions_.send_or_close(session, message)) return;
+    }
+    sent.materials = order_.materials().size();
+  }
+  if (sent.shaped == order_.shaped().size() || !session.has(kFeatureShapes)) return;
+  const auto [shapes, is_new] = news.shapes.try_emplace(sent.shaped);
+  if (is_new) shapes->second = messages_of_shapes(sent.shaped);
+  for (const EncodedMessage& message : shapes->second) {
+    if (!sessions_.send_or_close(session, message)) return;
+  }
+  sent.shaped = order_.shaped().size();
+}
+
+std::vector<EncodedMessage> Receipts::messages_of_rows(std::size_t known) const {
+  std::vector<EncodedMessage> out;
+  while (known < order_.materials().size()) {
+    const MaterialsAdded message = rows_from(order_.materials(), known);
+    out.push_back(encode_message(message));
+    known += message.rows.size();
+  }
+  return out;
+}
+
+std::vector<EncodedMessage> Receipts::messages_of_shapes(std::size_t known) const {
+  std::vector<GivenShape> rows;
+  for (const Material material : order_.shaped().subspan(known))
+    rows.push_back({material, order_.materials()[material].shape});
+  std::ranges::sort(rows, {}, &GivenShape::material);
+  std::vector<EncodedMessage> out;
+  for (std::span<const GivenShape> left(rows); !left.empty();) {
+    const ShapesGiven message{first_of(left)};
+    out.push_back(encode_message(message));
+    left = left.subspan(message.given.rows.size());
+  }
+  return out;
 }
 
 }  // namespace runstone

@@ -73,8 +73,15 @@ class Receipts {
   /// Returns true if the session lacks the watermark and may get it. While rejects are pending it
   /// may not, because they precede it.
   bool lacks_durable(const Session& session, const Sent& sent) const;
-  /// Sends the shapes that an open session lacks. Closes one whose queue is full.
-  void send_shapes(Session& session);
+  /// The messages about materials, by what a session has. They are made once for all sessions.
+  struct News {
+    std::map<std::size_t, std::vector<EncodedMessage>> rows, shapes;
+  };
+  void send_materials(Session& session, News& news);
+  /// Returns the rows from `known` on, without shapes.
+  std::vector<EncodedMessage> messages_of_rows(std::size_t known) const;
+  /// Returns the shapes of Order::shaped() from `known` on.
+  std::vector<EncodedMessage> messages_of_shapes(std::size_t known) const;
   /// Sends the watermark to sessions, in one round. If the queue of a session is full, a later call
   /// sends it. Requires ascending numbers.
   void send_durable(std::span<const SessionId> sessions);

@@ -109,8 +109,8 @@ bool Sessions::send(const Session& session, const EncodedMessage& message) {
   return session.is_closed || output_.send(session.id, message);
 }
 
-bool Sessions::send_or_close(Session& session, const Message& message) {
-  if (send(session, encode_message(message))) return true;
+bool Sessions::send_or_close(Session& session, const EncodedMessage& message) {
+  if (send(session, message)) return true;
   ++counters_.queue_full;
   close_slow(session);
   return false;

@@ -63,7 +63,10 @@ class Sessions {
   bool send(const Session& session, const EncodedMessage& message);
   /// Sends a message that the session must not miss. Closes the session if its queue is full.
   /// Returns true if the message is queued.
-  bool send_or_close(Session& session, const Message& message);
+  bool send_or_close(Session& session, const EncodedMessage& message);
+  bool send_or_close(Session& session, const Message& message) {
+    return send_or_close(session, encode_message(message));
+  }
   /// Sends a message that a later one of its kind replaces. Returns false, and only counts, if the
   /// session's queue is full.
   bool send_or_skip(const Session& session, const EncodedMessage& message);

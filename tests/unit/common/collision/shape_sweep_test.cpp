@@ -122,7 +122,7 @@ TEST_CASE("a body stops before the first cube or box on its way, and nowhere els
     const auto hit = sweep(room, obstacles(), body, by);
     const double end = hit ? hit->fraction : 1;
     CAPTURE(round, body.min.x, body.min.y, body.min.z, by.x, by.y, by.z, end);
-    // What the body overlaps at the start does not stop it.
+    // Boxes that the body overlaps at the start do not stop it.
     const auto is_left_out = [&](const Ends& e) {
       return depth_of(moved(body, by, 0), e) > kTouchDepth;
     };

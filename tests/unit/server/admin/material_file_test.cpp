@@ -6,30 +6,12 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "server/admin/command_table.hpp"
-#include "tests/unit/server/admin/command_bench.hpp"
+#include "tests/unit/server/admin/material_command_bench.hpp"
 
 namespace runstone::test {
 namespace {
 
-WorldConfig config_of_sample() {
-  WorldConfig c = config();
-  c.materials = sample_meta().materials;
-  return c;
-}
-
-struct AddBench : CommandBench {
-  AddBench() : CommandBench(config_of_sample()) {}
-
-  CommandAnswer give(const CommandCaller& caller, const std::string& line) {
-    answers.clear();
-    give_command({services, caller, bench.now(), reply()}, line);
-    for (int i = 0; i < 2; ++i) {
-      run_all();
-      services.tick(bench.now());
-    }
-    return answer();
-  }
+struct AddBench : MaterialCommandBench {
   /// Writes a file and adds it at the console.
   CommandAnswer add(const std::string& toml) {
     std::ofstream(file, std::ios::binary) << toml;
@@ -37,13 +19,6 @@ struct AddBench : CommandBench {
   }
 
   const std::string file = folder / "my wool.toml";
-  CommandServices services{bench.server,
-                           service,
-                           *this,
-                           placing,
-                           folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
 };
 
 constexpr const char* kTwoRows =

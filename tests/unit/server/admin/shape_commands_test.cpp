@@ -3,46 +3,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/admin/command_table.hpp"
-#include "tests/unit/server/admin/command_bench.hpp"
+#include "tests/unit/server/admin/material_command_bench.hpp"
 
 namespace runstone::test {
-namespace {
-
-WorldConfig config_with_stairs() {
-  WorldConfig c = config();
-  c.materials = sample_meta().materials;
-  return c;
-}
-
-struct ShapeCommandBench : CommandBench {
-  ShapeCommandBench() : CommandBench(config_with_stairs()) {}
-
-  CommandAnswer give_line(const CommandCaller& caller, const std::string& line) {
-    answers.clear();
-    give_command({services, caller, bench.now(), reply()}, line);
-    for (int i = 0; i < 2; ++i) {
-      run_all();
-      services.tick(bench.now());
-    }
-    return answer();
-  }
-  const MaterialTable& table() const { return bench.server.order().materials(); }
-
-  CommandServices services{bench.server,
-                           service,
-                           *this,
-                           placing,
-                           folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
-};
-
-}  // namespace
 
 TEST_CASE("materials shapes gives what names say, once", "[admin][materials][shapes]") {
-  ShapeCommandBench bench;
-  CHECK(bench.give_line({}, "materials shapes").text ==
+  MaterialCommandBench bench;
+  CHECK(bench.give({}, "materials shapes").text ==
         "every material has the shape that its name says: nothing is changed");
   const auto first = static_cast<Material>(bench.table().size());
   std::vector<MaterialRow> rows;
@@ -51,13 +18,13 @@ TEST_CASE("materials shapes gives what names say, once", "[admin][materials][sha
     rows.push_back({name, {1, 2, 3, 255}, Visibility::opaque});
   rows.push_back({"minecraft:poppy", {0, 0, 0, 0}, Visibility::empty});
   REQUIRE(bench.bench.server.changes().add_materials(rows, bench.bench.now()).has_value());
-  const CommandAnswer preview = bench.give_line({}, "materials shapes preview");
+  const CommandAnswer preview = bench.give({}, "materials shapes preview");
   CHECK(preview.is_ok);
   CHECK(preview.text ==
         "3 materials would get a shape, for ever: minecraft:oak_stairs[facing=east], "
         "minecraft:oak_slab, stairs:slab_wood");
   CHECK(bench.table()[first].shape.is_cube());
-  const CommandAnswer given = bench.give_line({}, "materials shapes");
+  const CommandAnswer given = bench.give({}, "materials shapes");
   CHECK(given.is_ok);
   CHECK(given.text ==
         "3 materials got a shape (record 2): minecraft:oak_stairs[facing=east], "
@@ -65,19 +32,19 @@ TEST_CASE("materials shapes gives what names say, once", "[admin][materials][sha
   CHECK_FALSE(bench.table()[first].shape.is_cube());
   CHECK(bench.table()[first + 1].shape.is_cube());
   CHECK(bench.table()[first + 4].shape.is_cube());
-  CHECK(bench.give_line({}, "materials shapes").text.starts_with("every material has"));
-  CHECK(bench.give_line({}, "log cause materials")
+  CHECK(bench.give({}, "materials shapes").text.starts_with("every material has"));
+  CHECK(bench.give({}, "log cause materials")
             .text.find("materials shapes of minecraft:oak_stairs[facing=east], ") !=
         std::string::npos);
 }
 
 TEST_CASE("materials shapes is for the console and control, and takes one word",
           "[admin][materials][shapes]") {
-  ShapeCommandBench bench;
-  CHECK(bench.give_line({}, "materials shapes now").text ==
+  MaterialCommandBench bench;
+  CHECK(bench.give({}, "materials shapes now").text ==
         "materials shapes \"now\": preview comes after it, or nothing");
   const PublicKey key = key_pair_of(seed_of(3)).public_key;
-  CHECK_FALSE(bench.give_line({1, {key, true}}, "materials shapes").is_ok);
+  CHECK_FALSE(bench.give({1, {key, true}}, "materials shapes").is_ok);
 }
 
 }  // namespace runstone::test

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
-#include "tests/unit/server/world/world_bench.hpp"
+#include "tests/unit/server/world/commit/feature_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -19,8 +19,8 @@ const std::vector<MaterialRow> kLimeAndIce = {
      MaterialLook{1, 2, 3, 4, MaterialPattern::tiles}}};
 constexpr Material kLime = 5, kIce = 6;  // the bench has air and four others
 
-struct MaterialBench : WorldBench {
-  using WorldBench::WorldBench;
+struct MaterialBench : FeatureBench {
+  using FeatureBench::FeatureBench;
 
   AddedAt add(const std::vector<MaterialRow>& rows) {
     const auto added = server.changes().add_materials(rows, now());
@@ -42,19 +42,6 @@ struct MaterialBench : WorldBench {
   }
   std::vector<Reject> rejects(SessionId session) const {
     return environment.messages<Reject>(session, kEdge);
-  }
-  /// Sends hello with these features and returns the rest of the handshake.
-  std::pair<Hello, Welcome> greet(SessionId session, std::uint8_t who, std::uint64_t features) {
-    server.connected(session, now());
-    Hello h = hello(who);
-    h.features = features;
-    server.received(session, h, now());
-    return {h, environment.messages<Welcome>(session, 0).at(0)};
-  }
-  void join_with(SessionId session, std::uint8_t who, std::uint64_t features = kFeatureMaterials) {
-    const auto [h, welcome] = greet(session, who, features);
-    server.received(session, client_auth(who, h, welcome), now());
-    REQUIRE(environment.messages<SessionAccepted>(session, kEdge).size() == 1);
   }
   /// Returns the place of the session's first message of a kind among all messages that were sent.
   template <class Kind>

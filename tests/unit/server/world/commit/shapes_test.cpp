@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/world/commit/changes.hpp"
-#include "tests/unit/server/world/world_bench.hpp"
+#include "tests/unit/server/world/commit/feature_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -20,23 +20,9 @@ MaterialRow row_with(const char* name, const Shape& shape) {
   return row;
 }
 
-struct ShapeBench : WorldBench {
-  using WorldBench::WorldBench;
+struct ShapeBench : FeatureBench {
+  using FeatureBench::FeatureBench;
 
-  /// Joins, and returns the welcome.
-  Welcome join_with(SessionId session, std::uint8_t who, std::uint64_t features) {
-    const auto [h, welcome] = greet(session, who, features);
-    server.received(session, client_auth(who, h, welcome), now());
-    REQUIRE(environment.messages<SessionAccepted>(session, kEdge).size() == 1);
-    return welcome;
-  }
-  std::pair<Hello, Welcome> greet(SessionId session, std::uint8_t who, std::uint64_t features) {
-    server.connected(session, now());
-    Hello h = hello(who);
-    h.features = features;
-    server.received(session, h, now());
-    return {h, environment.messages<Welcome>(session, 0).at(0)};
-  }
   std::vector<ShapesGiven> given_to(SessionId session) const {
     return environment.messages<ShapesGiven>(session, kEdge);
   }
