@@ -14,6 +14,8 @@ namespace runstone {
 
 struct ForeignReading {
   bool keep_all = true;                    // as that of Format::material_of
+  // True: blocks whose shape fills less than half of its voxel are empty (visibility_as_cube()).
+  bool only_cubes = false;
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces
   std::string name;                        // of the build, if the file has none; see BuildInfo
   // For a height map: the bytes of a PNG with the colours of its columns (height_map.hpp), or none.

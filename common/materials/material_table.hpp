@@ -102,9 +102,8 @@ class MaterialTable {
 std::vector<Visibility> visibilities(const MaterialTable& table);
 /// Returns the visibilities for the mesh of the cubes: materials with a shape are empty.
 std::vector<Visibility> cube_visibilities(const MaterialTable& table);
-/// Returns the visibilities for coarse levels of detail: a shape that fills less than half of its
-/// voxel is empty, and any other counts as a cube. Cost: O(materials), and ShapeFaces for each
-/// different shape.
+/// Returns visibility_as_cube() of each material, for coarse levels of detail and maps. Cost:
+/// O(boxes of the materials).
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
 
 /// Returns the shape of each material by id, as ShapeTable takes them.
