@@ -39,6 +39,16 @@ TEST_CASE("nodes of Luanti turn with their facedir", "[formats][shapes]") {
   CHECK(boxes_by_name("stairs:stair_inner_stone").size() == 3);
 }
 
+TEST_CASE("slabs and stairs whose form stands at the end of their name", "[formats][shapes]") {
+  CHECK(boxes_by_name("mcl_stairs:slab_stone") == NodeBoxes{kBottom});
+  CHECK(boxes_by_name("mcl_stairs:slab_stone_top") == NodeBoxes{kTop});
+  CHECK_FALSE(shape_of_material_name("mcl_stairs:slab_stone_double"));
+  CHECK(boxes_by_name("mcl_stairs:stair_wood_inner[param2=1]") ==
+        boxes_by_name("stairs:stair_inner_wood[param2=1]"));
+  CHECK(boxes_by_name("mcl_stairs:stair_wood_outer[param2=1]") ==
+        boxes_by_name("stairs:stair_outer_wood[param2=1]"));
+}
+
 TEST_CASE("other nodes of Luanti have their shapes", "[formats][shapes]") {
   CHECK(boxes_by_name("default:ladder_wood[param2=2]") == NodeBoxes{{{15, 0, 0}, {16, 16, 16}}});
   CHECK(boxes_by_name("default:ladder_wood[param2=3]") == NodeBoxes{{{0, 0, 0}, {1, 16, 16}}});
@@ -50,6 +60,10 @@ TEST_CASE("other nodes of Luanti have their shapes", "[formats][shapes]") {
   CHECK(boxes_by_name("default:fence_wood") == NodeBoxes{{{6, 0, 6}, {10, 16, 10}}});
   CHECK(boxes_by_name("doors:door_wood_a[param2=2]") == NodeBoxes{{{0, 0, 14}, {16, 16, 16}}});
   CHECK(boxes_by_name("doors:trapdoor") == NodeBoxes{{{0, 0, 0}, {16, 2, 16}}});
+  CHECK(boxes_by_name("xpanes:door_steel_bar_a[param2=2]") ==
+        boxes_by_name("doors:door_wood_a[param2=2]"));
+  CHECK(boxes_by_name("xpanes:trapdoor_steel_bar") == boxes_by_name("doors:trapdoor"));
+  CHECK(boxes_by_name("xpanes:trapdoor_steel_bar_open") == boxes_by_name("doors:trapdoor_open"));
   for (const char* name :
        {"flowers:rose", "default:grass_3", "default:papyrus", "farming:wheat_8"}) {
     CAPTURE(name);
