@@ -179,6 +179,10 @@ Shape turned_to_wall(const Shape& shape, unsigned wall) {
 
 std::string_view node_of_name(std::string_view name) { return name.substr(0, name.find('[')); }
 
+bool has_param2(std::string_view name) {
+  return !ShapeStates(states_in_name(name)).get("param2").empty();
+}
+
 unsigned param2_of_name(std::string_view name) {
   return ShapeStates(states_in_name(name)).number("param2", 0);
 }
@@ -210,6 +214,8 @@ std::optional<Shape> shape_of_material_name(std::string_view name) {
       if (out.is_cube()) return std::nullopt;
       return out;
     }
+    // No block of Minecraft has a param2. The name of its node has the shape.
+    if (has_param2(name)) name = node_of_name(name);
   }
   const auto block = block_of_minecraft_material(name);
   return block ? shape_of_minecraft_block(*block) : std::nullopt;

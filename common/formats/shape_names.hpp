@@ -16,8 +16,10 @@ namespace runstone {
 ///   - those of blocks of Minecraft (block_of_minecraft_material()), such as
 ///     "minecraft:oak_stairs[facing=east]";
 ///   - those of nodes of Luanti, such as "stairs:slab_wood" and "stairs:stair_wood[param2=3]". The
-///     param2 is a facedir or a direction to a wall, as the kind of node has it; none is 0. Fences and
-///     walls, which Luanti joins to their neighbours, are posts; panes that are not flat are crosses.
+///     param2 is a facedir or a direction to a wall, as the kind of node has it. A node without a
+///     param2 has the param2 0. Fences and walls, which Luanti joins to their neighbours, are posts;
+///     panes that are not flat are crosses. A node that only a rule of Minecraft knows, such as
+///     "mcl_core:ladder[param2=3]", has the shape of its name, whatever its param2.
 /// Names without a namespace have no shape: a table gives them one by its own keys. Cost: O(rules +
 /// bytes).
 std::optional<Shape> shape_of_material_name(std::string_view name);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/formats/luanti_block.hpp"
 #include "common/shapes/shape_faces.hpp"
 
 namespace runstone::test {
@@ -86,6 +87,19 @@ TEST_CASE("names of Minecraft's materials have the shape of their block", "[form
   CHECK(boxes_by_name("mod:fir_slab") == NodeBoxes{kBottom});
   CHECK_FALSE(shape_of_material_name("minecraft:oak_slab[type=double]"));
   CHECK_FALSE(shape_of_material_name("minecraft:oak_slab[type=bottom]"));  // not its name
+}
+
+TEST_CASE("an imported node has the shape that its name in the world says", "[formats][shapes]") {
+  for (const char* node :
+       {"mcl_core:ladder", "mcl_torches:torch", "mcl_chests:chest", "stairs:stair_wood",
+        "default:torch_wall", "mcl_fences:oak_fence", "default:stone", "mcl_core:stone"}) {
+    for (const char* states : {"", "param2=3", "param2=255"}) {
+      const MaterialInfo info = material_of_luanti_world_node({node, states}, true);
+      CAPTURE(info.name);
+      CHECK(info.shape == shape_of_material_name(info.name).value_or(Shape{}));
+    }
+  }
+  CHECK(shape_of_material_name("mcl_core:ladder[param2=3]"));
 }
 
 TEST_CASE("every param2 gives a shape that a material may have", "[formats][shapes]") {
