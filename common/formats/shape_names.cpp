@@ -187,6 +187,24 @@ unsigned param2_of_name(std::string_view name) {
   return ShapeStates(states_in_name(name)).number("param2", 0);
 }
 
+/// Returns the name of a node with its states, but with this param2 as the last of them. A param2 of 0
+/// is no state.
+std::string with_param2(std::string_view name, unsigned param2) {
+  std::string states;
+  const auto append = [&](std::string_view one) {
+    states.append(states.empty() ? "" : ",").append(one);
+  };
+  for (std::string_view left = states_in_name(name); !left.empty();) {
+    const std::size_t end = std::min(left.find(','), left.size());
+    const std::string_view one = left.substr(0, end);
+    if (!one.starts_with("param2=")) append(one);
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  if (param2 != 0) append("param2=" + std::to_string(param2));
+  std::string out(node_of_name(name));
+  return states.empty() ? out : out + '[' + states + ']';
+}
+
 const NodeShapeRule* node_rule(std::string_view name) {
   const std::string_view node = node_of_name(name);
   const auto* rule =
@@ -244,10 +262,7 @@ std::optional<std::string> turned_node_name(std::string_view name, std::array<Ax
                                                          : 0;
   for (unsigned turn = 0; turn < count; ++turn) {
     if (!look_alike(shape_of_node(*rule, turn), wanted)) continue;
-    const unsigned param2 = before / bits * bits + turn;
-    std::string out(node_of_name(name));
-    if (param2 != 0) out += "[param2=" + std::to_string(param2) + "]";
-    return out;
+    return with_param2(name, before / bits * bits + turn);
   }
   return std::string();
 }

@@ -29,7 +29,7 @@ std::optional<Shape> shape_of_material_name(std::string_view name);
 std::string node_material_name(std::string_view node, std::string_view states);
 
 /// Returns the name of the node of Luanti that is `name` turned (common/shapes/turned_shape.hpp): it
-/// has another param2. Returns nullopt if no rule names the node, and an empty text if no param2 makes
+/// has another param2, which is the last of its states, and keeps the other states. Returns nullopt if no rule names the node, and an empty text if no param2 makes
 /// it. Cost: O(rules + bytes), and 24 shapes.
 std::optional<std::string> turned_node_name(std::string_view name, std::array<Axis, 3> along,
                                             std::uint8_t flips);

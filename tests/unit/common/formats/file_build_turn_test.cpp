@@ -100,6 +100,18 @@ TEST_CASE("a turned node of Luanti has another param2 in its name and states", "
   CHECK(now == node("param2=1"));
 }
 
+TEST_CASE("a turned node keeps its other states", "[formats][turn]") {
+  const auto node = [](const std::string& name, const std::string& states) {
+    BuildMaterial out = file_material(name, states, {9, 9, 9, 255});
+    out.row.shape = shape_of_material_name(name).value_or(Shape{});
+    return out;
+  };
+  CHECK(left(node("stairs:stair_wood[a=b,param2=1]", "a=b,param2=1")) ==
+        "stairs:stair_wood[a=b,param2=2]|a=b,param2=2");
+  CHECK(left(node("stairs:stair_wood", "a=b")) == "stairs:stair_wood[a=b,param2=1]|a=b,param2=1");
+  CHECK(left(node("stairs:stair_wood[a=b,param2=3]", "")) == "stairs:stair_wood[a=b]|");
+}
+
 TEST_CASE("a shape of its own is turned with its material", "[formats][turn]") {
   BuildMaterial bench = file_material("bench", "", {9, 9, 9, 255});
   bench.row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 4}}, {{0, 8, 0}, {4, 16, 4}}}};
