@@ -13,7 +13,7 @@
 namespace runstone {
 
 struct ForeignReading {
-  bool keep_all = true;                    // as that of Format::material_of
+  bool keep_all = true;  // as that of Format::material_of
   // True: blocks whose shape fills less than half of its voxel are empty (visibility_as_cube()).
   bool only_cubes = false;
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces

@@ -129,9 +129,10 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_option("--memory", options.memory_mib, "MiB that the build may take; default 2048")
       ->check(CLI::Range(1, 1 << 20));
   app.add_flag("--list", options.lists, "list the materials, as the rows of a map name them");
-  app.add_flag("--only-cubes", options.only_cubes,
-               "leave out blocks that are no whole cubes, such as plants, torches and wires, but not "
-               "shapes that fill at least half of their voxel, such as stairs; an .rsb stays as it is");
+  app.add_flag(
+      "--only-cubes", options.only_cubes,
+      "leave out blocks that are no whole cubes, such as plants, torches and wires, but not "
+      "shapes that fill at least half of their voxel, such as stairs; an .rsb stays as it is");
   add_model_options(app, options.read_model);
   app.add_flag("--close-t-junctions", options.writing.model.closes_t_junctions,
                "models: let each edge of a triangle end where an edge of its neighbour ends");

@@ -176,9 +176,10 @@ TEST_CASE("a param2 in the name of a material is that of its node", "[formats]")
                  [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
   const auto file = written(write_mts, build);
   REQUIRE(file);
-  CHECK(mts_names(*file) == std::vector<std::string>{"stairs:stair_wood[param2=3]|param2=3",
-                                                     "stairs:stair_wood[param2=1]|param2=1",
-                                                     "stairs:stair_wood[a=b,param2=2]|a=b,param2=2"});
+  CHECK(mts_names(*file) ==
+        std::vector<std::string>{"stairs:stair_wood[param2=3]|param2=3",
+                                 "stairs:stair_wood[param2=1]|param2=1",
+                                 "stairs:stair_wood[a=b,param2=2]|a=b,param2=2"});
 }
 
 }  // namespace runstone::test
