@@ -7,6 +7,7 @@
 #include "common/core/material_row.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_shapes.hpp"
+#include "common/formats/minecraft_states.hpp"
 #include "common/shapes/shape_kinds.hpp"
 #include "common/shapes/shape_states.hpp"
 #include "common/shapes/turned_shape.hpp"
@@ -18,8 +19,7 @@ namespace {
 enum class NodeTurn : std::uint8_t { none, facedir, wall };
 
 struct NodeShapeRule {
-  // Names, separated by blanks. '*' stands for any text.
-  std::string_view names;
+  std::string_view names;  // as rule_names() reads them
   NodeTurn turn = NodeTurn::none;
   // As the node lies with a facedir of 0, whose front is +z, or with its wall at +z. A node without
   // boxes and without a plant is a cube.
@@ -43,8 +43,8 @@ constexpr NodeShapeRule kNodeShapes[] = {
     {"*:snowblock *:slab_*_double"},
     boxed("*:slab_*_top", NodeTurn::facedir, shape_box(0, 8, 0, 16, 16, 16)),
     boxed("*:slab_*", NodeTurn::facedir, kLowHalf),
-    boxed("*:stair_inner_* *:stair_*_inner", NodeTurn::facedir, kLowHalf, shape_box(0, 8, 8, 16, 16, 16),
-          shape_box(0, 8, 0, 8, 16, 8)),
+    boxed("*:stair_inner_* *:stair_*_inner", NodeTurn::facedir, kLowHalf,
+          shape_box(0, 8, 8, 16, 16, 16), shape_box(0, 8, 0, 8, 16, 8)),
     boxed("*:stair_outer_* *:stair_*_outer", NodeTurn::facedir, kLowHalf,
           shape_box(0, 8, 8, 8, 16, 16)),
     boxed("*:stair_*", NodeTurn::facedir, kLowHalf, shape_box(0, 8, 8, 16, 16, 16)),
@@ -66,7 +66,8 @@ constexpr NodeShapeRule kNodeShapes[] = {
     boxed("doors:gate_*_closed", NodeTurn::facedir, shape_box(0, 4, 7, 2, 16, 9),
           shape_box(14, 4, 7, 16, 16, 9), shape_box(2, 6, 7, 14, 8, 9),
           shape_box(2, 12, 7, 14, 14, 9)),
-    boxed("doors:trapdoor*_open xpanes:trapdoor*_open", NodeTurn::facedir, shape_box(0, 0, 14, 16, 16, 16)),
+    boxed("doors:trapdoor*_open xpanes:trapdoor*_open", NodeTurn::facedir,
+          shape_box(0, 0, 14, 16, 16, 16)),
     boxed("doors:trapdoor* xpanes:trapdoor*", NodeTurn::facedir, shape_box(0, 0, 0, 16, 2, 16)),
     boxed("doors:*_a doors:*_b doors:*_c doors:*_d xpanes:door_*", NodeTurn::facedir,
           shape_box(0, 0, 0, 16, 16, 2)),
@@ -96,32 +97,6 @@ constexpr NodeShapeRule kNodeShapes[] = {
     // These are whole cubes, unlike blocks of Minecraft with the same name.
     {"default:*"},
 };
-
-/// Returns true if `text` fits a pattern in which '*' stands for any text.
-bool fits_pattern(std::string_view pattern, std::string_view text) {
-  std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return pattern == text;
-  if (!text.starts_with(pattern.substr(0, star))) return false;
-  text.remove_prefix(star);
-  pattern.remove_prefix(star + 1);
-  // The first place of each part between two stars leaves most for the parts that follow.
-  while ((star = pattern.find('*')) != std::string_view::npos) {
-    const std::size_t at = text.find(pattern.substr(0, star));
-    if (at == std::string_view::npos) return false;
-    text.remove_prefix(at + star);
-    pattern.remove_prefix(star + 1);
-  }
-  return text.ends_with(pattern);
-}
-
-bool fits_one(std::string_view patterns, std::string_view text) {
-  while (!patterns.empty()) {
-    const std::size_t end = std::min(patterns.find(' '), patterns.size());
-    if (fits_pattern(patterns.substr(0, end), text)) return true;
-    patterns.remove_prefix(std::min(end + 1, patterns.size()));
-  }
-  return false;
-}
 
 /// Turns by quarters in the plane of axes a and b: a quarter takes +a to +b.
 Shape turned_in_plane(const Shape& shape, Axis a, Axis b, unsigned quarters) {
@@ -209,7 +184,7 @@ const NodeShapeRule* node_rule(std::string_view name) {
   const std::string_view node = node_of_name(name);
   const auto* rule =
       std::find_if(std::begin(kNodeShapes), std::end(kNodeShapes),
-                   [&](const NodeShapeRule& one) { return fits_one(one.names, node); });
+                   [&](const NodeShapeRule& one) { return rule_names(one.names, node); });
   return rule == std::end(kNodeShapes) ? nullptr : rule;
 }
 

@@ -44,11 +44,8 @@ class ShapeCheck {
   }
 
  private:
-  struct Before {
-    bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
-  };
   const std::set<Shape>& known_;
-  std::set<const Shape*, Before> fresh_;
+  std::set<const Shape*, ShapeBefore> fresh_;
 };
 
 }  // namespace

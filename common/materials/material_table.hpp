@@ -67,6 +67,8 @@ class MaterialTable {
   /// precede states in a name, [ { and ~. Cost: O(log size + result).
   std::vector<Material> family(std::string_view name) const;
   std::span<const MaterialInfo> rows() const { return rows_; }
+  /// Returns true if a row is no cube.
+  bool has_shapes() const { return !shapes_.empty(); }
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, a number or a
