@@ -31,8 +31,8 @@ ForeignBlock block_of(const BuildMaterial& material) {
   return {name.substr(0, open), material.states.empty() ? states : material.states};
 }
 
-/// Returns the material that a name stands for, with the look of `source` if nobody knows the name. Its
-/// shape is that of the name.
+/// Returns the material that a name stands for, with the look of `source` if nobody knows the name.
+/// Its shape is that of the name.
 MaterialRow row_named(const std::string& name, const MaterialRow& source) {
   const MaterialTable& known = default_material_table();
   if (const auto id = known.find(name)) return row_of(known[*id]);

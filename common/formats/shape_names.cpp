@@ -111,8 +111,8 @@ Shape turned_in_plane(const Shape& shape, Axis a, Axis b, unsigned quarters) {
   return turned(shape, along, static_cast<std::uint8_t>(flips));
 }
 
-/// Turns a node as a facedir of 0 .. 23 does: facedir / 4 is the axis to which its top points (+y, +z,
-/// -z, +x, -x, -y), and facedir % 4 its turn about that axis. Other values are 0.
+/// Turns a node as a facedir of 0 .. 23 does: facedir / 4 is the axis to which its top points (+y,
+/// +z, -z, +x, -x, -y), and facedir % 4 its turn about that axis. Other values are 0.
 Shape turned_by_facedir(const Shape& shape, unsigned facedir) {
   if (facedir >= 24) return shape;
   const unsigned turn = facedir % 4, back = (4 - turn) % 4;
@@ -162,8 +162,8 @@ unsigned param2_of_name(std::string_view name) {
   return ShapeStates(states_in_name(name)).number("param2", 0);
 }
 
-/// Returns the name of a node with its states, but with this param2 as the last of them. A param2 of 0
-/// is no state.
+/// Returns the name of a node with its states, but with this param2 as the last of them. A param2
+/// of 0 is no state.
 std::string with_param2(std::string_view name, unsigned param2) {
   std::string states;
   const auto append = [&](std::string_view one) {

@@ -190,7 +190,8 @@ std::string joined(const TurnedStates& states) {
   return join_states(out);
 }
 
-/// Returns the stairs that look like this shape. Stairs that lie on their side are others that stand.
+/// Returns the stairs that look like this shape. Stairs that lie on their side are others that
+/// stand.
 std::optional<ForeignBlock> stairs_like(const Shape& wanted, const ForeignBlock& stairs) {
   for (const std::string_view bend :
        {"straight", "inner_left", "inner_right", "outer_left", "outer_right"}) {

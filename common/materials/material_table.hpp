@@ -72,24 +72,24 @@ class MaterialTable {
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, a number or a
-  /// look outside its range, or a shape that the material must not have (check_shape(), and none if it
-  /// is empty). Fails with limit_exceeded for more than kTableShapesMax different shapes. Cost:
+  /// look outside its range, or a shape that the material must not have (check_shape(), and none if
+  /// it is empty). Fails with limit_exceeded for more than kTableShapesMax different shapes. Cost:
   /// O(log size), and that of check_shape() if no row has the shape.
   Result<Material> add(MaterialInfo info);
   /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room
   /// for all of them, and with bad_value for a bad row, or a name that is taken, by the table or by
-  /// an earlier row, and for a shape as add() does. The error's offset is the number of the row. Cost:
-  /// O(rows log size), and that of check_shape() for each shape that the table lacks.
+  /// an earlier row, and for a shape as add() does. The error's offset is the number of the row.
+  /// Cost: O(rows log size), and that of check_shape() for each shape that the table lacks.
   Result<void> check_rows(std::span<const MaterialRow> rows) const;
   /// Appends the rows, without generation rules; the first gets the id `first`. Fails as
   /// check_rows() does, and with broken_invariant if `first` is not size(); then nothing changes.
   Result<void> append(Material first, std::span<const MaterialRow> rows);
 
-  /// Gives rows a shape. Fails with bad_value or limit_exceeded if a material is unknown, empty, has
-  /// a shape or occurs twice, or if a shape is a cube or check_shape() fails for it; then nothing
-  /// changes, and for more than kTableShapesMax different shapes. The error's offset is the number
-  /// of the entry. Cost: O(entries log size), and that of check_shape() for each shape that the table
-  /// lacks.
+  /// Gives rows a shape. Fails with bad_value or limit_exceeded if a material is unknown, empty,
+  /// has a shape or occurs twice, or if a shape is a cube or check_shape() fails for it; then
+  /// nothing changes, and for more than kTableShapesMax different shapes. The error's offset is the
+  /// number of the entry. Cost: O(entries log size), and that of check_shape() for each shape that
+  /// the table lacks.
   Result<void> give_shapes(std::span<const GivenShape> given);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;

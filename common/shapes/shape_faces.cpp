@@ -33,7 +33,8 @@ CellLayers layers_along(Axis axis, const Shape& shape) {
   return out;
 }
 
-/// Appends rectangles that cover the cells exactly once: each is as wide as it can be, then as high.
+/// Appends rectangles that cover the cells exactly once: each is as wide as it can be, then as
+/// high.
 void append_rectangles(CellLayer cells, Direction direction, std::uint8_t depth,
                        std::vector<ShapeFace>& out) {
   for (std::size_t v = 0; v < kSide; ++v) {

@@ -1,5 +1,5 @@
-// The boxes of the kinds are dimensions of the blocks of Minecraft, rounded to sixteenths. Kinds that
-// have a facing are written for north and turned.
+// The boxes of the kinds are dimensions of the blocks of Minecraft, rounded to sixteenths. Kinds
+// that have a facing are written for north and turned.
 #include "common/shapes/shape_kinds.hpp"
 
 #include <algorithm>
