@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 
 namespace runstone {
 namespace {
@@ -115,7 +116,7 @@ std::shared_ptr<const OverlayImage> build_picture(const Build& build,
   RUNSTONE_ASSERT(rows.size() == build.palette().size());
   std::vector<std::uint32_t> shown(std::size_t{1} << 16, 0);  // by material: its row + 1
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].visibility != Visibility::empty)
+    if (visibility_as_cube(rows[i]) != Visibility::empty)
       shown[build.palette()[i]] = static_cast<std::uint32_t>(i + 1);
   }
   const CoarseCells cells = coarse_cells(build, shown);

@@ -15,8 +15,8 @@ namespace runstone {
 struct ModelReading : ModelChoices {
   /// `file.up` is not used: ModelChoices has it.
   ModelFileOptions file;
-  /// Takes the share of the voxels that are made, above 0 .. 1, on the thread of the call. It is not
-  /// called while the file is read. Empty: nobody wants to know.
+  /// Takes the share of the voxels that are made, above 0 .. 1, on the thread of the call. It is
+  /// not called while the file is read. Empty: nobody wants to know.
   std::function<void(double share)> progress = {};
 };
 

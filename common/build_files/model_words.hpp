@@ -1,5 +1,5 @@
-// Words for ModelChoices: `voxels 512 up z hollow` of commands and scripts, and the options of programs,
-// which have two dashes before them. Thread: any.
+// Words for ModelChoices: `voxels 512 up z hollow` of commands and scripts, and the options of
+// programs, which have two dashes before them. Thread: any.
 #pragma once
 #include <array>
 #include <string>
@@ -31,9 +31,9 @@ inline constexpr std::array<ModelWord, 7> kModelWords = {
 /// Returns the word of this name, or null if there is none.
 const ModelWord* model_word(std::string_view name);
 
-/// Makes a choice. `value` is the text behind the word, or empty for a word without one. Of `voxels` and
-/// `voxels-per-metre` the last one counts. Fails with what is expected, such as "a whole number from
-/// 1 to 4096 is expected"; then nothing is changed.
+/// Makes a choice. `value` is the text behind the word, or empty for a word without one. Of
+/// `voxels` and `voxels-per-metre` the last one counts. Fails with what is expected, such as "a
+/// whole number from 1 to 4096 is expected"; then nothing is changed.
 Result<void, std::string> choose_by_word(const ModelWord& word, std::string_view value,
                                          ModelChoices& choices);
 

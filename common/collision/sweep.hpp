@@ -1,9 +1,10 @@
 // Sweep: moves a box through the voxels of a VoxelSpace until it meets a solid one. It unpacks
 // nothing: each layer of voxels that the box enters is one box query over runs. The boxes of shapes
-// on the way are tested one by one. Faces that only touch do not collide, so a body can stand on the ground and slide along a wall. A voxel that the
-// box overlaps at the start does not stop it, so that a body that somebody has built into a wall
-// can leave. Source: the walk from border to border is that of Amanatides and Woo 1987, "A Fast
-// Voxel Traversal Algorithm for Ray Tracing", with the leading faces of a box in place of a point.
+// on the way are tested one by one. Faces that only touch do not collide, so a body can stand on
+// the ground and slide along a wall. A voxel that the box overlaps at the start does not stop it,
+// so that a body that somebody has built into a wall can leave. Source: the walk from border to
+// border is that of Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing",
+// with the leading faces of a box in place of a point.
 #pragma once
 #include <array>
 #include <optional>
@@ -41,8 +42,8 @@ Result<void> validate_move(const BodyBox& box, const WorldPos& move);
 
 /// Returns the first obstacle that the box meets on the way along `move` (voxels), or nullopt if
 /// the way is free. Requires finite numbers, |move| <= kSweepMax on each axis, and that the way
-/// lies within the world. Cost: one find_voxel() for each layer of voxels that the box enters, and a
-/// test for each box of the shapes on the way.
+/// lies within the world. Cost: one find_voxel() for each layer of voxels that the box enters, and
+/// a test for each box of the shapes on the way.
 std::optional<SweepHit> sweep(const VoxelSpace& space, const Obstacles& solid, const BodyBox& box,
                               const WorldPos& move);
 

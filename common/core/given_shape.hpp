@@ -1,5 +1,5 @@
-// GivenShape: a shape that a row of the material table gets after it was added. It is the one change
-// of a row that there is, and each row has it once.
+// GivenShape: a shape that a row of the material table gets after it was added. It is the one
+// change of a row that there is, and each row has it once.
 #pragma once
 #include "common/core/ids.hpp"
 #include "common/core/shape.hpp"

@@ -37,6 +37,11 @@ struct Shape {
   friend std::strong_ordering operator<=>(const Shape&, const Shape&) = default;
 };
 
+/// The order of shapes that are held by address.
+struct ShapeBefore {
+  bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
+};
+
 /// The boxes of one shape, at most. Built-in kinds have fewer than half of them.
 inline constexpr std::size_t kShapeBoxesMax = 32;
 

@@ -1,6 +1,7 @@
 #include "common/formats/build_head.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
 #include "common/shapes/shape_bytes.hpp"
+#include "common/shapes/shape_faces.hpp"
 
 namespace runstone {
 namespace {
@@ -43,12 +45,18 @@ Result<void> check_build_material(const BuildMaterial& material) {
 }  // namespace
 
 Result<void> validate_build_materials(std::span<const BuildMaterial> materials) {
+  std::set<const Shape*, ShapeBefore> shapes;
   if (materials.empty()) return fail(ErrorCode::bad_value, "build has no material");
   if (materials.size() > kBuildMaterialsMax)
     return fail(ErrorCode::limit_exceeded, "build has more than 65535 materials");
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (auto sound = check_build_material(materials[i]); !sound)
       return fail(sound.error().code, sound.error().what, i);
+    const Shape& shape = materials[i].row.shape;
+    if (!shape.is_cube() && shapes.insert(&shape).second) {
+      if (const auto sound = check_shape(shape); !sound)
+        return fail(sound.error().code, sound.error().what, i);
+    }
     if (i == 0) continue;
     const BuildMaterial& before = materials[i - 1];
     if (std::tie(before.row.name, before.states) >=

@@ -34,7 +34,8 @@ struct BuildMaterial {
 };
 
 /// The materials of a build ascend by name and then by states, so none occurs twice. Fails with
-/// bad_value, limit_exceeded or not_canonical; the offset is the index of the material.
+/// bad_value, limit_exceeded or not_canonical; the offset is the index of the material. Cost:
+/// O(bytes), and check_shape() for each different shape.
 Result<void> validate_build_materials(std::span<const BuildMaterial> materials);
 
 /// Writes and reads the payload of the head. Writing requires valid values. The offset of an error
@@ -51,8 +52,8 @@ void encode_build_material(const BuildMaterial& material, Bytes& out);
 /// Returns true if a material is no cube. Cost: O(materials).
 bool has_shape(std::span<const BuildMaterial> materials);
 /// Decodes exactly `count` materials, and appends them to `out`. They need not ascend: call
-/// validate_build_materials() for all. `with_shapes`: they may have shapes. The offset of an error is
-/// a byte of the payload.
+/// validate_build_materials() for all. `with_shapes`: they may have shapes. The offset of an error
+/// is a byte of the payload.
 Result<void> decode_build_materials(ByteView in, std::uint32_t count, bool with_shapes,
                                     std::vector<BuildMaterial>& out);
 

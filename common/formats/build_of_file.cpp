@@ -50,7 +50,7 @@ VoxelPos build_origin(VoxelPos world, const VoxelBox& box) {
 Result<FileBuild> read_foreign_build(const Format& format, ByteView file,
                                      const ForeignReading& reading) {
   RUNSTONE_ASSERT(format.read != nullptr && format.material_of != nullptr);
-  PieceJoiner joiner(format, reading.keep_all, reading.bytes_max);
+  PieceJoiner joiner(format, reading.keep_all, reading.bytes_max, reading.only_cubes);
   const PieceSink sink = [&](ForeignPiece&& piece) { return joiner.add(std::move(piece)); };
   const auto info = reading.colours.empty() ? format.read(file, sink)
                                             : read_height_map(file, reading.colours, {}, sink);

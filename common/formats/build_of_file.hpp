@@ -13,9 +13,11 @@
 namespace runstone {
 
 struct ForeignReading {
-  bool keep_all = true;                    // as that of Format::material_of
+  bool keep_all = true;  // as that of Format::material_of
+  // True: blocks whose shape fills less than half of its voxel are empty (visibility_as_cube()).
+  bool only_cubes = false;
   std::size_t bytes_max = kBuildBytesMax;  // of the memory of the build and of its pieces
-  std::string name;                        // of the build, if the file has none; see BuildInfo
+  std::string name = {};                   // of the build, if the file has none; see BuildInfo
   // For a height map: the bytes of a PNG with the colours of its columns (height_map.hpp), or none.
   // They must outlive the call. Programs set `colours_file` alone, the path of the PNG:
   // read_build_of_file() (common/build_files) reads the bytes from it.

@@ -25,8 +25,8 @@ Result<FileBuild, std::string> read_file_build(const std::string& file, ByteView
 Result<void, std::string> write_file_build(const std::string& file, const FileBuild& build,
                                            const FormatSink& sink, FileWriting writing = {});
 
-/// Returns why a file of this name cannot be written with these choices, or an empty text: a version
-/// of the .schem is chosen, and the file is none. Choices for models count for models only.
+/// Returns why a file of this name cannot be written with these choices, or an empty text: a
+/// version of the .schem is chosen, and the file is none. Choices for models count for models only.
 std::string choice_refusal(std::string_view file, const FileWriting& writing);
 
 /// Returns the path of the second file that belongs to a file of this name, such as castle.mtl to

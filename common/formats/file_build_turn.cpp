@@ -14,6 +14,7 @@
 #include "common/formats/shape_names.hpp"
 #include "common/formats/turned_names.hpp"
 #include "common/runs/axis_order.hpp"
+#include "common/shapes/shape_faces.hpp"
 #include "common/shapes/shape_states.hpp"
 #include "common/shapes/turned_shape.hpp"
 
@@ -106,6 +107,8 @@ std::optional<BuildMaterial> turned_build_material(const BuildMaterial& material
     const bool is_of_name = material.row.shape == shape_of_material_name(name);
     const auto of_name = is_of_name ? shape_of_material_name(out.row.name) : std::nullopt;
     out.row.shape = of_name ? *of_name : turned(material.row.shape, along, flips);
+    // Rectangles are joined along one axis first, so a turned shape may have more of them.
+    if (!check_shape(out.row.shape)) return std::nullopt;
   }
   return out;
 }

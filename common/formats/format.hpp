@@ -104,7 +104,8 @@ struct Format {
   /// default choices. Null: the format has no choices.
   Result<void> (*write_with)(const FileBuild& build, const FileWriting& writing,
                              const FormatSink& sink) = nullptr;
-  /// The further properties if the format has triangles, otherwise null. Such formats are only written.
+  /// The further properties if the format has triangles, otherwise null. Such formats are only
+  /// written.
   const TriangleFormat* model = nullptr;
 };
 

@@ -9,6 +9,7 @@
 #include "common/core/assert.hpp"
 #include "common/formats/deflate.hpp"
 #include "common/formats/height_map.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 #include "common/runs/column_tops.hpp"
 
 namespace runstone {
@@ -86,7 +87,7 @@ std::vector<ColumnTop> tops_of_rows(const FileBuild& build, std::int32_t first) 
   const Build& voxels = *build.build;
   ShowingMaterials showing = {false};
   for (const BuildMaterial& material : build.materials)
-    showing.push_back(material.row.visibility != Visibility::empty);
+    showing.push_back(visibility_as_cube(material.row) != Visibility::empty);
   const VoxelPos sides = voxels.sides();
   const std::int32_t rows = std::min(kMapWriteTile, sides.z - first);
   std::vector<ColumnTop> out(static_cast<std::size_t>(sides.x) * static_cast<std::size_t>(rows));

@@ -36,25 +36,24 @@ Result<ForeignPiece> decode_luanti_block(ByteView data);
 Result<ForeignInfo> read_luanti_block(ByteView data, const PieceSink& sink);
 
 /// Returns a material for a node: colour and visibility by name and kind, whatever its state. Water
-/// and glass are transparent. Nodes that are no cubes have the shapes of their names; those without one,
-/// such as wires, are empty unless keep_all. "air" and
-/// "ignore" are empty. A node that luanti_node_name() has named, and any other without the name of
-/// a mod, is a cube with the name of its material.
-/// The result is deterministic, and MaterialTable::add() accepts it for every
+/// and glass are transparent. Nodes that are no cubes have the shapes of their names; those without
+/// one, such as wires, are empty unless keep_all. "air" and "ignore" are empty. A node that
+/// luanti_node_name() has named, and any other without the name of a mod, is a cube with the name
+/// of its material. The result is deterministic, and MaterialTable::add() accepts it for every
 /// name. Only "air" and "ignore" share a row: that of air.
 MaterialInfo material_of_luanti_node(const ForeignBlock& node, bool keep_all);
 
-/// Returns the material of a node in a world of cubes: stairs and the like are whole cubes, plants and
-/// the like are empty unless keep_all, and the name has no states.
+/// Returns the material of a node in a world of cubes: stairs and the like are whole cubes, plants
+/// and the like are empty unless keep_all, and the name has no states.
 MaterialInfo material_of_luanti_cube(const ForeignBlock& node, bool keep_all);
 
-/// Returns true if the param2 of a node of this name gives it a direction, a shape or a colour. It is
-/// false for flowing liquids (the level of the liquid), leaves (players placed them) and the ground of
-/// plants under water (the height of the plant). docs/formats.md explains the rule.
+/// Returns true if the param2 of a node of this name gives it a direction, a shape or a colour. It
+/// is false for flowing liquids (the level of the liquid), leaves (players placed them) and the
+/// ground of plants under water (the height of the plant). docs/formats.md explains the rule.
 bool keeps_luanti_param2(std::string_view name);
 
-/// Returns material_of_luanti_node() for a node of a world. The name has the states as world_name_of()
-/// has them, "default:chest[param2=3]", if keeps_luanti_param2().
+/// Returns material_of_luanti_node() for a node of a world. The name has the states as
+/// world_name_of() has them, "default:chest[param2=3]", if keeps_luanti_param2().
 MaterialInfo material_of_luanti_world_node(const ForeignBlock& node, bool keep_all);
 
 }  // namespace runstone

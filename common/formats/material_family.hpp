@@ -1,5 +1,6 @@
-// Families: the materials of a table that are one block in different states, such as the stairs of oak.
-// Materials belong to one family if their names are equal up to the states; no table records it.
+// Families: the materials of a table that are one block in different states, such as the stairs of
+// oak. Materials belong to one family if their names are equal up to the states; no table records
+// it.
 #pragma once
 #include <functional>
 #include <map>
@@ -15,8 +16,8 @@ namespace runstone {
 /// A name of a material, taken apart.
 struct MaterialStates {
   std::string family;  // "minecraft:oak_stairs"
-  /// By key, also those that have their default: {"facing", "north"}. A material that no rule knows has
-  /// the states that its name writes.
+  /// By key, also those that have their default: {"facing", "north"}. A material that no rule knows
+  /// has the states that its name writes.
   std::map<std::string, std::string, std::less<>> states;
 
   /// Returns the part of the family behind its namespace.
@@ -32,10 +33,10 @@ bool is_shaped_node(std::string_view material);
 /// Returns the family and the states of a name. Cost: O(rules + bytes).
 MaterialStates states_of_material(std::string_view name);
 
-/// Returns the member of the family that differs in the fewest states; of equal ones the one with the
-/// lowest id. The values of walls before 1.16 (true, false) count as those of today (low, none).
-/// Returns nullopt if the table has no member, or only empty ones. Cost: O(rules + log table) if a
-/// member has exactly these states, otherwise that for each member.
+/// Returns the member of the family that differs in the fewest states; of equal ones the one with
+/// the lowest id. The values of walls before 1.16 (true, false) count as those of today (low,
+/// none). Returns nullopt if the table has no member, or only empty ones. Cost: O(rules + log
+/// table) if a member has exactly these states, otherwise that for each member.
 std::optional<Material> nearest_member(const MaterialTable& table, const MaterialStates& wanted);
 
 }  // namespace runstone

@@ -32,6 +32,7 @@ ForeignBlock block_of(const BuildMaterial& material) {
 }
 
 /// Returns the material that a name stands for, with the look of `source` if nobody knows the name.
+/// Its shape is that of the name.
 MaterialRow row_named(const std::string& name, const MaterialRow& source) {
   const MaterialTable& known = default_material_table();
   if (const auto id = known.find(name)) return row_of(known[*id]);
@@ -41,7 +42,7 @@ MaterialRow row_named(const std::string& name, const MaterialRow& source) {
     out = row_of(material_of_minecraft_block(*block, true));
   if (out.visibility == Visibility::empty) return empty_row();
   out.name = name;
-  if (const auto shape = shape_of_material_name(name)) out.shape = *shape;
+  out.shape = shape_of_material_name(name).value_or(Shape{});
   return out;
 }
 

@@ -17,8 +17,8 @@ namespace runstone {
 /// A name of more than kMaterialNameBytesMax bytes is cut, and ends with '~' and 8 hexadecimal
 /// digits of a hash of all of it, so that different materials have different names. Deterministic.
 std::string world_name_of(const BuildMaterial& material);
-/// Returns the material as a row for a world: it has world_name_of() as its name, and the shape that
-/// the name says if it is a cube.
+/// Returns the material as a row for a world: it has world_name_of() as its name, and the shape
+/// that the name says if it is a cube.
 MaterialRow world_row_of(const BuildMaterial& material);
 
 struct MaterialMatch {

@@ -46,9 +46,9 @@ std::string minecraft_material_name(const ForeignBlock& block);
 std::optional<ForeignBlock> block_of_minecraft_material(std::string_view name);
 
 /// Returns the material that a block becomes: the name of minecraft_material_name(), and colour,
-/// visibility, body, look and shape by name and states. The kinds of air and structure_void are empty.
-/// Plants, torches and the like are passable. Unless keep_all, those that stand in water become water,
-/// and those without a shape are empty. Water, glass and ice are transparent. Other
+/// visibility, body, look and shape by name and states. The kinds of air and structure_void are
+/// empty. Plants, torches and the like are passable. Unless keep_all, those that stand in water
+/// become water, and those without a shape are empty. Water, glass and ice are transparent. Other
 /// names get a colour from the words in them, and otherwise from their hash. The result is
 /// deterministic, and MaterialTable::add() accepts it for every block. Cost: O(table + bytes).
 MaterialInfo material_of_minecraft_block(const ForeignBlock& block, bool keep_all);

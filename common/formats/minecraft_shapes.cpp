@@ -17,15 +17,9 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kBlockSides = {"north", "east", "south", "west"};
 
-Shape flipped_over(const Shape& shape) { return turned(shape, {Axis::x, Axis::y, Axis::z}, 2); }
-
 /// Returns a box of this height that keeps `inset` sixteenths from the voxel's sides.
 Shape low_box(unsigned height, unsigned inset = 0) {
   return shape_of_boxes({shape_box(inset, 0, inset, 16 - inset, height, 16 - inset)});
-}
-
-void add_boxes(Shape& shape, const Shape& more) {
-  shape.boxes.insert(shape.boxes.end(), more.boxes.begin(), more.boxes.end());
 }
 
 /// Shapes of one size, by their names. They are written for facing=north.
@@ -46,8 +40,7 @@ constexpr FixedShape kFixed[] = {
     fixed("end_portal", shape_box(0, 6, 0, 16, 12, 16)),
     fixed("conduit", shape_box(5, 5, 5, 11, 11, 11)),
     fixed("heavy_core", shape_box(4, 0, 4, 12, 8, 12)),
-    fixed("sniffer_egg", shape_box(1, 0, 1, 15, 16, 15)),
-    fixed("decorated_pot", shape_box(1, 0, 1, 15, 16, 15)),
+    fixed("sniffer_egg decorated_pot", shape_box(1, 0, 1, 15, 16, 15)),
     fixed("dried_ghast", shape_box(3, 0, 3, 13, 10, 13)),
     fixed("*_golem_statue", shape_box(3, 0, 3, 13, 14, 13)),
     fixed("flower_pot", shape_box(5, 0, 5, 11, 6, 11)),
@@ -146,7 +139,9 @@ Shape hopper_block(const ShapeStates& states) {
                               shape_box(14, 11, 0, 16, 16, 16), shape_box(2, 11, 0, 14, 16, 2),
                               shape_box(2, 11, 14, 14, 16, 16), shape_box(4, 4, 4, 12, 10, 12)});
   const std::string_view facing = states.get("facing", "down");
-  add_boxes(out, facing == "down" ? shape_of_boxes({shape_box(6, 0, 6, 10, 4, 10)})
+  out =
+      with_boxes(std::move(out),
+                 facing == "down" ? shape_of_boxes({shape_box(6, 0, 6, 10, 4, 10)})
                                   : faced(shape_of_boxes({shape_box(6, 4, 0, 10, 8, 4)}), facing));
   return out;
 }
@@ -172,8 +167,9 @@ Shape wire_block(const ShapeStates& states) {
   for (const std::string_view side : kBlockSides) {
     const std::string_view value = states.get(side);
     if (value == "side" || value == "up" || value == "true")
-      add_boxes(out, faced(shape_of_boxes({shape_box(7, 0, 0, 9, 1, 7)}), side));
-    if (value == "up") add_boxes(out, faced(shape_of_boxes({shape_box(7, 1, 0, 9, 16, 1)}), side));
+      out = with_boxes(std::move(out), faced(shape_of_boxes({shape_box(7, 0, 0, 9, 1, 7)}), side));
+    if (value == "up")
+      out = with_boxes(std::move(out), faced(shape_of_boxes({shape_box(7, 1, 0, 9, 16, 1)}), side));
   }
   if (out.is_cube()) return low_box(1, 3);
   out.boxes.push_back(shape_box(7, 0, 7, 9, 1, 9));
@@ -184,7 +180,8 @@ Shape chorus_plant_block(const ShapeStates& states) {
   Shape out = shape_of_boxes({shape_box(4, 4, 4, 12, 12, 12)});
   for (const std::string_view side : kBlockSides) {
     if (states.is_true(side))
-      add_boxes(out, faced(shape_of_boxes({shape_box(4, 4, 0, 12, 12, 4)}), side));
+      out =
+          with_boxes(std::move(out), faced(shape_of_boxes({shape_box(4, 4, 0, 12, 12, 4)}), side));
   }
   if (states.is_true("up")) out.boxes.push_back(shape_box(4, 12, 4, 12, 16, 12));
   if (states.is_true("down")) out.boxes.push_back(shape_box(4, 0, 4, 12, 4, 12));
@@ -197,8 +194,9 @@ Shape pale_moss_carpet_block(const ShapeStates& states) {
   for (const std::string_view side : kBlockSides) {
     const std::string_view value = states.get(side);
     if (value != "low" && value != "true" && value != "tall") continue;
-    add_boxes(out,
-              faced(shape_of_boxes({shape_box(0, 0, 0, 16, value == "tall" ? 16 : 10, 1)}), side));
+    out = with_boxes(
+        std::move(out),
+        faced(shape_of_boxes({shape_box(0, 0, 0, 16, value == "tall" ? 16 : 10, 1)}), side));
   }
   return out.is_cube() ? low_box(1) : out;
 }
@@ -210,7 +208,7 @@ Shape dripstone_block(const ShapeStates& states) {
                    : part == "frustum"   ? low_box(16, 4)
                    : part == "middle"    ? low_box(16, 3)
                                          : low_box(16, 2);
-  return states.is("vertical_direction", "down") ? flipped_over(up) : up;
+  return states.is("vertical_direction", "down") ? upside_down(up) : up;
 }
 
 Shape cocoa_block(const ShapeStates& states) {
@@ -231,7 +229,7 @@ Shape grindstone_block(const ShapeStates& states) {
   Shape out = shape_of_boxes({shape_box(4, 4, 2, 12, 16, 14), shape_box(2, 7, 5, 4, 13, 11),
                               shape_box(12, 7, 5, 14, 13, 11), shape_box(2, 0, 6, 4, 7, 10),
                               shape_box(12, 0, 6, 14, 7, 10)});
-  if (face == "ceiling") out = flipped_over(out);
+  if (face == "ceiling") out = upside_down(out);
   // The lower side then lies south.
   if (face == "wall") out = turned(out, {Axis::x, Axis::z, Axis::y}, 4);
   return faced(out, states.get("facing"));
@@ -240,12 +238,13 @@ Shape grindstone_block(const ShapeStates& states) {
 Shape bell_block(const ShapeStates& states) {
   Shape out = shape_of_boxes({shape_box(5, 6, 5, 11, 13, 11), shape_box(4, 4, 4, 12, 6, 12)});
   const std::string_view place = states.get("attachment", "floor");
-  add_boxes(out, place == "ceiling"       ? shape_of_boxes({shape_box(7, 13, 7, 9, 16, 9)})
-                 : place == "single_wall" ? shape_of_boxes({shape_box(7, 13, 0, 9, 15, 13)})
-                 : place == "double_wall" ? shape_of_boxes({shape_box(7, 13, 0, 9, 15, 16)})
-                                          : shape_of_boxes({shape_box(0, 0, 6, 2, 16, 10),
-                                                            shape_box(14, 0, 6, 16, 16, 10),
-                                                            shape_box(2, 13, 7, 14, 15, 9)}));
+  out = with_boxes(std::move(out),
+                   place == "ceiling"       ? shape_of_boxes({shape_box(7, 13, 7, 9, 16, 9)})
+                   : place == "single_wall" ? shape_of_boxes({shape_box(7, 13, 0, 9, 15, 13)})
+                   : place == "double_wall" ? shape_of_boxes({shape_box(7, 13, 0, 9, 15, 16)})
+                                            : shape_of_boxes({shape_box(0, 0, 6, 2, 16, 10),
+                                                              shape_box(14, 0, 6, 16, 16, 10),
+                                                              shape_box(2, 13, 7, 14, 15, 9)}));
   return faced(out, states.get("facing"));
 }
 

@@ -221,6 +221,23 @@ bool is_state_text(std::string_view text) {
   });
 }
 
+/// Returns true if `text` fits a pattern in which '*' stands for any text.
+bool fits_pattern(std::string_view pattern, std::string_view text) {
+  std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == text;
+  if (!text.starts_with(pattern.substr(0, star))) return false;
+  text.remove_prefix(star);
+  pattern.remove_prefix(star + 1);
+  // The first place of each part between two stars leaves most for the parts that follow.
+  while ((star = pattern.find('*')) != std::string_view::npos) {
+    const std::size_t at = text.find(pattern.substr(0, star));
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at + star);
+    pattern.remove_prefix(star + 1);
+  }
+  return text.ends_with(pattern);
+}
+
 std::string_view values_of(MinecraftProperty property) {
   return property.substr(property.find('=') + 1);
 }
@@ -230,11 +247,7 @@ std::string_view values_of(MinecraftProperty property) {
 bool rule_names(std::string_view names, std::string_view name) {
   while (!names.empty()) {
     const std::size_t end = std::min(names.find(' '), names.size());
-    const std::string_view one = names.substr(0, end);
-    if (one.front() == '*'  ? name.ends_with(one.substr(1))
-        : one.back() == '*' ? name.starts_with(one.substr(0, one.size() - 1))
-                            : name == one)
-      return true;
+    if (fits_pattern(names.substr(0, end), name)) return true;
     names.remove_prefix(std::min(end + 1, names.size()));
   }
   return false;

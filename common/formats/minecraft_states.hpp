@@ -12,8 +12,7 @@
 
 namespace runstone {
 
-/// Returns true if `names` has the name. They are separated by blanks; '*' stands for the begin or the
-/// end of a name.
+/// Returns true if `names` has the name. They are separated by blanks; '*' stands for any text.
 bool rule_names(std::string_view names, std::string_view name);
 
 /// The key of a state and its values, such as "half=bottom|top". The first value is the default.

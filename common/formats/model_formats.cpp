@@ -3,6 +3,7 @@
 #include "common/formats/file_writing.hpp"
 #include "common/formats/material_match.hpp"
 #include "common/materials/default_look.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 #include "common/model_writers/coarser_build.hpp"
 #include "common/model_writers/model_writers.hpp"
 
@@ -13,7 +14,7 @@ WrittenBuild model_source(const FileBuild& build) {
   WrittenBuild source{*build.build, build.info, {}};
   for (const BuildMaterial& material : build.materials) {
     const MaterialRow& row = material.row;
-    source.materials.push_back({world_name_of(material), row.colour, row.visibility,
+    source.materials.push_back({world_name_of(material), row.colour, visibility_as_cube(row),
                                 row.look ? *row.look : default_look(row.name, row.body)});
   }
   return source;

@@ -114,19 +114,20 @@ std::string mts_name(const std::string& name) {
 
 LuantiNode mts_node(const BuildMaterial& material) {
   if (material.row.visibility == Visibility::empty) return {"air"};
+  const std::string& name = material.row.name;
   std::string_view states = material.states;
-  LuantiNode out{material.row.name};
-  // The materials of a world have the states in their names, and those of a file may have them there
-  // as well (node_material_name()).
-  if (states.empty() || states_in_name(material.row.name) == states)
-    out = split_luanti_param2(material.row.name);
-  out.name = mts_name(out.name);
+  LuantiNode out{name};
+  // The materials of a world have the states in their names.
+  if (states.empty()) out = split_luanti_param2(name);
   // The param2 is the last of the states.
   const std::size_t last = states.rfind(',') + 1;  // 0 if there is one state or none
   if (const auto param2 = luanti_param2(states.substr(last))) {
     out.param2 = *param2;
+    // Those of a file may have them there as well (node_material_name()).
+    if (states_in_name(name) == states) out.name = name.substr(0, name.find('['));
     states = states.substr(0, last == 0 ? 0 : last - 1);
   }
+  out.name = mts_name(out.name);
   // A name that ends so would be read as a name with states.
   if (!states.empty() || (out.name.ends_with(']') && out.name.find('[') != std::string::npos))
     out.name += "[" + std::string(states) + "]";

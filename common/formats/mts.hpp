@@ -23,11 +23,10 @@ inline constexpr std::size_t kMtsNameBytesMax = std::size_t{32} << 20;
 Result<ForeignInfo> read_mts(ByteView file, const PieceSink& sink);
 
 /// Writes an .mts of version 4. Untouched cells are never placed, and the others always. States
-/// "param2=N" become the param2, and so does "[param2=N]" at the end of the name of a material without
-/// states; other states stand behind the name, in brackets. Names with blanks
-/// and other than ASCII characters are written as luanti_node_name() says. Fails with
-/// limit_exceeded if a side is longer than kMtsSideMax, or if there are more than 65,535 names.
-/// Cost: O(cells).
+/// "param2=N" become the param2, and so does "[param2=N]" at the end of the name of a material
+/// without states; other states stand behind the name, in brackets. Names with blanks and other
+/// than ASCII characters are written as luanti_node_name() says. Fails with limit_exceeded if a
+/// side is longer than kMtsSideMax, or if there are more than 65,535 names. Cost: O(cells).
 Result<void> write_mts(const FileBuild& build, const FormatSink& sink);
 
 }  // namespace runstone

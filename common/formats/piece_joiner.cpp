@@ -11,6 +11,7 @@
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/formats/block_assembler.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
@@ -253,7 +254,8 @@ Result<FileBuild> PieceJoiner::join() {
   for (const auto& [block, number] : numbers_) {
     MaterialRow row = row_of(format_.material_of(block, keep_all_));
     std::string states;
-    if (row.visibility == Visibility::empty) {
+    const Visibility visibility = only_cubes_ ? visibility_as_cube(row) : row.visibility;
+    if (visibility == Visibility::empty) {
       row = MaterialRow{"air", {0, 0, 0, 0}, Visibility::empty};
     } else {
       states = printable_states(block.states);

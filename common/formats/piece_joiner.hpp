@@ -22,9 +22,9 @@ namespace runstone {
 
 class PieceJoiner {
  public:
-  /// `keep_all` and `bytes_max` are those of ForeignReading.
-  PieceJoiner(const Format& format, bool keep_all, std::size_t bytes_max)
-      : format_(format), keep_all_(keep_all), bytes_max_(bytes_max) {}
+  /// `keep_all`, `bytes_max` and `only_cubes` are those of ForeignReading.
+  PieceJoiner(const Format& format, bool keep_all, std::size_t bytes_max, bool only_cubes = false)
+      : format_(format), keep_all_(keep_all), only_cubes_(only_cubes), bytes_max_(bytes_max) {}
 
   /// Takes the next piece. Fails with bad_value if it reaches out of the world, and with
   /// limit_exceeded if there are more than kBuildMaterialsMax blocks, or if the pieces take more memory
@@ -60,6 +60,7 @@ class PieceJoiner {
 
   const Format& format_;
   bool keep_all_;
+  bool only_cubes_;
   std::size_t bytes_max_;
   std::map<ForeignBlock, std::uint16_t> numbers_;  // from 1
   std::vector<Piece> pieces_;

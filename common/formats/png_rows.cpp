@@ -85,8 +85,8 @@ struct PngRows::State {
     png_set_read_fn(png, this, on_read);
     png_set_chunk_cache_max(png, 128);
     png_set_chunk_malloc_max(png, png_alloc_size_t{1} << 20);
-    // libpng takes memory for the length that a text or a profile states, up to 2 GiB, before it reads
-    // one byte of it. None of them is needed, so all optional chunks but tRNS are skipped.
+    // libpng takes memory for the length that a text or a profile states, up to 2 GiB, before it
+    // reads one byte of it. None of them is needed, so all optional chunks but tRNS are skipped.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     // Colours are taken as they are stored.
     png_read_info(png, info);

@@ -7,6 +7,7 @@
 #include "common/core/material_row.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_shapes.hpp"
+#include "common/formats/minecraft_states.hpp"
 #include "common/shapes/shape_kinds.hpp"
 #include "common/shapes/shape_states.hpp"
 #include "common/shapes/turned_shape.hpp"
@@ -18,8 +19,7 @@ namespace {
 enum class NodeTurn : std::uint8_t { none, facedir, wall };
 
 struct NodeShapeRule {
-  // Names, separated by blanks. '*' stands for any text.
-  std::string_view names;
+  std::string_view names;  // as rule_names() reads them
   NodeTurn turn = NodeTurn::none;
   // As the node lies with a facedir of 0, whose front is +z, or with its wall at +z. A node without
   // boxes and without a plant is a cube.
@@ -40,11 +40,13 @@ constexpr ShapeBox kLowHalf = shape_box(0, 0, 0, 16, 8, 16);
 
 /// The first rule that names a node holds.
 constexpr NodeShapeRule kNodeShapes[] = {
-    {"*:snowblock"},
+    {"*:snowblock *:slab_*_double"},
+    boxed("*:slab_*_top", NodeTurn::facedir, shape_box(0, 8, 0, 16, 16, 16)),
     boxed("*:slab_*", NodeTurn::facedir, kLowHalf),
-    boxed("*:stair_inner_*", NodeTurn::facedir, kLowHalf, shape_box(0, 8, 8, 16, 16, 16),
-          shape_box(0, 8, 0, 8, 16, 8)),
-    boxed("*:stair_outer_*", NodeTurn::facedir, kLowHalf, shape_box(0, 8, 8, 8, 16, 16)),
+    boxed("*:stair_inner_* *:stair_*_inner", NodeTurn::facedir, kLowHalf,
+          shape_box(0, 8, 8, 16, 16, 16), shape_box(0, 8, 0, 8, 16, 8)),
+    boxed("*:stair_outer_* *:stair_*_outer", NodeTurn::facedir, kLowHalf,
+          shape_box(0, 8, 8, 8, 16, 16)),
     boxed("*:stair_*", NodeTurn::facedir, kLowHalf, shape_box(0, 8, 8, 16, 16, 16)),
     boxed("default:torch_wall *:torch_wall", NodeTurn::wall, shape_box(7, 3, 14, 9, 8, 16),
           shape_box(7, 6, 12, 9, 13, 14)),
@@ -64,9 +66,10 @@ constexpr NodeShapeRule kNodeShapes[] = {
     boxed("doors:gate_*_closed", NodeTurn::facedir, shape_box(0, 4, 7, 2, 16, 9),
           shape_box(14, 4, 7, 16, 16, 9), shape_box(2, 6, 7, 14, 8, 9),
           shape_box(2, 12, 7, 14, 14, 9)),
-    boxed("doors:trapdoor*_open", NodeTurn::facedir, shape_box(0, 0, 14, 16, 16, 16)),
-    boxed("doors:trapdoor*", NodeTurn::facedir, shape_box(0, 0, 0, 16, 2, 16)),
-    boxed("doors:*_a doors:*_b doors:*_c doors:*_d", NodeTurn::facedir,
+    boxed("doors:trapdoor*_open xpanes:trapdoor*_open", NodeTurn::facedir,
+          shape_box(0, 0, 14, 16, 16, 16)),
+    boxed("doors:trapdoor* xpanes:trapdoor*", NodeTurn::facedir, shape_box(0, 0, 0, 16, 2, 16)),
+    boxed("doors:*_a doors:*_b doors:*_c doors:*_d xpanes:door_*", NodeTurn::facedir,
           shape_box(0, 0, 0, 16, 16, 2)),
     boxed("xpanes:*_flat", NodeTurn::facedir, shape_box(0, 0, 7, 16, 16, 9)),
     boxed("xpanes:*", NodeTurn::none, shape_box(0, 0, 7, 16, 16, 9), shape_box(7, 0, 0, 9, 16, 7),
@@ -95,32 +98,6 @@ constexpr NodeShapeRule kNodeShapes[] = {
     {"default:*"},
 };
 
-/// Returns true if `text` fits a pattern in which '*' stands for any text.
-bool fits_pattern(std::string_view pattern, std::string_view text) {
-  std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return pattern == text;
-  if (!text.starts_with(pattern.substr(0, star))) return false;
-  text.remove_prefix(star);
-  pattern.remove_prefix(star + 1);
-  // The first place of each part between two stars leaves most for the parts that follow.
-  while ((star = pattern.find('*')) != std::string_view::npos) {
-    const std::size_t at = text.find(pattern.substr(0, star));
-    if (at == std::string_view::npos) return false;
-    text.remove_prefix(at + star);
-    pattern.remove_prefix(star + 1);
-  }
-  return text.ends_with(pattern);
-}
-
-bool fits_one(std::string_view patterns, std::string_view text) {
-  while (!patterns.empty()) {
-    const std::size_t end = std::min(patterns.find(' '), patterns.size());
-    if (fits_pattern(patterns.substr(0, end), text)) return true;
-    patterns.remove_prefix(std::min(end + 1, patterns.size()));
-  }
-  return false;
-}
-
 /// Turns by quarters in the plane of axes a and b: a quarter takes +a to +b.
 Shape turned_in_plane(const Shape& shape, Axis a, Axis b, unsigned quarters) {
   std::array<Axis, 3> along = {Axis::x, Axis::y, Axis::z};
@@ -134,8 +111,8 @@ Shape turned_in_plane(const Shape& shape, Axis a, Axis b, unsigned quarters) {
   return turned(shape, along, static_cast<std::uint8_t>(flips));
 }
 
-/// Turns a node as a facedir of 0 .. 23 does: facedir / 4 is the axis to which its top points (+y, +z,
-/// -z, +x, -x, -y), and facedir % 4 its turn about that axis. Other values are 0.
+/// Turns a node as a facedir of 0 .. 23 does: facedir / 4 is the axis to which its top points (+y,
+/// +z, -z, +x, -x, -y), and facedir % 4 its turn about that axis. Other values are 0.
 Shape turned_by_facedir(const Shape& shape, unsigned facedir) {
   if (facedir >= 24) return shape;
   const unsigned turn = facedir % 4, back = (4 - turn) % 4;
@@ -177,15 +154,37 @@ Shape turned_to_wall(const Shape& shape, unsigned wall) {
 
 std::string_view node_of_name(std::string_view name) { return name.substr(0, name.find('[')); }
 
+bool has_param2(std::string_view name) {
+  return !ShapeStates(states_in_name(name)).get("param2").empty();
+}
+
 unsigned param2_of_name(std::string_view name) {
   return ShapeStates(states_in_name(name)).number("param2", 0);
+}
+
+/// Returns the name of a node with its states, but with this param2 as the last of them. A param2
+/// of 0 is no state.
+std::string with_param2(std::string_view name, unsigned param2) {
+  std::string states;
+  const auto append = [&](std::string_view one) {
+    states.append(states.empty() ? "" : ",").append(one);
+  };
+  for (std::string_view left = states_in_name(name); !left.empty();) {
+    const std::size_t end = std::min(left.find(','), left.size());
+    const std::string_view one = left.substr(0, end);
+    if (!one.starts_with("param2=")) append(one);
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  if (param2 != 0) append("param2=" + std::to_string(param2));
+  std::string out(node_of_name(name));
+  return states.empty() ? out : out + '[' + states + ']';
 }
 
 const NodeShapeRule* node_rule(std::string_view name) {
   const std::string_view node = node_of_name(name);
   const auto* rule =
       std::find_if(std::begin(kNodeShapes), std::end(kNodeShapes),
-                   [&](const NodeShapeRule& one) { return fits_one(one.names, node); });
+                   [&](const NodeShapeRule& one) { return rule_names(one.names, node); });
   return rule == std::end(kNodeShapes) ? nullptr : rule;
 }
 
@@ -208,6 +207,8 @@ std::optional<Shape> shape_of_material_name(std::string_view name) {
       if (out.is_cube()) return std::nullopt;
       return out;
     }
+    // No block of Minecraft has a param2. The name of its node has the shape.
+    if (has_param2(name)) name = node_of_name(name);
   }
   const auto block = block_of_minecraft_material(name);
   return block ? shape_of_minecraft_block(*block) : std::nullopt;
@@ -236,10 +237,7 @@ std::optional<std::string> turned_node_name(std::string_view name, std::array<Ax
                                                          : 0;
   for (unsigned turn = 0; turn < count; ++turn) {
     if (!look_alike(shape_of_node(*rule, turn), wanted)) continue;
-    const unsigned param2 = before / bits * bits + turn;
-    std::string out(node_of_name(name));
-    if (param2 != 0) out += "[param2=" + std::to_string(param2) + "]";
-    return out;
+    return with_param2(name, before / bits * bits + turn);
   }
   return std::string();
 }

@@ -11,24 +11,28 @@
 
 namespace runstone {
 
-/// Returns the shape that belongs to the name of a material, or nullopt for a cube and for a name that
-/// no rule knows. check_shape() succeeds for each result. The names are
+/// Returns the shape that belongs to the name of a material, or nullopt for a cube and for a name
+/// that no rule knows. check_shape() succeeds for each result. The names are
 ///   - those of blocks of Minecraft (block_of_minecraft_material()), such as
 ///     "minecraft:oak_stairs[facing=east]";
 ///   - those of nodes of Luanti, such as "stairs:slab_wood" and "stairs:stair_wood[param2=3]". The
-///     param2 is a facedir or a direction to a wall, as the kind of node has it; none is 0. Fences and
-///     walls, which Luanti joins to their neighbours, are posts; panes that are not flat are crosses.
+///     param2 is a facedir or a direction to a wall, as the kind of node has it. A node without a
+///     param2 has the param2 0. Fences and walls, which Luanti joins to their neighbours, are
+///     posts; panes that are not flat are crosses. A node that only a rule of Minecraft knows, such
+///     as "mcl_core:ladder[param2=3]", has the shape of its name, whatever its param2.
 /// Names without a namespace have no shape: a table gives them one by its own keys. Cost: O(rules +
 /// bytes).
 std::optional<Shape> shape_of_material_name(std::string_view name);
 
-/// Returns the name of the material for a node of Luanti with states, such as "param2=3". They are in
-/// brackets behind the name of the node if they say how its shape lies, and are left out otherwise.
+/// Returns the name of the material for a node of Luanti with states, such as "param2=3". They are
+/// in brackets behind the name of the node if they say how its shape lies, and are left out
+/// otherwise.
 std::string node_material_name(std::string_view node, std::string_view states);
 
-/// Returns the name of the node of Luanti that is `name` turned (common/shapes/turned_shape.hpp): it
-/// has another param2. Returns nullopt if no rule names the node, and an empty text if no param2 makes
-/// it. Cost: O(rules + bytes), and 24 shapes.
+/// Returns the name of the node of Luanti that is `name` turned (common/shapes/turned_shape.hpp):
+/// it has another param2, which is the last of its states, and keeps the other states. Returns
+/// nullopt if no rule names the node, and an empty text if no param2 makes it. Cost: O(rules +
+/// bytes), and 24 shapes.
 std::optional<std::string> turned_node_name(std::string_view name, std::array<Axis, 3> along,
                                             std::uint8_t flips);
 

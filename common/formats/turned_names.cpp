@@ -190,7 +190,8 @@ std::string joined(const TurnedStates& states) {
   return join_states(out);
 }
 
-/// Returns the stairs that look like this shape. Stairs that lie on their side are others that stand.
+/// Returns the stairs that look like this shape. Stairs that lie on their side are others that
+/// stand.
 std::optional<ForeignBlock> stairs_like(const Shape& wanted, const ForeignBlock& stairs) {
   for (const std::string_view bend :
        {"straight", "inner_left", "inner_right", "outer_left", "outer_right"}) {
@@ -260,6 +261,9 @@ std::optional<std::string> turned_material_name(std::string_view name, std::arra
     if (text.find('#') != std::string::npos) return std::nullopt;
     return text;
   }
+  // The param2 of a node that only a rule of Minecraft knows does not say how it lies.
+  const auto shape = shape_of_material_name(name);
+  if (shape && !look_alike(*shape, turned(*shape, along, flips))) return std::nullopt;
   const std::string_view in_brackets = states_in_name(name);
   const auto split = split_states(in_brackets);
   if (in_brackets.empty() || !split) return std::string(name);

@@ -8,6 +8,7 @@
 #include "common/core/assert.hpp"
 #include "common/formats/vox.hpp"
 #include "common/formats/vox_look.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 #include "common/runs/reorder.hpp"
 
 namespace runstone {
@@ -120,7 +121,7 @@ class VoxWriter {
 Result<void> VoxWriter::choose_colours() {
   colours_.assign(build_.materials.size() + 1, 0);
   for (std::size_t i = 0; i < build_.materials.size(); ++i) {
-    if (build_.materials[i].row.visibility == Visibility::empty) continue;
+    if (visibility_as_cube(build_.materials[i].row) == Visibility::empty) continue;
     if (entries_.size() == kVoxColours - 1)
       return fail(ErrorCode::limit_exceeded, "vox: build has more than 255 materials");
     entries_.push_back(i);

@@ -9,8 +9,9 @@
 namespace runstone {
 
 struct MapMaterials {
+  // A shape that fills less than half of its voxel is not drawn (visibility_as_cube()).
   ShowingMaterials showing;             // every material that is drawn
-  ShowingMaterials ground;              // every opaque material
+  ShowingMaterials ground;              // every opaque material that is drawn
   std::vector<MaterialColour> colours;  // by id
 
   /// Returns the colour of a material; magenta if the table lacks it.
@@ -19,7 +20,7 @@ struct MapMaterials {
   }
 };
 
-/// Returns the facts about the materials of a table. Cost: O(materials).
+/// Returns the facts about the materials of a table. Cost: O(materials and their boxes).
 MapMaterials map_materials(const MaterialTable& table);
 
 }  // namespace runstone

@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "common/materials/visibility_as_cube.hpp"
 #include "common/shapes/shape_faces.hpp"
-#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 namespace {
@@ -44,11 +44,8 @@ class ShapeCheck {
   }
 
  private:
-  struct Before {
-    bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
-  };
   const std::set<Shape>& known_;
-  std::set<const Shape*, Before> fresh_;
+  std::set<const Shape*, ShapeBefore> fresh_;
 };
 
 }  // namespace
@@ -174,15 +171,10 @@ std::vector<Visibility> cube_visibilities(const MaterialTable& table) {
 }
 
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table) {
-  constexpr unsigned kHalf = kShapeUnits * kShapeUnits * kShapeUnits / 2;
-  std::vector<Visibility> out = visibilities(table);
-  const std::vector<Shape> by_material = shapes_of(table);
-  const ShapeTable shapes(by_material);
-  for (std::size_t id = 0; id < out.size(); ++id) {
-    const auto material = static_cast<Material>(id);
-    if (!shapes.is_cube(material) && shapes[material].faces.volume() < kHalf)
-      out[id] = Visibility::empty;
-  }
+  std::vector<Visibility> out;
+  out.reserve(table.size());
+  for (const MaterialInfo& row : table.rows())
+    out.push_back(visibility_as_cube(row.visibility, row.shape));
   return out;
 }
 

@@ -67,17 +67,19 @@ class MaterialTable {
   /// precede states in a name, [ { and ~. Cost: O(log size + result).
   std::vector<Material> family(std::string_view name) const;
   std::span<const MaterialInfo> rows() const { return rows_; }
+  /// Returns true if a row is no cube.
+  bool has_shapes() const { return !shapes_.empty(); }
 
   /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
   /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, a number or a
-  /// look outside its range, or a shape that the material must not have (check_shape(), and none if it
-  /// is empty). Fails with limit_exceeded for more than kTableShapesMax different shapes. Cost:
+  /// look outside its range, or a shape that the material must not have (check_shape(), and none if
+  /// it is empty). Fails with limit_exceeded for more than kTableShapesMax different shapes. Cost:
   /// O(log size), and that of check_shape() if no row has the shape.
   Result<Material> add(MaterialInfo info);
   /// Fails if the rows cannot be appended together: with limit_exceeded if the table has no room
   /// for all of them, and with bad_value for a bad row, or a name that is taken, by the table or by
-  /// an earlier row, and for a shape as add() does. The error's offset is the number of the row. Cost:
-  /// O(rows log size), and that of check_shape() for each shape that the table lacks.
+  /// an earlier row, and for a shape as add() does. The error's offset is the number of the row.
+  /// Cost: O(rows log size), and that of check_shape() for each shape that the table lacks.
   Result<void> check_rows(std::span<const MaterialRow> rows) const;
   /// Appends the rows, without generation rules; the first gets the id `first`. Fails as
   /// check_rows() does, and with broken_invariant if `first` is not size(); then nothing changes.
@@ -104,9 +106,8 @@ class MaterialTable {
 std::vector<Visibility> visibilities(const MaterialTable& table);
 /// Returns the visibilities for the mesh of the cubes: materials with a shape are empty.
 std::vector<Visibility> cube_visibilities(const MaterialTable& table);
-/// Returns the visibilities for coarse levels of detail: a shape that fills less than half of its
-/// voxel is empty, and any other counts as a cube. Cost: O(materials), and ShapeFaces for each
-/// different shape.
+/// Returns visibility_as_cube() of each material, for coarse levels of detail and maps. Cost:
+/// O(boxes of the materials).
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
 
 /// Returns the shape of each material by id, as ShapeTable takes them.

@@ -1,5 +1,5 @@
-// Reads a model from a file of a ModelFolder: with Assimp, but for .ply (ply_reader.hpp). Thread: one.
-// Calls block on the disk.
+// Reads a model from a file of a ModelFolder: with Assimp, but for .ply (ply_reader.hpp). Thread:
+// one. Calls block on the disk.
 #pragma once
 #include <string>
 

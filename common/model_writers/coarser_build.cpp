@@ -86,7 +86,8 @@ Result<CoarserBuild> coarser_build(const WrittenBuild& source, std::size_t bytes
        grid_cuts(halved(sides.z), kTileEdge)},
       bytes_max);
   if (!builder) return failure(builder.error());
-  // As materials the builder takes the cell numbers of the source, and so gives each its own number.
+  // As materials the builder takes the cell numbers of the source, and so gives each its own
+  // number.
   for (std::size_t number = 1; number <= source.materials.size(); ++number)
     RUNSTONE_ASSERT(builder->number_of(static_cast<Material>(number)) == number);
   if (auto put = CoarserBuilder(source, *builder).put_all(); !put) return failure(put.error());

@@ -9,7 +9,8 @@
 // builds with equal sections give equal bytes.
 //
 // Each writer requires a material for each palette entry of the build, a side of a voxel that is
-// finite and above 0, and at most kModelLevelsMax levels. It fails, before anything is written, with:
+// finite and above 0, and at most kModelLevelsMax levels. It fails, before anything is written,
+// with:
 //   - bad_value if the build shows no face;
 //   - limit_exceeded if the file becomes larger than the format allows.
 // It fails with io_failed if the sink returns false. Cost: a number of passes of ModelWalk: one for

@@ -44,7 +44,8 @@ struct ModelWriting {
   /// KHR_mesh_quantization.
   bool is_quantised = false;
   /// The levels of detail besides the finest one, at most kModelLevelsMax. A .glb or .gltf holds
-  /// them. The writers of other formats do not use it: their levels are files of their own (common/build_files).
+  /// them. The writers of other formats do not use it: their levels are files of their own
+  /// (common/build_files).
   unsigned levels = 0;
   /// The side of a voxel. Finite and above 0.
   double metres_per_voxel = 1;

@@ -1,5 +1,5 @@
-// ModelChoices: what a person chooses when a file with a model becomes a build (docs/models.md). The
-// same for programs, commands, scripts and windows. Plain data. Thread: any.
+// ModelChoices: what a person chooses when a file with a model becomes a build (docs/models.md).
+// The same for programs, commands, scripts and windows. Plain data. Thread: any.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -26,9 +26,9 @@ struct ModelChoices {
   /// The inside is filled. A model that is no closed surface is filled by its winding number.
   bool is_solid = true;
   /// The surface that is set besides the inside. It keeps walls in which no voxel has its centre. A
-  /// closed model becomes no thicker by a thin one, and up to a voxel by the others. If it is unset,
-  /// a solid model gets no surface. A hollow model, and one in which no voxel is inside, then gets a
-  /// thin one.
+  /// closed model becomes no thicker by a thin one, and up to a voxel by the others. If it is
+  /// unset, a solid model gets no surface. A hollow model, and one in which no voxel is inside,
+  /// then gets a thin one.
   std::optional<SurfaceMode> surface = std::nullopt;
   /// Where closed parts overlap, the inside is filled, too.
   bool fills_overlaps = false;
@@ -40,8 +40,8 @@ struct ModelChoices {
   friend bool operator==(const ModelChoices&, const ModelChoices&) = default;
 };
 
-/// Returns why a number of voxels of the longest side is none, such as "a whole number from 1 to 4096
-/// is expected", or an empty text.
+/// Returns why a number of voxels of the longest side is none, such as "a whole number from 1 to
+/// 4096 is expected", or an empty text.
 std::string voxels_refusal(std::int64_t voxels);
 /// Returns why a number of voxels of a metre is none, or an empty text.
 std::string voxels_per_metre_refusal(double voxels_per_metre);

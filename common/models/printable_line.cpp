@@ -8,7 +8,8 @@ namespace runstone {
 
 std::string printable_line(std::string_view text, std::size_t bytes_max) {
   constexpr std::size_t kCharacterBytesMax = 4;
-  // The bytes behind these cannot be part of the result, because each byte stays or becomes one byte.
+  // The bytes behind these cannot be part of the result, because each byte stays or becomes one
+  // byte.
   text = text.substr(0, std::min(text.size(), bytes_max + kCharacterBytesMax));
   std::string line;
   while (!text.empty()) {

@@ -1,5 +1,5 @@
-// SurfaceMode: which voxels the surface of a model becomes. Its own file, because programs without the
-// voxeliser let people choose it. Thread: any.
+// SurfaceMode: which voxels the surface of a model becomes. Its own file, because programs without
+// the voxeliser let people choose it. Thread: any.
 #pragma once
 #include <cstdint>
 

@@ -33,7 +33,8 @@ CellLayers layers_along(Axis axis, const Shape& shape) {
   return out;
 }
 
-/// Appends rectangles that cover the cells exactly once: each is as wide as it can be, then as high.
+/// Appends rectangles that cover the cells exactly once: each is as wide as it can be, then as
+/// high.
 void append_rectangles(CellLayer cells, Direction direction, std::uint8_t depth,
                        std::vector<ShapeFace>& out) {
   for (std::size_t v = 0; v < kSide; ++v) {
@@ -96,11 +97,17 @@ ShapeFaces::ShapeFaces(const Shape& shape) {
     append_surface(layers, static_cast<Direction>(negative + 1), faces_);
     sides_[negative] = mask_of(layers.front());
     sides_[negative + 1] = mask_of(layers.back());
-    if (axis != Axis::x) continue;
-    for (const CellLayer& layer : layers) {
-      for (const std::uint16_t row : layer) volume_ += static_cast<unsigned>(std::popcount(row));
-    }
   }
+}
+
+unsigned filled_cells(const Shape& shape) {
+  RUNSTONE_ASSERT(!shape.is_cube());
+  if (shape.form == ShapeForm::crossed) return 0;
+  unsigned out = 0;
+  for (const CellLayer& layer : layers_along(Axis::x, shape)) {
+    for (const std::uint16_t row : layer) out += static_cast<unsigned>(std::popcount(row));
+  }
+  return out;
 }
 
 Result<void> check_shape(const Shape& shape) {

@@ -40,14 +40,15 @@ class ShapeFaces {
   /// Returns the cells of the voxel's side in this direction that the shape fills. Crossed planes
   /// fill none.
   const SideMask& side(Direction d) const { return sides_[static_cast<std::size_t>(d)]; }
-  /// Returns the filled volume in cells, 0 .. 4096. Crossed planes have none.
-  unsigned volume() const { return volume_; }
 
  private:
   std::vector<ShapeFace> faces_;
   std::array<SideMask, kDirectionCount> sides_;
-  unsigned volume_ = 0;
 };
+
+/// Returns the volume that a shape fills, in cells, 0 .. 4096. Crossed planes fill none. Requires a
+/// valid shape that is no cube. Cost: O(boxes).
+unsigned filled_cells(const Shape& shape);
 
 /// A shape of more faces is not accepted: a quad has ten bits for the number of the face
 /// (common/mesh/quad.hpp).

@@ -1,5 +1,5 @@
-// The boxes of the kinds are dimensions of the blocks of Minecraft, rounded to sixteenths. Kinds that
-// have a facing are written for north and turned.
+// The boxes of the kinds are dimensions of the blocks of Minecraft, rounded to sixteenths. Kinds
+// that have a facing are written for north and turned.
 #include "common/shapes/shape_kinds.hpp"
 
 #include <algorithm>
@@ -15,20 +15,13 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kFacings = {"north", "east", "south", "west"};
 
-Shape upside_down(const Shape& shape) { return turned(shape, {Axis::x, Axis::y, Axis::z}, 2); }
-
 bool is_top(const ShapeStates& states) { return states.is("half", "top"); }
-
-Shape with(Shape shape, const Shape& more) {
-  shape.boxes.insert(shape.boxes.end(), more.boxes.begin(), more.boxes.end());
-  return shape;
-}
 
 /// Adds what lies north to each of the four sides whose state is `value`.
 Shape with_arms(Shape shape, const Shape& north, const ShapeStates& states,
                 std::string_view value = "true") {
   for (const std::string_view side : kFacings) {
-    if (states.is(side, value)) shape = with(std::move(shape), faced(north, side));
+    if (states.is(side, value)) shape = with_boxes(std::move(shape), faced(north, side));
   }
   return shape;
 }
@@ -101,8 +94,9 @@ Shape fence_gate_kind(const ShapeStates& states) {
       out.boxes.push_back(shape_box(x, 12, 3, x + 2, 15, 7));
     }
   } else {
-    out = with(out, shape_of_boxes({shape_box(2, 6, 7, 14, 9, 9), shape_box(2, 12, 7, 14, 15, 9),
-                                    shape_box(6, 9, 7, 10, 12, 9)}));
+    out = with_boxes(out,
+                     shape_of_boxes({shape_box(2, 6, 7, 14, 9, 9), shape_box(2, 12, 7, 14, 15, 9),
+                                     shape_box(6, 9, 7, 10, 12, 9)}));
   }
   if (states.is_true("in_wall")) {
     for (ShapeBox& box : out.boxes) {
@@ -230,7 +224,7 @@ Shape candle_kind(const ShapeStates& states) {
                       shape_box(4, 0, 10, 6, 5, 12), shape_box(10, 0, 10, 12, 5, 12)});
   // Two and three would lie askew, and no state says how.
   if (count == 2) return shape_of_boxes({shape_box(6, 0, 6, 10, 6, 10)});
-  return count == 3 ? four : with(four, one);
+  return count == 3 ? four : with_boxes(four, one);
 }
 
 Shape head_kind(const ShapeStates&) { return shape_of_boxes({shape_box(4, 0, 4, 12, 8, 12)}); }
@@ -240,8 +234,8 @@ Shape wall_head_kind(const ShapeStates& states) {
 }
 
 Shape sign_kind(const ShapeStates& states) {
-  return with(shape_of_boxes({shape_box(7, 0, 7, 9, 8, 9)}),
-              rotated_board(shape_box(0, 8, 7, 16, 16, 9), states));
+  return with_boxes(shape_of_boxes({shape_box(7, 0, 7, 9, 8, 9)}),
+                    rotated_board(shape_box(0, 8, 7, 16, 16, 9), states));
 }
 
 Shape wall_sign_kind(const ShapeStates& states) {
@@ -249,8 +243,8 @@ Shape wall_sign_kind(const ShapeStates& states) {
 }
 
 Shape hanging_sign_kind(const ShapeStates& states) {
-  return with(shape_of_boxes({shape_box(7, 10, 7, 9, 16, 9)}),
-              rotated_board(shape_box(1, 0, 7, 15, 10, 9), states));
+  return with_boxes(shape_of_boxes({shape_box(7, 10, 7, 9, 16, 9)}),
+                    rotated_board(shape_box(1, 0, 7, 15, 10, 9), states));
 }
 
 Shape wall_hanging_sign_kind(const ShapeStates& states) {

@@ -1,5 +1,5 @@
-// The built-in kinds of shapes: slabs, stairs, fences and the like. A material's states say how a kind
-// lies: facing=north|east|south|west (-z, +x, +z, -x), half=bottom|top, and others
+// The built-in kinds of shapes: slabs, stairs, fences and the like. A material's states say how a
+// kind lies: facing=north|east|south|west (-z, +x, +z, -x), half=bottom|top, and others
 // (docs/materials.md lists them).
 #pragma once
 #include <optional>

@@ -36,6 +36,13 @@ std::string_view states_in_name(std::string_view material) {
 
 Shape shape_of_boxes(std::initializer_list<ShapeBox> boxes) { return {ShapeForm::boxes, boxes}; }
 
+Shape with_boxes(Shape shape, const Shape& more) {
+  shape.boxes.insert(shape.boxes.end(), more.boxes.begin(), more.boxes.end());
+  return shape;
+}
+
+Shape upside_down(const Shape& shape) { return turned(shape, {Axis::x, Axis::y, Axis::z}, 2); }
+
 Shape plant_shape(unsigned height, unsigned inset) {
   return {ShapeForm::crossed, {shape_box(inset, 0, inset, 16 - inset, height, 16 - inset)}};
 }
@@ -50,7 +57,7 @@ Shape faced(const Shape& north, std::string_view facing) {
 
 Shape upended(const Shape& up, std::string_view facing) {
   if (facing == "up") return up;
-  if (facing == "down") return turned(up, {Axis::x, Axis::y, Axis::z}, 2);
+  if (facing == "down") return upside_down(up);
   // The upper side then lies north.
   return faced(turned(up, {Axis::x, Axis::z, Axis::y}, 4), facing);
 }

@@ -37,6 +37,12 @@ constexpr ShapeBox shape_box(unsigned x0, unsigned y0, unsigned z0, unsigned x1,
 
 Shape shape_of_boxes(std::initializer_list<ShapeBox> boxes);
 
+/// Returns the shape with the boxes of another one.
+Shape with_boxes(Shape shape, const Shape& more);
+
+/// Mirrors a shape along y.
+Shape upside_down(const Shape& shape);
+
 /// Returns a plant of this height, 1 .. 16, that keeps `inset` sixteenths from the voxel's sides.
 Shape plant_shape(unsigned height, unsigned inset = 1);
 

@@ -8,10 +8,11 @@
 
 namespace runstone {
 
-/// Returns the shape as it lies in the world. `along` are the axes of the shape in the order in which
-/// they run along world x, y, z. Bits 0, 1, 2 of `flips`: that axis runs backwards along world x, y,
-/// z. Boxes keep their order. Crossed planes stay upright: they keep their box if another axis
-/// than y lies along world y. Requires a valid shape, and each axis once. Cost: O(boxes).
+/// Returns the shape as it lies in the world. `along` are the axes of the shape in the order in
+/// which they run along world x, y, z. Bits 0, 1, 2 of `flips`: that axis runs backwards along
+/// world x, y, z. Boxes keep their order. Crossed planes stay upright: they keep their box if
+/// another axis than y lies along world y. Requires a valid shape, and each axis once. Cost:
+/// O(boxes).
 Shape turned(const Shape& shape, std::array<Axis, 3> along, std::uint8_t flips);
 
 /// Returns the shape turned by quarter turns about y: the side that lay north (-z) then lies east

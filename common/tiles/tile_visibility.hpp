@@ -13,8 +13,8 @@ struct TileVisibility {
   TileVisibility(VisibilityTable of_cells, VisibilityTable of_veil)
       : cells(std::move(of_cells)), veil(std::move(of_veil)) {}
 
-  /// For build_tile(): a shape that fills at least half of its voxel counts as a cube, any other one
-  /// is empty.
+  /// For build_tile(): a shape that fills at least half of its voxel counts as a cube, any other
+  /// one is empty.
   VisibilityTable cells;
   /// For veiled(): shapes are empty, because a shape hides nothing.
   VisibilityTable veil;

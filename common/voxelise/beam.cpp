@@ -65,8 +65,8 @@ struct ColourCandidate {
   }
 };
 
-/// A triangle crosses the line between the centres of two voxels: of `at` and of the voxel before it
-/// along `axis`. It sorts by axis and place.
+/// A triangle crosses the line between the centres of two voxels: of `at` and of the voxel before
+/// it along `axis`. It sorts by axis and place.
 struct WallCrossing {
   unsigned axis = 0;
   std::array<std::int32_t, 3> at{};  // y and z from the beam on; along `axis` up to the side
@@ -98,7 +98,8 @@ struct WallCrossing {
 };
 
 /// Returns the first voxel whose centre is behind a crossing of a line along an axis, if centre and
-/// line are moved by an infinitesimal along x, an infinitely smaller one along y, and again along z.
+/// line are moved by an infinitesimal along x, an infinitely smaller one along y, and again along
+/// z.
 std::int32_t first_centre_behind(const Crossing& crossing, unsigned axis, const UnitTriangle& t) {
   const std::int32_t first = crossing.first_centre();
   if (axis == 0 || !crossing.is_on_centre()) return first;
@@ -121,10 +122,11 @@ struct ShellVoxel {
   VoxelRgb colour{};
 };
 
-/// When a beam holds so many entries for the first time, it sorts them and drops those that are equal.
+/// When a beam holds so many entries for the first time, it sorts them and drops those that are
+/// equal.
 constexpr std::size_t kBeamHeldSorted = std::size_t{1} << 22;
-/// A beam that holds more than this after it was sorted is refused. It grows to twice as many entries of
-/// 8 bytes before it is sorted: 512 MiB.
+/// A beam that holds more than this after it was sorted is refused. It grows to twice as many
+/// entries of 8 bytes before it is sorted: 512 MiB.
 constexpr std::size_t kBeamHeldMax = std::size_t{1} << 25;
 
 /// Sorts stretches, and joins those that touch or overlap.
@@ -325,9 +327,9 @@ class BeamMaker {
     }
   }
 
-  /// Adds the thin surface where it is not the border of the solid. Of two neighbours, one is inside
-  /// and the other is not if the line between their centres crosses the mesh an odd number of times;
-  /// by winding number at least one is inside if the signed crossings do not cancel out.
+  /// Adds the thin surface where it is not the border of the solid. Of two neighbours, one is
+  /// inside and the other is not if the line between their centres crosses the mesh an odd number
+  /// of times; by winding number at least one is inside if the signed crossings do not cancel out.
   void add_walls() {
     std::sort(walls_.begin(), walls_.end());
     for (std::size_t begin = 0; begin < walls_.size();) {

@@ -52,8 +52,8 @@ struct VoxeliseOptions {
   /// Is asked after each beam. The work ends with io_failed soon after it returns false. Empty: it
   /// always goes on.
   std::function<bool()> should_continue = {};
-  /// Takes the share of the work that is done, above 0 .. 1, on the thread of the call after each row
-  /// of beams. It never falls. Empty: nobody wants to know.
+  /// Takes the share of the work that is done, above 0 .. 1, on the thread of the call after each
+  /// row of beams. It never falls. Empty: nobody wants to know.
   std::function<void(double share)> progress = {};
 };
 

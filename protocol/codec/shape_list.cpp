@@ -7,23 +7,18 @@
 #include "common/shapes/shape_bytes.hpp"
 
 namespace runstone {
-namespace {
-
-bool is_shape_before(const Shape* a, const Shape* b) { return *a < *b; }
-
-}  // namespace
 
 ShapeList::ShapeList(const MaterialTable& table) {
   for (const MaterialInfo& row : table.rows()) {
     if (!row.shape.is_cube()) shapes_.push_back(&row.shape);
   }
-  std::sort(shapes_.begin(), shapes_.end(), is_shape_before);
+  std::sort(shapes_.begin(), shapes_.end(), ShapeBefore{});
   const auto same = [](const Shape* a, const Shape* b) { return *a == *b; };
   shapes_.erase(std::unique(shapes_.begin(), shapes_.end(), same), shapes_.end());
 }
 
 std::uint16_t ShapeList::number_of(const Shape& shape) const {
-  const auto at = std::lower_bound(shapes_.begin(), shapes_.end(), &shape, is_shape_before);
+  const auto at = std::lower_bound(shapes_.begin(), shapes_.end(), &shape, ShapeBefore{});
   RUNSTONE_ASSERT(at != shapes_.end() && **at == shape);
   return static_cast<std::uint16_t>(at - shapes_.begin() + 1);
 }

@@ -96,8 +96,10 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   made->add_option("--map", out.map,
                    "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
                    "\"planks\" below [materials]");
-  made->add_flag("--keep-all", out.keep_all,
-                 "keep blocks that are no cubes and have no shape as cubes");
+  made->add_flag(
+      "--keep-all", out.keep_all,
+      "keep blocks that are no whole cubes and have no shape, such as wires, as see-through "
+      "cubes, and plants in water instead of the water");
   made->add_flag("--progress", out.progress,
                  "print progress even if standard error is no terminal");
   return made;

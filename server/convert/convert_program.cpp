@@ -26,7 +26,7 @@ constexpr std::size_t kFileBytesMax = std::size_t{4} << 30;
 struct ConvertOptions {
   std::string in, out, name, map, colours;
   std::uint64_t memory_mib = 2048;
-  bool keep_all = true;
+  bool only_cubes = false;
   bool lists = false;
   ModelReading read_model;
   FileWriting writing;
@@ -34,7 +34,8 @@ struct ConvertOptions {
 
 Result<FileBuild, std::string> read(const ConvertOptions& options, std::ostream& out) {
   BuildReading reading;
-  reading.foreign.keep_all = options.keep_all;
+  reading.foreign.keep_all = !options.only_cubes;
+  reading.foreign.only_cubes = options.only_cubes;
   reading.foreign.bytes_max = static_cast<std::size_t>(options.memory_mib) << 20;
   reading.foreign.colours_file = options.colours;
   reading.model = options.read_model;
@@ -128,9 +129,10 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   app.add_option("--memory", options.memory_mib, "MiB that the build may take; default 2048")
       ->check(CLI::Range(1, 1 << 20));
   app.add_flag("--list", options.lists, "list the materials, as the rows of a map name them");
-  app.add_flag_callback(
-      "--only-cubes", [&options] { options.keep_all = false; },
-      "leave out blocks that are no cubes and have no shape");
+  app.add_flag(
+      "--only-cubes", options.only_cubes,
+      "leave out blocks that are no whole cubes, such as plants, torches and wires, but not "
+      "shapes that fill at least half of their voxel, such as stairs; an .rsb stays as it is");
   add_model_options(app, options.read_model);
   app.add_flag("--close-t-junctions", options.writing.model.closes_t_junctions,
                "models: let each edge of a triangle end where an edge of its neighbour ends");

@@ -6,6 +6,7 @@
 #include "common/core/assert.hpp"
 #include "common/map/map_painter.hpp"
 #include "common/map/map_tops.hpp"
+#include "common/materials/visibility_as_cube.hpp"
 #include "server/map/map_png.hpp"
 
 namespace runstone {
@@ -18,8 +19,9 @@ MapMaterials facts_of(const std::vector<BuildMaterial>& materials) {
   out.ground.push_back(false);
   out.colours.push_back({});
   for (const BuildMaterial& material : materials) {
-    out.showing.push_back(material.row.visibility != Visibility::empty);
-    out.ground.push_back(material.row.visibility == Visibility::opaque);
+    const Visibility visibility = visibility_as_cube(material.row);
+    out.showing.push_back(visibility != Visibility::empty);
+    out.ground.push_back(visibility == Visibility::opaque);
     out.colours.push_back(material.row.colour);
   }
   return out;

@@ -1,6 +1,5 @@
 #include "server/store/new_world.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "common/tiles/tile_rules.hpp"
@@ -28,10 +27,7 @@ StoreResult<void> fill_new_world(sql::Database& database, const WorldMeta& meta)
   rows["author_max"] = std::int64_t{0};
   rows["log_last"] = std::int64_t{0};
   rows["tile_rules"] = std::int64_t{kTileRules};
-  const auto materials = meta.materials.rows();
-  if (std::any_of(materials.begin(), materials.end(),
-                  [](const MaterialInfo& row) { return !row.shape.is_cube(); }))
-    rows[kShapesKey] = std::int64_t{1};
+  if (meta.materials.has_shapes()) rows[kShapesKey] = std::int64_t{1};
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }

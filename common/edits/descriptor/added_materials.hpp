@@ -33,8 +33,8 @@ inline constexpr std::size_t kAddedLooksBytesMax = kAddedMaterialsMax * kLookByt
 /// otherwise those of the kind `materials`. Cost: O(rows).
 bool has_looks(const AddedMaterials& added);
 
-/// Fails if a row is not valid (validate_material()) or has a shape, if two have one name, or if their number or
-/// their ids are out of range. Cost: O(n log n).
+/// Fails if a row is not valid (validate_material()) or has a shape, if two have one name, or if
+/// their number or their ids are out of range. Cost: O(n log n).
 Result<void> validate(const AddedMaterials& added);
 
 /// Appends the canonical bytes. Requires validate().

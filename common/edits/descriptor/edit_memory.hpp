@@ -16,7 +16,8 @@ inline std::size_t own_bytes(const EditDescriptor& edit) {
 }
 
 /// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, or at most
-/// those of a change of rights, of new materials, of shapes or of the library, otherwise 0. Cost: O(1).
+/// those of a change of rights, of new materials, of shapes or of the library, otherwise 0. Cost:
+/// O(1).
 inline std::size_t shared_bytes(const EditDescriptor& edit) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
   if (std::holds_alternative<RightsEdit>(edit.shape)) return kRightsChangeBytesMax;

@@ -8,9 +8,6 @@
 namespace runstone {
 namespace {
 
-struct ShapeBefore {
-  bool operator()(const Shape* a, const Shape* b) const { return *a < *b; }
-};
 using ShapeSet = std::set<const Shape*, ShapeBefore>;
 
 /// Counts the rows of a record as they are added.

@@ -84,10 +84,7 @@ bool Order::apply_materials(const std::vector<EditRecord>& records) {
   return has_changed;
 }
 
-bool Order::has_shapes() const {
-  return std::ranges::any_of(materials_.rows(),
-                             [](const MaterialInfo& row) { return !row.shape.is_cube(); });
-}
+bool Order::has_shapes() const { return materials_.has_shapes(); }
 
 void Order::append(OrderedBatch& batch) {
   std::vector<PlayerRow> players;

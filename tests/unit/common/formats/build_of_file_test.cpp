@@ -26,6 +26,8 @@ MaterialInfo joined_material(const ForeignBlock& block, bool) {
   MaterialInfo out;
   out.name = block.name;
   if (block.name.starts_with("air")) out.visibility = Visibility::empty;
+  if (block.name == "plant") out.shape = {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  if (block.name == "slab") out.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
   return out;
 }
 
@@ -129,6 +131,23 @@ TEST_CASE("the section of a piece that fits the grid is the piece, and air is em
   CHECK(build->materials[0].row.name == "air");
   CHECK(build->materials[0].row.visibility == Visibility::empty);
   CHECK(build->build->palette() == std::vector<Material>{kEmpty, 1});
+}
+
+TEST_CASE("on request, shapes that fill less than half of their voxel are empty",
+          "[formats][shapes]") {
+  std::vector<ForeignPiece> pieces;
+  std::int32_t x = 0;
+  for (const char* name : {"plant", "slab", "stone"})
+    pieces.push_back(uniform_piece({x++, 0, 0}, {1, 1, 1}, name));
+  joined_pieces = &pieces;
+  joined_info = {};
+  const auto all = read_foreign_build(kJoinedFormat, {}, {});
+  const auto cubes = read_foreign_build(kJoinedFormat, {}, {.only_cubes = true});
+  REQUIRE((all && cubes));
+  CHECK(cell_text(*all, {0, 0, 0}) == "plant");
+  CHECK(cell_text(*cubes, {0, 0, 0}) == "air");
+  CHECK(cell_text(*cubes, {1, 0, 0}) == "slab");
+  CHECK(cell_text(*cubes, {2, 0, 0}) == "stone");
 }
 
 TEST_CASE("what a file says of itself becomes a valid info", "[formats]") {

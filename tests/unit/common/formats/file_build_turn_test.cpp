@@ -9,6 +9,7 @@
 #include "common/formats/schematic_reader.hpp"
 #include "common/formats/schematic_writer.hpp"
 #include "common/formats/shape_names.hpp"
+#include "common/shapes/shape_faces.hpp"
 #include "common/shapes/turned_shape.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
@@ -100,6 +101,18 @@ TEST_CASE("a turned node of Luanti has another param2 in its name and states", "
   CHECK(now == node("param2=1"));
 }
 
+TEST_CASE("a turned node keeps its other states", "[formats][turn]") {
+  const auto node = [](const std::string& name, const std::string& states) {
+    BuildMaterial out = file_material(name, states, {9, 9, 9, 255});
+    out.row.shape = shape_of_material_name(name).value_or(Shape{});
+    return out;
+  };
+  CHECK(left(node("stairs:stair_wood[a=b,param2=1]", "a=b,param2=1")) ==
+        "stairs:stair_wood[a=b,param2=2]|a=b,param2=2");
+  CHECK(left(node("stairs:stair_wood", "a=b")) == "stairs:stair_wood[a=b,param2=1]|a=b,param2=1");
+  CHECK(left(node("stairs:stair_wood[a=b,param2=3]", "")) == "stairs:stair_wood[a=b]|");
+}
+
 TEST_CASE("a shape of its own is turned with its material", "[formats][turn]") {
   BuildMaterial bench = file_material("bench", "", {9, 9, 9, 255});
   bench.row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 4}}, {{0, 8, 0}, {4, 16, 4}}}};
@@ -107,6 +120,37 @@ TEST_CASE("a shape of its own is turned with its material", "[formats][turn]") {
   REQUIRE(once);
   CHECK(once->row.shape == turned_about_y(bench.row.shape, 3));
   CHECK(once->row.name == "bench");
+}
+
+TEST_CASE("a shape that would have too many faces stays as it lies, and is counted",
+          "[formats][turn][shapes]") {
+  BuildMaterial lattice = file_material("lattice", "", {9, 9, 9, 255});
+  lattice.row.shape = {ShapeForm::boxes,
+                       {{{12, 0, 0}, {13, 16, 15}},
+                        {{2, 12, 1}, {16, 13, 16}},
+                        {{0, 0, 6}, {15, 15, 7}},
+                        {{8, 0, 3}, {9, 16, 15}},
+                        {{0, 8, 3}, {16, 9, 16}},
+                        {{0, 0, 12}, {15, 15, 13}},
+                        {{10, 3, 0}, {11, 13, 15}},
+                        {{1, 2, 0}, {16, 3, 14}},
+                        {{0, 0, 10}, {14, 14, 11}},
+                        {{4, 1, 0}, {5, 16, 16}},
+                        {{2, 10, 0}, {16, 11, 14}},
+                        {{1, 2, 4}, {14, 16, 5}},
+                        {{2, 3, 3}, {3, 16, 16}},
+                        {{1, 4, 3}, {16, 5, 16}}}};
+  REQUIRE(ShapeFaces(lattice.row.shape).faces().size() == kShapeFacesMax);
+  REQUIRE(ShapeFaces(turned_about_y(lattice.row.shape, 3)).faces().size() > kShapeFacesMax);
+  const auto done = turned_file_build(row_of_materials({lattice}), kLeft);
+  REQUIRE(done);
+  CHECK(done->stuck == 1);
+  CHECK(done->build.materials == std::vector{lattice});
+  CHECK(validate_build_materials(done->build.materials));
+  lattice.row.shape = turned_about_y(lattice.row.shape, 3);
+  const auto refused = validate_build_materials(std::vector{lattice});
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("a material that no state turns stays, and is counted", "[formats][turn]") {

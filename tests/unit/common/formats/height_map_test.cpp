@@ -212,4 +212,17 @@ TEST_CASE("a build from above is a height map and a colour map, and their column
   CHECK_FALSE(written(write_height_map, long_build).has_value());
 }
 
+TEST_CASE("a build from above shows what is below a plant", "[formats][shapes]") {
+  std::vector<BuildMaterial> materials = {file_material("plant", "", {10, 200, 10, 255}),
+                                          file_material("stone", "", {1, 2, 3, 255})};
+  materials[0].row.shape = {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  const FileBuild build = file_build({1, 2, 1}, materials, [](VoxelPos at) {
+    return static_cast<std::uint16_t>(at.y == 0 ? 2 : 1);
+  });
+  const auto heights = written(write_height_map, build);
+  const auto colours = written(write_colour_map, build);
+  REQUIRE((heights && colours));
+  CHECK(columns_of(*heights, *colours, {}) == Columns{{{0, 0}, {"colour #010203"}}});
+}
+
 }  // namespace runstone::test

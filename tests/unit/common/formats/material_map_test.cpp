@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/formats/mapped_build.hpp"
+#include "common/formats/shape_names.hpp"
 #include "common/materials/material_table.hpp"
 #include "tests/support/formats/file_builds.hpp"
 
@@ -86,6 +87,20 @@ TEST_CASE("a mapped material looks as its new name says, and air is empty", "[fo
   // Voxels that are empty stay empty.
   CHECK_FALSE(map.apply(file_material("air", "", {0, 0, 0, 0}), applied).has_value());
   CHECK(unused_rows_text(map, applied) == "\"air\"");
+}
+
+TEST_CASE("a mapped material has the shape of its new name, not that of the source",
+          "[formats][shapes]") {
+  BuildMaterial stairs = grey("minecraft:oak_stairs");
+  stairs.row.shape = *shape_of_material_name("minecraft:oak_stairs");
+  const auto mapped_to = [&](const std::string& name) {
+    AppliedRows applied;
+    return map_of({{"minecraft:oak_stairs", name}}).apply(stairs, applied)->shape;
+  };
+  CHECK(mapped_to("default:wood").is_cube());
+  CHECK(mapped_to("my ramp").is_cube());
+  CHECK(mapped_to("stairs:slab_wood") == shape_of_material_name("stairs:slab_wood"));
+  CHECK(mapped_to("minecraft:oak_planks").is_cube());
 }
 
 TEST_CASE("bad rows of a map are refused with their number", "[formats]") {

@@ -169,14 +169,17 @@ TEST_CASE("builds that are longer than a schematic are not written", "[formats]"
 
 TEST_CASE("a param2 in the name of a material is that of its node", "[formats]") {
   const FileBuild build =
-      file_build({2, 1, 1},
+      file_build({3, 1, 1},
                  {file_material("stairs:stair_wood[param2=3]", "param2=3", {1, 2, 3, 255}),
-                  file_material("stairs:stair_wood[param2=1]", "", {1, 2, 3, 255})},
+                  file_material("stairs:stair_wood[param2=1]", "", {1, 2, 3, 255}),
+                  file_material("stairs:stair_wood[a=b,param2=2]", "a=b,param2=2", {1, 2, 3, 255})},
                  [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
   const auto file = written(write_mts, build);
   REQUIRE(file);
-  CHECK(mts_names(*file) == std::vector<std::string>{"stairs:stair_wood[param2=3]|param2=3",
-                                                     "stairs:stair_wood[param2=1]|param2=1"});
+  CHECK(mts_names(*file) ==
+        std::vector<std::string>{"stairs:stair_wood[param2=3]|param2=3",
+                                 "stairs:stair_wood[param2=1]|param2=1",
+                                 "stairs:stair_wood[a=b,param2=2]|a=b,param2=2"});
 }
 
 }  // namespace runstone::test

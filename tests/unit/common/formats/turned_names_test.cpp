@@ -101,6 +101,13 @@ TEST_CASE("nodes of Luanti get another param2", "[formats][shapes]") {
   }
 }
 
+TEST_CASE("a node whose param2 says nothing of its shape has no name for another lie",
+          "[formats][shapes]") {
+  CHECK(quarter("mcl_core:ladder[param2=3]") == "none");
+  CHECK(quarter("mcl_fences:oak_fence[param2=3]") == "mcl_fences:oak_fence[param2=3]");
+  CHECK(quarter("default:chest[param2=3]") == "default:chest[param2=3]");
+}
+
 TEST_CASE("other names change the states in their brackets", "[formats][shapes]") {
   CHECK(quarter("stairs[facing=north,half=top]") == "stairs[facing=east,half=top]");
   CHECK(mirrored_x("stairs[facing=west,shape=inner_left]") ==

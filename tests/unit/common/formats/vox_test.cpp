@@ -287,4 +287,21 @@ TEST_CASE("builds with too many materials or without a voxel are not written", "
   CHECK(write_vox(stone, [](ByteView) { return false; }).error().code == ErrorCode::io_failed);
 }
 
+TEST_CASE("a .vox has cubes in place of shapes, and none for one that fills less than half",
+          "[formats][shapes]") {
+  std::vector<BuildMaterial> materials = {file_material("slab", "", {1, 2, 3, 255}),
+                                          file_material("torch", "", {4, 5, 6, 255})};
+  materials[0].row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  materials[1].row.shape = {ShapeForm::boxes, {{{7, 0, 7}, {9, 10, 9}}}};
+  const FileBuild build = file_build(
+      {2, 1, 1}, materials, [](VoxelPos at) { return static_cast<std::uint16_t>(at.x + 1); });
+  const auto bytes = written(write_vox, build);
+  REQUIRE(bytes.has_value());
+  const auto read = read_foreign_build(kVox, *bytes, {});
+  REQUIRE(read.has_value());
+  REQUIRE(read->materials.size() == 1);
+  CHECK(read->materials[0].row.name == "slab");
+  CHECK(cell_texts(*read).at(1) == "-");
+}
+
 }  // namespace runstone::test

@@ -131,3 +131,18 @@ TEST_CASE("a column without a voxel is transparent, and an unknown material is n
   tops.surface[1] = tops.ground[1] = {-kWorldLimit, kStone};
   CHECK(paint_map(tops, {}, {}, some_materials(), 256)[0] >> 24 == 255);
 }
+
+TEST_CASE("a map shows no shape that fills less than half of its voxel", "[map][shapes]") {
+  MaterialTable table;
+  const Shape plant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  const Shape slab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  MaterialInfo info{"plant", {10, 200, 10, 255}, Visibility::opaque, {}};
+  info.shape = plant;
+  REQUIRE(table.add(info));
+  info.name = "slab";
+  info.shape = slab;
+  REQUIRE(table.add(info));
+  const MapMaterials materials = map_materials(table);
+  CHECK(materials.showing == ShowingMaterials{false, false, true});
+  CHECK(materials.ground == ShowingMaterials{false, false, true});
+}

@@ -450,4 +450,25 @@ TEST_CASE("the sections of a build do not change the faces of its model", "[mode
     check_faces(other, model_of(ending, other, writing));
 }
 
+TEST_CASE("a shape is a cube of a model if it fills half of its voxel, and otherwise left out",
+          "[models][shapes]") {
+  const std::string ending = GENERATE(from_range(kModelEndings));
+  CAPTURE(ending);
+  std::vector<BuildMaterial> materials = {file_material("plant", "", {10, 200, 10, 255}),
+                                          file_material("slab", "", {90, 90, 90, 255}),
+                                          file_material("stone", "", {50, 50, 50, 255})};
+  materials[0].row.shape = {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  materials[1].row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  // A plant and a slab on stone.
+  const FileBuild build = file_build({2, 2, 1}, materials, [](VoxelPos at) {
+    return static_cast<std::uint16_t>(at.y == 0 ? 3 : at.x == 0 ? 1 : 2);
+  });
+  FileBuild cubes = build;
+  cubes.materials[0].row.visibility = Visibility::empty;
+  check_faces(cubes, model_of(ending, build));
+  const FileBuild plants = file_build({1, 1, 1}, materials, [](VoxelPos) { return 1; });
+  Bytes out;
+  CHECK_FALSE(write_file_build("plants" + ending, plants, [&](ByteView) { return true; }, {}));
+}
+
 }  // namespace runstone::test

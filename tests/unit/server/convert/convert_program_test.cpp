@@ -104,6 +104,29 @@ TEST_CASE("runstone-convert says what a file is, and lists its materials", "[con
     CHECK(said.out.find('\n' + material.row.name) != std::string::npos);
 }
 
+TEST_CASE("runstone-convert --only-cubes leaves out what is no whole cube, but not stairs",
+          "[convert][shapes]") {
+  const TempFolder folder;
+  std::vector<BuildMaterial> materials;
+  for (const char* name : {"minecraft:dandelion", "minecraft:oak_stairs", "minecraft:stone"}) {
+    const ForeignBlock block = with_default_states({name, ""});
+    materials.push_back({row_of(material_of_minecraft_block(block, true)), block.states});
+  }
+  const std::string file = folder / "garden.schem";
+  const auto bytes = written(write_schem, file_build({3, 1, 1}, materials, [](VoxelPos at) {
+                               return static_cast<std::uint16_t>(at.x + 1);
+                             }));
+  REQUIRE(bytes.has_value());
+  write_bytes(file, *bytes);
+  const Outcome all = convert({file, "--list"}), cubes = convert({file, "--only-cubes", "--list"});
+  REQUIRE(all.code == 0);
+  REQUIRE(cubes.code == 0);
+  CHECK(all.out.find("minecraft:dandelion") != std::string::npos);
+  CHECK(cubes.out.find("minecraft:dandelion") == std::string::npos);
+  CHECK(cubes.out.find("minecraft:oak_stairs") != std::string::npos);
+  CHECK(cubes.out.find("minecraft:stone") != std::string::npos);
+}
+
 TEST_CASE("runstone-convert writes models with the choices of its options", "[convert]") {
   const TempFolder folder;
   const std::string file = folder / "house.rsb";

@@ -85,6 +85,17 @@ TEST_CASE("a picture of a build shows the highest voxels, and nothing where noth
   CHECK(picture.at(2, 2)[3] == 0);  // beyond the build
 }
 
+TEST_CASE("a picture of a build shows what is below a plant", "[map][library]") {
+  SampleBuild build = coloured_build({1, 2, 1});
+  build.materials[2].row.shape = {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  RunChunk cells = uniform_chunk({1, 2, 1}, 2);
+  fill(cells, 1, 1, 3);  // red above blue
+  build.sections.push_back({{}, cells});
+  const DecodedPicture picture = picture_of(build, 8);
+  REQUIRE(picture.side == 1);
+  CHECK(picture.at(0, 0)[2] > 100);
+}
+
 TEST_CASE("a large build becomes a picture of the size that is allowed", "[map][library]") {
   SampleBuild build = coloured_build({200, 70, 1});
   const auto uniform = [&](std::uint32_t x, std::uint32_t y, Material number) {
