@@ -31,6 +31,7 @@
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -180,7 +181,8 @@ class Terrain {
   LightTexture field_texture_;
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
-  std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
+  std::shared_ptr<const ShapeTable> shapes_;  // of the materials; never null
+  std::vector<Quad> staged_;                  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<ChunkKey, Tile> tiles_;    // those with quads
