@@ -43,17 +43,17 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   materials_ = materials;
   changed_ = true;
   if (draw_queue_) draw_queue_->set_materials(materials_);
-  const MeshMaterialsPtr meshed = mesh_materials_of(materials_);
-  far_planner_.set_visibility(meshed->cubes,
+  meshed_ = mesh_materials_of(materials_);
+  far_planner_.set_visibility(meshed_->cubes,
                               has_grown ? static_cast<Material>(known) : Material{0});
   if (has_grown) {
-    pool_->set_materials(meshed);
+    pool_->set_materials(meshed_);
     return planner_.mesh_again_from(static_cast<Material>(known));
   }
   planner_.forget_meshes();
   pool_.reset();
   open_job_bytes_.clear();
-  pool_ = std::make_unique<MeshPool>(meshed, workers_, steady_now_ns, wake_);
+  pool_ = std::make_unique<MeshPool>(meshed_, workers_, steady_now_ns, wake_);
 }
 
 void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us) {
@@ -149,7 +149,7 @@ void MeshPipeline::push_jobs() {
   while (pool_->in_flight() < pool_->capacity() && has_room_for_jobs()) {
     auto job = planner_.next();
     if (!job) return;
-    open_job_bytes_.set(job->number, (draw_queue_ ? 2 : 1) * mesh_bytes_about(*job));
+    open_job_bytes_.set(job->number, (draw_queue_ ? 2 : 1) * mesh_bytes_about(*job, meshed_->shapes));
     pool_->push(std::move(*job));
   }
 }

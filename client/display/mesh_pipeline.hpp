@@ -25,6 +25,7 @@
 #include "client/schedule/mesh_pool.hpp"
 #include "client/session/client_session.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -176,6 +177,7 @@ class MeshPipeline {
   ByteLedger<std::uint64_t> open_job_bytes_;  // expected, by job number
   ByteLedger<ChunkKey> gpu_bytes_, far_gpu_bytes_;
   MaterialTable materials_;
+  MeshMaterialsPtr meshed_ = std::make_shared<const MeshMaterials>();  // of materials_
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
   std::deque<FrameDone> recent_frames_;
