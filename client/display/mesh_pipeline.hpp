@@ -17,6 +17,7 @@
 #include "client/display/look_control.hpp"
 #include "client/display/upload_tracker.hpp"
 #include "client/far/far_planner.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -40,9 +41,13 @@ class MeshPipeline {
   bool draws() const { return draw_queue_ != nullptr; }
   std::string renderer_name() const { return draw_queue_ ? draw_queue_->screen_name() : "none"; }
 
-  /// Sets the world's materials. If they only have more rows than before, the chunks that have one
-  /// of these already are meshed again. If they differ otherwise, all chunks are.
-  void set_materials(const MaterialTable& materials);
+  /// Sets the world's materials, and `meshed`, which mesh_materials_of() makes of them. If a material
+  /// lies before the first one that differs from the table before, its voxels look the same, and
+  /// only chunks with other materials are meshed again. Otherwise all chunks are.
+  void set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed);
+  void set_materials(const MaterialTable& materials) {
+    set_materials(materials, mesh_materials_of(materials));
+  }
   const MaterialTable& materials() const { return materials_; }
   /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }

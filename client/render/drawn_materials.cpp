@@ -7,7 +7,7 @@ MeshMaterialsPtr mesh_materials_of(const MaterialTable& table) {
   out->shapes = ShapeTable(shapes_of(table));
   if (out->shapes.empty()) return out;
   out->cubes = VisibilityTable(cube_visibilities(table));
-  out->tiles = VisibilityTable(half_filled_visibilities(table));
+  out->tiles = VisibilityTable(half_filled_visibilities(table, out->shapes));
   return out;
 }
 

@@ -112,12 +112,12 @@ Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
       ghost_program_(link_program("ghost", kTerrainVertexShader, kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
-  set_materials(MaterialTable{});
+  set_materials(MaterialTable{}, nullptr);
 }
 
-void Terrain::set_materials(const MaterialTable& materials) {
+void Terrain::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   materials_.set(materials);
-  shapes_ = std::make_shared<const ShapeTable>(shapes_of(materials));
+  shapes_ = shapes ? std::move(shapes) : std::make_shared<const ShapeTable>(shapes_of(materials));
   quads_.set_shapes(*shapes_);
   light_codes_ = light_codes(materials);
 }

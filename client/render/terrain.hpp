@@ -57,7 +57,8 @@ class Terrain {
  public:
   /// Throws std::runtime_error with the driver's log if a shader does not compile.
   Terrain();
-  void set_materials(const MaterialTable& materials);
+  /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
+  void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels);
   /// Requires a key of level 1 or more.
@@ -181,7 +182,7 @@ class Terrain {
   LightTexture field_texture_;
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
-  std::shared_ptr<const ShapeTable> shapes_;  // of the materials; never null
+  ShapeTablePtr shapes_;      // of the materials
   std::vector<Quad> staged_;                  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads

@@ -169,10 +169,14 @@ std::vector<Visibility> cube_visibilities(const MaterialTable& table) {
 }
 
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table) {
+  const std::vector<Shape> by_material = shapes_of(table);
+  return half_filled_visibilities(table, ShapeTable(by_material));
+}
+
+std::vector<Visibility> half_filled_visibilities(const MaterialTable& table,
+                                                 const ShapeTable& shapes) {
   constexpr unsigned kHalf = kShapeUnits * kShapeUnits * kShapeUnits / 2;
   std::vector<Visibility> out = visibilities(table);
-  const std::vector<Shape> by_material = shapes_of(table);
-  const ShapeTable shapes(by_material);
   for (std::size_t id = 0; id < out.size(); ++id) {
     const auto material = static_cast<Material>(id);
     if (!shapes.is_cube(material) && shapes[material].faces.volume() < kHalf)

@@ -22,6 +22,8 @@
 
 namespace runstone {
 
+class ShapeTable;
+
 /// The layer of terrain that a generator makes of this material (thesis 7.4 and figure 7.21). Units
 /// are voxels; frequency is cycles per voxel. The thesis' z is up; here y is up. The surface of a
 /// column lies at distance + elevation * N, where N is a fractal noise in [-1, 1].
@@ -106,6 +108,9 @@ std::vector<Visibility> cube_visibilities(const MaterialTable& table);
 /// voxel is empty, and any other counts as a cube. Cost: O(materials), and ShapeFaces for each
 /// different shape.
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
+/// Does so with `shapes`, which must be those of the table. Cost: O(materials).
+std::vector<Visibility> half_filled_visibilities(const MaterialTable& table,
+                                                 const ShapeTable& shapes);
 
 /// Returns the shape of each material by id, as ShapeTable takes them.
 std::vector<Shape> shapes_of(const MaterialTable& table);
