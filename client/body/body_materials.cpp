@@ -6,22 +6,21 @@
 
 namespace runstone {
 
-BodyMaterials body_materials(const MaterialTable& table) {
-  std::vector<bool> cubes, shapes, liquid;
+BodyMaterials body_materials(const MaterialTable& table, ShapeTablePtr shapes) {
+  std::vector<bool> cubes, shaped, liquid;
   bool has_shapes = false;
   for (const MaterialInfo& row : table.rows()) {
     const bool is_there = row.visibility != Visibility::empty;
     const bool is_solid = is_there && row.body == MaterialBody::solid;
     cubes.push_back(is_solid && row.shape.is_cube());
-    shapes.push_back(is_solid && !row.shape.is_cube());
-    has_shapes = has_shapes || shapes.back();
+    shaped.push_back(is_solid && !row.shape.is_cube());
+    has_shapes = has_shapes || shaped.back();
     liquid.push_back(is_there && row.body == MaterialBody::liquid);
   }
   MaterialSet in_liquid(std::move(liquid), false), of_cubes(std::move(cubes), true);
   if (!has_shapes) return {std::move(of_cubes), std::move(in_liquid)};
-  const std::vector<Shape> by_material = shapes_of(table);
-  return {Obstacles(std::move(of_cubes), MaterialSet(std::move(shapes), false),
-                    std::make_shared<const ShapeTable>(by_material)),
+  if (!shapes) shapes = std::make_shared<const ShapeTable>(shapes_of(table));
+  return {Obstacles(std::move(of_cubes), MaterialSet(std::move(shaped), false), std::move(shapes)),
           std::move(in_liquid)};
 }
 

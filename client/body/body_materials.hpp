@@ -3,6 +3,7 @@
 #include "common/collision/material_set.hpp"
 #include "common/collision/obstacles.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -12,6 +13,8 @@ struct BodyMaterials {
   MaterialSet liquid;  // the whole voxel
 };
 
-BodyMaterials body_materials(const MaterialTable& table);
+/// Returns those of a table. `shapes` are its shapes; null: the function makes them, if a body meets
+/// any. Cost: O(materials), and for null that of ShapeTable.
+BodyMaterials body_materials(const MaterialTable& table, ShapeTablePtr shapes = nullptr);
 
 }  // namespace runstone

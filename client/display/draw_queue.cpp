@@ -32,10 +32,10 @@ FrameDone draw_frame(Screen& screen, const FrameOrder& order) {
 DrawQueue::DrawQueue(std::function<void()> wake, UploadBudget budget)
     : wake_(std::move(wake)), budget_(budget) {}
 
-void DrawQueue::set_materials(const MaterialTable& materials) {
+void DrawQueue::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   {
     const std::lock_guard lock(mutex_);
-    work_.materials = materials;
+    work_.materials = Materials{materials, std::move(shapes)};
   }
   changed_.notify_one();
 }
@@ -151,14 +151,14 @@ void DrawQueue::serve(Screen& screen) {
 }
 
 void DrawQueue::apply_removals(Screen& screen) {
-  std::optional<MaterialTable> materials;
+  std::optional<Materials> materials;
   std::vector<ChunkKey> removals;
   {
     const std::lock_guard lock(mutex_);
     materials = std::exchange(work_.materials, std::nullopt);
     removals = work_.changes.take_removals();
   }
-  if (materials) screen.set_materials(*materials);
+  if (materials) screen.set_materials(materials->table, materials->shapes);
   for (const ChunkKey& key : removals) screen.remove(key);
 }
 

@@ -31,6 +31,7 @@
 #include "client/display/upload_queue.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -79,7 +80,8 @@ class DrawQueue {
   /// Returns the name of the screen's OpenGL context. Requires that set_drawing() was called.
   const std::string& screen_name() const { return name_; }
 
-  void set_materials(const MaterialTable& materials);
+  /// Queues materials. `shapes` are their shapes; null: the thread that draws makes them.
+  void set_materials(const MaterialTable& materials, ShapeTablePtr shapes = nullptr);
   /// Queues new quads. They replace a queued change of the same chunk, which is then never reported
   /// as done.
   void upload(const ChunkKey& key, ChunkUpload upload);
@@ -117,9 +119,13 @@ class DrawQueue {
   void await_start();
 
  private:
+  struct Materials {
+    MaterialTable table;
+    ShapeTablePtr shapes;
+  };
   struct Work {
     UploadQueue changes;
-    std::optional<MaterialTable> materials;
+    std::optional<Materials> materials;
     std::optional<FrameOrder> frame;
     bool empty() const { return changes.empty() && !materials && !frame; }
   };

@@ -17,10 +17,14 @@ ChunkKey beside(const ChunkKey& key, Direction d) { return {key.lod, neighbour(k
 
 DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials,
                        unsigned workers)
+    : DrawnWorld(screen, edge, materials, mesh_materials_of(materials), workers) {}
+
+DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials,
+                       const MeshMaterialsPtr& meshed, unsigned workers)
     : screen_(screen),
       edge_(edge),
-      pool_(mesh_materials_of(materials), workers, steady_now_ns, [this] { results_.release(); }) {
-  screen_.set_materials(materials);
+      pool_(meshed, workers, steady_now_ns, [this] { results_.release(); }) {
+  screen_.set_materials(materials, shapes_in(meshed));
 }
 
 bool DrawnWorld::put(const ChunkKey& key, RunChunk voxels) {

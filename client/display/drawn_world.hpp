@@ -13,6 +13,7 @@
 #include "client/schedule/mesh_pool.hpp"
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/mesh/mesh_materials.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {
@@ -40,6 +41,8 @@ class DrawnWorld {
   std::uint64_t meshes() const { return jobs_; }
 
  private:
+  DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials,
+             const MeshMaterialsPtr& meshed, unsigned workers);
   void mark_beside(const ChunkKey& key, Direction d);
   MeshJob job_for(const ChunkKey& key);
   void mesh_changes();

@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "client/display/eye_chunk.hpp"
-#include "client/render/drawn_materials.hpp"
 #include "common/core/assert.hpp"
-#include "common/mesh/mesh_materials.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -34,26 +32,26 @@ MeshPipeline::MeshPipeline(const Replica& replica, DrawQueue* draw_queue, bool w
       look_(!watched),
       draw_queue_(draw_queue) {}
 
-void MeshPipeline::set_materials(const MaterialTable& materials) {
+void MeshPipeline::set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed) {
   if (pool_ && materials_ == materials) return;
-  // The rows of a world only become more, or get a shape. Chunks without a material that differs
-  // look the same.
+  // A chunk whose materials all lie before the first difference looks the same with both tables,
+  // whatever world they are of. So its mesh stays. A table that lost rows makes all meshes anew.
   const std::size_t known = first_difference(materials.rows(), materials_.rows());
-  const bool has_grown = pool_ && known > 0 && materials.size() >= materials_.size();
+  const bool keeps_meshes = pool_ && known > 0 && materials.size() >= materials_.size();
   materials_ = materials;
   changed_ = true;
-  if (draw_queue_) draw_queue_->set_materials(materials_);
-  const MeshMaterialsPtr meshed = mesh_materials_of(materials_);
-  far_planner_.set_visibility(meshed->cubes,
-                              has_grown ? static_cast<Material>(known) : Material{0});
-  if (has_grown) {
-    pool_->set_materials(meshed);
+  meshed_ = std::move(meshed);
+  if (draw_queue_) draw_queue_->set_materials(materials_, shapes_in(meshed_));
+  far_planner_.set_visibility(meshed_->cubes,
+                              keeps_meshes ? static_cast<Material>(known) : Material{0});
+  if (keeps_meshes) {
+    pool_->set_materials(meshed_);
     return planner_.mesh_again_from(static_cast<Material>(known));
   }
   planner_.forget_meshes();
   pool_.reset();
   open_job_bytes_.clear();
-  pool_ = std::make_unique<MeshPool>(meshed, workers_, steady_now_ns, wake_);
+  pool_ = std::make_unique<MeshPool>(meshed_, workers_, steady_now_ns, wake_);
 }
 
 void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us) {
@@ -149,7 +147,8 @@ void MeshPipeline::push_jobs() {
   while (pool_->in_flight() < pool_->capacity() && has_room_for_jobs()) {
     auto job = planner_.next();
     if (!job) return;
-    open_job_bytes_.set(job->number, (draw_queue_ ? 2 : 1) * mesh_bytes_about(*job));
+    const std::size_t bytes = mesh_bytes_about(*job, meshed_->shapes);
+    open_job_bytes_.set(job->number, (draw_queue_ ? 2 : 1) * bytes);
     pool_->push(std::move(*job));
   }
 }

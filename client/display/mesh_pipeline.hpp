@@ -17,6 +17,7 @@
 #include "client/display/look_control.hpp"
 #include "client/display/upload_tracker.hpp"
 #include "client/far/far_planner.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -25,6 +26,7 @@
 #include "client/schedule/mesh_pool.hpp"
 #include "client/session/client_session.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -39,9 +41,13 @@ class MeshPipeline {
   bool draws() const { return draw_queue_ != nullptr; }
   std::string renderer_name() const { return draw_queue_ ? draw_queue_->screen_name() : "none"; }
 
-  /// Sets the world's materials. If they only have more rows than before, the chunks that have one
-  /// of these already are meshed again. If they differ otherwise, all chunks are.
-  void set_materials(const MaterialTable& materials);
+  /// Sets the world's materials, and `meshed`, which mesh_materials_of() makes of them. If a material
+  /// lies before the first one that differs from the table before, its voxels look the same, and
+  /// only chunks with other materials are meshed again. Otherwise all chunks are.
+  void set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed);
+  void set_materials(const MaterialTable& materials) {
+    set_materials(materials, mesh_materials_of(materials));
+  }
   const MaterialTable& materials() const { return materials_; }
   /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }
@@ -176,6 +182,7 @@ class MeshPipeline {
   ByteLedger<std::uint64_t> open_job_bytes_;  // expected, by job number
   ByteLedger<ChunkKey> gpu_bytes_, far_gpu_bytes_;
   MaterialTable materials_;
+  MeshMaterialsPtr meshed_ = std::make_shared<const MeshMaterials>();  // of materials_
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
   std::deque<FrameDone> recent_frames_;

@@ -13,8 +13,8 @@ class GlScreen final : public Screen {
       : context_(std::move(context)), renderer_(context_->loader()) {}
 
   const char* name() const override { return context_->name(); }
-  void set_materials(const MaterialTable& materials) override {
-    renderer_.set_materials(materials);
+  void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) override {
+    renderer_.set_materials(materials, shapes);
   }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels) override {

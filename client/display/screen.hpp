@@ -12,6 +12,7 @@
 #include "client/render/renderer.hpp"
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/shapes/shape_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -26,7 +27,8 @@ class Screen {
 
   /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
-  virtual void set_materials(const MaterialTable& materials) = 0;
+  /// Passes its arguments to Renderer::set_materials().
+  virtual void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) = 0;
   /// See Renderer::upload(), upload_tile() and remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) = 0;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "client/render/drawn_materials.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -42,10 +41,6 @@ std::string preview_command(const RollbackChoice& choice, const WorldPos& eye,
   if (choice.area == RollbackArea::around_me) out += " " + box_text(box_around(eye, choice.radius));
   if (choice.area == RollbackArea::selection) out += " " + box_text(selection.value());
   return out;
-}
-
-void RollbackControl::set_materials(const MaterialTable& materials) {
-  ghosts_.set_materials(mesh_materials_of(materials));
 }
 
 std::string RollbackControl::refuse(std::string why) {

@@ -5,12 +5,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/render/ghost.hpp"
 #include "client/session/client_session.hpp"
 #include "client/tools/edit_preview.hpp"
 #include "client/ui/rollback_window.hpp"
+#include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
 
@@ -25,7 +27,7 @@ class RollbackControl {
   explicit RollbackControl(ClientSession& session) : session_(session) {}
 
   /// Sets the materials of the world, which decide the faces of ghosts.
-  void set_materials(const MaterialTable& materials);
+  void set_materials(MeshMaterialsPtr materials) { ghosts_.set_materials(std::move(materials)); }
   /// Gives a command to the server. Returns an empty text, or why it cannot be sent.
   std::string carry_out(const RollbackOrder& order, const WorldPos& eye,
                         const std::optional<VoxelBox>& selection);

@@ -25,9 +25,9 @@ ShownPanels shown_panels(const PanelWindows& windows) {
           map.centre_z()};
 }
 
-void WorldPanels::set_materials(const MaterialTable& materials) {
+void WorldPanels::set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed) {
   map_.set_materials(materials);
-  rollback_.set_materials(materials);
+  rollback_.set_materials(std::move(meshed));
 }
 
 bool WorldPanels::step(const ShownPanels& shown, TimeUs now_us) {

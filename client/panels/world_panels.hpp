@@ -31,7 +31,7 @@ class WorldPanels {
         rollback_(session),
         library_(session, tools, has_threads) {}
 
-  void set_materials(const MaterialTable& materials);
+  void set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed);
   /// Takes what changed in the replica.
   void take(const ReplicaChanges& changes) { map_.take(changes); }
   /// Takes poses and answers, and does a bounded part of the work of open windows. Returns true if

@@ -43,7 +43,7 @@ std::string name_of(const ToolAction& action) {
 }  // namespace
 
 std::optional<RayHit> EditTool::pick() const {
-  return runstone::pick(session_.replica(), shapes_, player_.eye(), player_.direction(), kReach);
+  return runstone::pick(session_.replica(), *shapes_, player_.eye(), player_.direction(), kReach);
 }
 
 Aim EditTool::aim() const {

@@ -41,8 +41,8 @@ class EditTool {
 
   const Replica& replica() const { return session_.replica(); }
   /// Sets the shapes of the world's materials, which pick() hits.
-  void set_shapes(ShapeTable shapes) { shapes_ = std::move(shapes); }
-  const ShapeTable& shapes() const { return shapes_; }
+  void set_shapes(ShapeTablePtr shapes) { shapes_ = std::move(shapes); }
+  const ShapeTable& shapes() const { return *shapes_; }
   ToolBox& box() { return box_; }
   const ToolBox& box() const { return box_; }
   /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
@@ -124,7 +124,7 @@ class EditTool {
   LatencyRecorder& recorder_;
   ToolBox& box_;
   const OnRefused on_refused_;
-  ShapeTable shapes_;
+  ShapeTablePtr shapes_ = std::make_shared<const ShapeTable>();
   std::optional<FixedAim> fixed_aim_;
   std::unique_ptr<ActionSender> sender_;  // of the action under way, or null
   std::string build_name_;

@@ -1,12 +1,13 @@
 #include "client/play/others_previews.hpp"
 
+#include <utility>
+
 #include "client/display/player_body.hpp"
-#include "client/render/drawn_materials.hpp"
 
 namespace runstone {
 
-void OthersPreviews::set_materials(const MaterialTable& materials) {
-  materials_ = mesh_materials_of(materials);
+void OthersPreviews::set_materials(MeshMaterialsPtr materials) {
+  materials_ = std::move(materials);
   for (auto& [author, preview] : previews_) preview.set_materials(materials_);
 }
 

@@ -11,7 +11,6 @@
 #include "client/replica/replica.hpp"
 #include "client/session/shared_previews.hpp"
 #include "client/tools/edit_preview.hpp"
-#include "common/materials/material_table.hpp"
 #include "common/mesh/mesh_materials.hpp"
 
 namespace runstone {
@@ -24,7 +23,7 @@ class OthersPreviews {
   static constexpr std::size_t kChunksPerStep = 16;
 
   /// Takes the materials of the world. Makes all ghosts again.
-  void set_materials(const MaterialTable& materials);
+  void set_materials(MeshMaterialsPtr materials);
   /// Makes the ghosts of these previews, a bounded part of them in this call. Returns true if the
   /// ghosts changed. Requires an open replica. Cost: O(touched chunks of the shown previews), and
   /// for kChunksPerStep chunks that of EditPreview::step().

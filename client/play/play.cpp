@@ -5,6 +5,7 @@
 
 #include "client/play/player_actions.hpp"
 #include "client/play/time_travel.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -77,13 +78,13 @@ void Play::take_new_materials() {
 
 void Play::set_materials(const MaterialTable& materials) {
   shapes_number_ = session_.shapes_number();
-  pipeline_.set_materials(materials);
-  motion_.set_materials(materials);
-  const std::vector<Shape> shapes = shapes_of(materials);
-  tool_.set_shapes(ShapeTable(shapes));
-  panels_.set_materials(materials);
-  others_.set_materials(materials);
-  const std::string lost = tool_.box().set_materials(materials);
+  const MeshMaterialsPtr meshed = mesh_materials_of(materials);
+  pipeline_.set_materials(materials, meshed);
+  motion_.set_materials(materials, shapes_in(meshed));
+  tool_.set_shapes(shapes_in(meshed));
+  panels_.set_materials(materials, meshed);
+  others_.set_materials(meshed);
+  const std::string lost = tool_.box().set_materials(materials, meshed);
   if (!lost.empty()) notify(with_unseen_replaced(lost), NoticeKind::warning);
 }
 

@@ -1,5 +1,7 @@
 #include "client/play/player_motion.hpp"
 
+#include <utility>
+
 #include "client/body/shown_space.hpp"
 
 namespace runstone {
@@ -11,8 +13,8 @@ constexpr double kStickLook = 1'000;
 
 }  // namespace
 
-void PlayerMotion::set_materials(const MaterialTable& materials) {
-  body_materials_ = body_materials(materials);
+void PlayerMotion::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
+  body_materials_ = body_materials(materials, std::move(shapes));
 }
 
 void PlayerMotion::step(const WindowInput& input, double seconds, const LookSettings& look) {

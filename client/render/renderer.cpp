@@ -63,9 +63,9 @@ struct Renderer::State {
 Renderer::Renderer(GlContextLoader loader) : state_(std::make_unique<State>(loader)) {}
 Renderer::~Renderer() = default;
 
-void Renderer::set_materials(const MaterialTable& materials) {
+void Renderer::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   state_->materials = materials;
-  state_->terrain.set_materials(materials);
+  state_->terrain.set_materials(materials, std::move(shapes));
 }
 
 void Renderer::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,

@@ -16,6 +16,7 @@
 #include "common/materials/material_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -50,7 +51,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  void set_materials(const MaterialTable& materials);
+  /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
+  void set_materials(const MaterialTable& materials, ShapeTablePtr shapes = nullptr);
   /// Replaces the chunk's quads on the GPU. `edge` is in voxels. `voxels` are the runs that were
   /// meshed, from which light and dark corners are computed. If `voxels` is null, the chunk counts
   /// as empty there.

@@ -112,13 +112,13 @@ Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
       ghost_program_(link_program("ghost", kTerrainVertexShader, kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
-  set_materials(MaterialTable{});
+  set_materials(MaterialTable{}, nullptr);
 }
 
-void Terrain::set_materials(const MaterialTable& materials) {
+void Terrain::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   materials_.set(materials);
-  const std::vector<Shape> shapes = shapes_of(materials);
-  quads_.set_shapes(ShapeTable(shapes));
+  shapes_ = shapes ? std::move(shapes) : std::make_shared<const ShapeTable>(shapes_of(materials));
+  quads_.set_shapes(*shapes_);
   light_codes_ = light_codes(materials);
 }
 
@@ -137,7 +137,7 @@ Terrain::Chunk Terrain::add_chunk(std::int32_t edge, const ChunkMesh& mesh) {
     joined.insert(joined.end(), mesh.shapes.transparent.begin(), mesh.shapes.transparent.end());
     transparent = joined;
   }
-  auto tree = TransparentTree::build(transparent);
+  auto tree = TransparentTree::build(transparent, *shapes_);
   if (tree) transparent = tree->pieces();
   // Both passes lie in one span, so that a chunk has one range of the buffer.
   staged_ = mesh.opaque.quads;

@@ -31,6 +31,7 @@
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -56,7 +57,8 @@ class Terrain {
  public:
   /// Throws std::runtime_error with the driver's log if a shader does not compile.
   Terrain();
-  void set_materials(const MaterialTable& materials);
+  /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
+  void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels);
   /// Requires a key of level 1 or more.
@@ -180,7 +182,8 @@ class Terrain {
   LightTexture field_texture_;
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
-  std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
+  ShapeTablePtr shapes_;      // of the materials
+  std::vector<Quad> staged_;                  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<ChunkKey, Tile> tiles_;    // those with quads

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/chunk_distance.hpp"
+#include "common/mesh/shapes/shape_mesher.hpp"
 #include "common/runs/material_scan.hpp"
 
 namespace runstone {
@@ -19,6 +20,26 @@ std::size_t mesh_bytes(const MeshPtr& mesh) {
          (mesh->opaque.quads.capacity() + mesh->transparent.quads.capacity() +
           mesh->shapes.opaque.capacity() + mesh->shapes.transparent.capacity()) *
              sizeof(Quad);
+}
+
+std::size_t mesh_bytes_about(const MeshJob& job, const ShapeTable& shapes) {
+  const RunList& runs = job.chunk->runs;
+  std::size_t quads = 3 * runs.size();
+  if (!shapes.empty()) {
+    std::size_t of_shapes = 0;
+    runs.visit([&](auto view) {
+      std::size_t begin = 0;
+      for (std::size_t i = 0; i < view.size() && of_shapes < kShapeQuadsMax; ++i) {
+        const std::size_t end = view.end(i);
+        const Material material = view.material(i);
+        if (!shapes.is_cube(material))
+          of_shapes += (end - begin) * shapes[material].faces.faces().size();
+        begin = end;
+      }
+    });
+    quads += std::min(of_shapes, kShapeQuadsMax);
+  }
+  return sizeof(ChunkMesh) + quads * sizeof(Quad);
 }
 
 template <class Act>

@@ -40,6 +40,7 @@
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/axis_order.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 
@@ -63,12 +64,13 @@ struct MeshJob {
   Urgency urgency = Urgency::terrain;  // of the changes that the mesh shows
 };
 
-/// Returns a bound of the quads of cubes that meshing a chunk with these runs makes, in bytes, as far
-/// as its own runs determine it: a run that alternates with air has three faces on average. Runs of
-/// the neighbours can cut faces at the border further. A run of a shape has more quads.
-inline std::size_t mesh_bytes_about(const MeshJob& job) {
-  return sizeof(ChunkMesh) + 3 * sizeof(Quad) * job.chunk->runs.size();
-}
+/// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its own
+/// runs determine it:
+///   - A run of cubes that alternates with air has three faces on average. Runs of the neighbours can
+///     cut faces at the border further.
+///   - A run of a shape has all faces of each voxel. All shapes of a chunk have kShapeQuadsMax at most.
+/// Cost: O(1) if no material has a shape, otherwise O(runs).
+std::size_t mesh_bytes_about(const MeshJob& job, const ShapeTable& shapes);
 
 enum class JobSize : std::uint8_t {
   any,

@@ -451,9 +451,12 @@ void ToolBox::show_preview(bool is_shown) {
 }
 
 std::string ToolBox::set_materials(const MaterialTable& materials) {
+  return set_materials(materials, mesh_materials_of(materials));
+}
+
+std::string ToolBox::set_materials(const MaterialTable& materials, const MeshMaterialsPtr& meshed) {
   materials_ = materials;
   mirrored_.forget();
-  const MeshMaterialsPtr meshed = mesh_materials_of(materials);
   preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
   points_.clear();

@@ -112,6 +112,8 @@ class ToolBox {
   /// the nearest colours, take the place of materials that the world lacks; the returned text names
   /// these, and is empty if there are none.
   std::string set_materials(const MaterialTable& materials);
+  /// Does so with what previews read of the materials: `meshed` is mesh_materials_of() them.
+  std::string set_materials(const MaterialTable& materials, const MeshMaterialsPtr& meshed);
   const MaterialTable& materials() const { return materials_; }
 
   void show_preview(bool is_shown);

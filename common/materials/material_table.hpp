@@ -22,6 +22,8 @@
 
 namespace runstone {
 
+class ShapeTable;
+
 /// The layer of terrain that a generator makes of this material (thesis 7.4 and figure 7.21). Units
 /// are voxels; frequency is cycles per voxel. The thesis' z is up; here y is up. The surface of a
 /// column lies at distance + elevation * N, where N is a fractal noise in [-1, 1].

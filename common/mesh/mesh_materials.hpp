@@ -1,5 +1,5 @@
-// MeshMaterials: what meshers need of the materials of a world: how they are seen, as cubes, as shapes
-// and from afar.
+// MeshMaterials: the properties of a world's materials that meshers read. They are the visibility of
+// each material as a cube, as a shape and from afar, and the shapes.
 #pragma once
 #include <memory>
 #include <span>
@@ -15,17 +15,24 @@ struct MeshMaterials {
   explicit MeshMaterials(const VisibilityTable& visibility = VisibilityTable({}))
       : cubes(visibility), rows(visibility), tiles(visibility) {}
 
-  /// For the mesh of the cubes (mesh_rdm()) and for veils: materials with a shape are empty.
+  /// The visibilities for the mesh of the cubes (mesh_rdm()) and for veils: materials with a shape
+  /// are empty.
   VisibilityTable cubes;
-  /// Those of the materials' rows, for the mesh of the shapes (mesh_shapes()).
+  /// The visibilities for the mesh of the shapes (mesh_shapes()): the materials have those of their
+  /// rows.
   VisibilityTable rows;
-  /// For coarse levels of detail, whose cells are all cubes: a material with a shape counts as a
-  /// cube if it fills at least half of its voxel, and is empty otherwise.
+  /// The visibilities for coarse levels of detail, whose cells are all cubes: a material with a shape
+  /// counts as a cube if it fills at least half of its voxel, and is empty otherwise.
   VisibilityTable tiles;
   ShapeTable shapes;
 };
 
 /// Never null.
 using MeshMaterialsPtr = std::shared_ptr<const MeshMaterials>;
+
+/// Returns the shapes. The pointer shares the ownership of the materials.
+inline ShapeTablePtr shapes_in(const MeshMaterialsPtr& materials) {
+  return {materials, &materials->shapes};
+}
 
 }  // namespace runstone

@@ -1,6 +1,7 @@
 // ShapeTable: the shapes of all materials as the mesher, the GPU and collisions read them.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,5 +44,8 @@ class ShapeTable {
   std::vector<Entry> shapes_;
   std::uint64_t serial_ = 0;
 };
+
+/// Shapes that several readers share.
+using ShapeTablePtr = std::shared_ptr<const ShapeTable>;
 
 }  // namespace runstone

@@ -36,7 +36,9 @@ class ClientRig::WatchedScreen final : public Screen {
   WatchedScreen(std::unique_ptr<Screen> screen, ClientRig& rig)
       : screen_(std::move(screen)), rig_(rig) {}
   const char* name() const override { return screen_->name(); }
-  void set_materials(const MaterialTable& materials) override { screen_->set_materials(materials); }
+  void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) override {
+    screen_->set_materials(materials, shapes);
+  }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels) override {
     screen_->upload(key, edge, mesh, voxels);

@@ -9,6 +9,7 @@ namespace runstone::shape_mesh {
 
 void FaceLists::begin() {
   room_ = 0;
+  room_in_all_ = 0;
   for (Pass& pass : passes_) {
     for (std::size_t i = 0; i < kListCount; ++i) pass.end[i] = pass.buffers[i].data();
   }
@@ -22,21 +23,22 @@ std::size_t FaceLists::capacity() const {
   return out;
 }
 
-bool FaceLists::grow(std::size_t count) {
+bool FaceLists::grow(std::size_t in_one, std::size_t in_all) {
   constexpr std::size_t kLeast = 2'048;
   std::size_t all = 0;
-  room_ = std::max(count, kRoomMax);
   for (Pass& pass : passes_) {
     for (std::size_t i = 0; i < kListCount; ++i)
       all += static_cast<std::size_t>(pass.end[i] - pass.buffers[i].data());
   }
   if (all >= kShapeQuadsMax) return false;
+  room_in_all_ = std::max(in_all, kRoomMax);
+  room_ = room_in_all_;
   for (Pass& pass : passes_) {
     for (std::size_t i = 0; i < kListCount; ++i) {
       std::vector<Quad>& buffer = pass.buffers[i];
       const auto size = static_cast<std::size_t>(pass.end[i] - buffer.data());
-      if (buffer.size() - size < count) {
-        buffer.resize(size + size / 2 + std::max(count, kLeast));
+      if (buffer.size() - size < in_one) {
+        buffer.resize(size + size / 2 + std::max(in_one, kLeast));
         pass.end[i] = buffer.data() + size;
       }
       room_ = std::min(room_, buffer.size() - size);

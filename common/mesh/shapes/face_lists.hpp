@@ -53,11 +53,12 @@ class FaceLists {
 
   /// Empties all lists.
   void begin();
-  /// Makes room for `count` more quads in each list. Returns false, and makes none, if the lists
-  /// have kShapeQuadsMax quads. Cost: O(1) amortised.
-  bool make_room(std::size_t count) {
-    if (count > room_ && !grow(count)) return false;
-    room_ -= count;
+  /// Makes room for `in_one` more quads in each list, of which all together get `in_all` at most.
+  /// Returns false, and makes none, if the lists have kShapeQuadsMax quads. Cost: O(1) amortised.
+  bool make_room(std::size_t in_one, std::size_t in_all) {
+    if ((in_one > room_ || in_all > room_in_all_) && !grow(in_one, in_all)) return false;
+    room_ -= in_one;
+    room_in_all_ -= in_all;
     return true;
   }
   /// Joins the quads and replaces `out` by them, ascending by direction. Requires lists in the order
@@ -69,12 +70,13 @@ class FaceLists {
  private:
   /// The quads between two looks at the number of all quads, at most.
   static constexpr std::size_t kRoomMax = 65'536;
-  bool grow(std::size_t count);
+  bool grow(std::size_t in_one, std::size_t in_all);
   /// Returns the number of quads that are left of those from `first` to `end`.
   std::size_t join(Quad* first, const Quad* end, Direction d, Axis along);
 
   std::array<Pass, 2> passes_;
-  std::size_t room_ = 0;              // in each list
+  std::size_t room_ = 0;         // in each list
+  std::size_t room_in_all_ = 0;  // quads until the next look at their number
   std::vector<std::uint32_t> table_;  // of join(): number of a quad + 1, by a hash of its place
 };
 

@@ -1,5 +1,7 @@
 #include "common/mesh/shapes/prepared_shapes.hpp"
 
+#include <algorithm>
+
 #include "common/mesh/rdm/side_axes.hpp"
 
 namespace runstone::shape_mesh {
@@ -78,6 +80,9 @@ const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
     out.border[side] = static_cast<std::uint16_t>(faces_.size() - before);
   }
   out.count = static_cast<std::uint32_t>(faces.size());
+  std::array<std::uint32_t, kListCount> in_list{};
+  for (std::size_t f = out.first; f < faces_.size(); ++f) ++in_list[faces_[f].list];
+  out.most_in_list = *std::max_element(in_list.begin(), in_list.end());
   prepared_.push_back(out);
   index = static_cast<std::uint16_t>(prepared_.size());
   return prepared_.back();

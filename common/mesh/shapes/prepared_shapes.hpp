@@ -28,6 +28,7 @@ struct PreparedShape {
   std::uint16_t inner = 0;                              // faces inside
   std::array<std::uint16_t, kDirectionCount> border{};  // faces on each side
   std::uint32_t first = 0, count = 0;                   // of all faces
+  std::uint32_t most_in_list = 0;                       // the most faces that one list gets
 };
 
 /// The sides of a voxel by the rank of their axis, the negative one first.

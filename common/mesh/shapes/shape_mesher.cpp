@@ -81,7 +81,9 @@ class ShapeWalk {
     std::uint32_t f = begin - line * e_.f, s = line / e_.m, m = line - s * e_.m;
     for (std::uint32_t at = begin; at < end;) {
       const std::uint32_t length = std::min(end - at, e_.f - f);
-      if (!state_.lists.make_room(std::size_t{length} * shape.count)) return false;
+      if (!state_.lists.make_room(std::size_t{length} * shape.most_in_list,
+                                  std::size_t{length} * shape.count))
+        return false;
       const std::uint64_t place = std::uint64_t{f} << shift_[0] | std::uint64_t{m} << shift_[1] |
                                   std::uint64_t{s} << shift_[2];
       const unsigned borders = (m == 0 ? 4U : 0U) | (m + 1 == e_.m ? 8U : 0U) |

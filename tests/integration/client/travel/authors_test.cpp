@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "client/panels/rollback_control.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "tests/integration/client/travel/live_session.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"
@@ -54,7 +55,7 @@ TEST_CASE("a client sees what a rollback would change, applies it, and takes it 
   griefer.catch_up();
   host.catch_up();
   RollbackControl rollback(host.session());
-  rollback.set_materials(host.session().welcome()->materials);
+  rollback.set_materials(mesh_materials_of(host.session().welcome()->materials));
   const auto finish = [&] {
     host.until([&] {
       rollback.step();

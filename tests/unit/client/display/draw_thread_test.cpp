@@ -180,6 +180,15 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
   bench.take_frames(1);
   CHECK(bench.screen_log.lines() ==
         Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
+  // The screen gets the shapes of the caller, and makes none.
+  const auto shapes = std::make_shared<const ShapeTable>(
+      std::vector<Shape>{{}, {ShapeForm::boxes, {ShapeBox{{0, 0, 0}, {16, 8, 16}}}}});
+  bench.thread.set_materials(MaterialTable{}, shapes);
+  bench.thread.draw(small_frame());
+  bench.take_frames(1);
+  const std::string all = "materials " + std::to_string(MaterialTable{}.size());
+  CHECK(bench.screen_log.lines() ==
+        Lines{all, "draw", all + " shapes " + std::to_string(shapes->serial()), "draw"});
 }
 
 TEST_CASE(

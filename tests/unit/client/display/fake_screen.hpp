@@ -95,8 +95,10 @@ class FakeScreen final : public Screen {
   ~FakeScreen() override { log_.write("gone"); }
 
   const char* name() const override { return "fake"; }
-  void set_materials(const MaterialTable& materials) override {
-    log_.write("materials " + std::to_string(materials.size()));
+  void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) override {
+    const bool has_shapes = shapes != nullptr && !shapes->empty();
+    log_.write("materials " + std::to_string(materials.size()) +
+               (has_shapes ? " shapes " + std::to_string(shapes->serial()) : ""));
   }
   void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh,
               const RunChunk* /*voxels*/) override {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "client/render/drawn_materials.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
 namespace runstone::test::session_bench {
@@ -18,7 +19,7 @@ struct RollbackClient : SessionBench {
     receive(welcome);
     receive(SessionAccepted{6, 0});
     static_cast<void>(sent());
-    control.set_materials(welcome.materials);
+    control.set_materials(mesh_materials_of(welcome.materials));
     receive(Message(chunks_of(server.world.snapshot({0, 0, 0}))));
   }
   /// Returns the command that was sent since the last call.

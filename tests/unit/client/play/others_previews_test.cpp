@@ -1,6 +1,7 @@
 #include "client/play/others_previews.hpp"
 
 #include "client/display/player_body.hpp"
+#include "client/render/drawn_materials.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone {
@@ -15,7 +16,7 @@ SharedPreviews::Shared box_of(std::int32_t x, Material material = 2) {
 struct OthersBench : test::ToolBench {
   OthersBench() {
     show_flat();
-    others.set_materials(default_material_table());
+    others.set_materials(mesh_materials_of(default_material_table()));
   }
   /// Makes the ghosts of all previews. Returns the number of calls in which they changed.
   int settle(const Shared& shared) {

@@ -2,12 +2,17 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <memory>
 #include <set>
+#include <utility>
 
+#include "common/mesh/shapes/shape_mesher.hpp"
+#include "common/runs/run_chunk.hpp"
 #include "tests/unit/client/schedule/planner_bench.hpp"
 
 using namespace runstone;
 using test::chunks_of;
+using test::kBenchEdge;
 using test::layers_of;
 using test::PlannerBench;
 
@@ -273,4 +278,30 @@ TEST_CASE_METHOD(PlannerBench,
   pass_changes();
   planner.view_changed();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+}
+
+TEST_CASE("the bound of a mesh's bytes counts the faces of shapes in each voxel", "[schedule][shapes]") {
+  Shape bars;
+  for (std::uint8_t i = 0; i < 32; ++i) {
+    const auto x = static_cast<std::uint8_t>(i % 8 * 2 + 1);
+    const auto z = static_cast<std::uint8_t>(i / 8 * 4 + 1);
+    bars.boxes.push_back(
+        {{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 15, static_cast<std::uint8_t>(z + 1)}});
+  }
+  const ShapeTable shapes(
+      std::vector<Shape>{{}, {}, {ShapeForm::boxes, {ShapeBox{{0, 0, 0}, {16, 8, 16}}}}, bars});
+  const auto quads_about = [](RunChunk chunk, const ShapeTable& table) {
+    MeshJob job;
+    job.chunk = std::make_shared<const RunChunk>(std::move(chunk));
+    return (mesh_bytes_about(job, table) - sizeof(ChunkMesh)) / sizeof(Quad);
+  };
+  const Extent extent = Extent::cube(32);
+  CHECK(quads_about(uniform_chunk(extent, 1), shapes) == 3);
+  CHECK(quads_about(uniform_chunk(extent, 2), ShapeTable{}) == 3);
+  CHECK(quads_about(uniform_chunk(extent, 2), shapes) == 3 + 6 * extent.volume());
+  RunChunk mixed = uniform_chunk(extent, 1);
+  fill(mixed, 100, 7, 2);
+  CHECK(quads_about(mixed, shapes) == 3 * 3 + 7 * 6);
+  // Of more quads only the first ones are made.
+  CHECK(quads_about(uniform_chunk(extent, 3), shapes) == 3 + kShapeQuadsMax);
 }
