@@ -1,8 +1,8 @@
 // The packed quads of common/mesh/quad.hpp in GLSL: a vertex shader reads quad and corner by the
 // number of the vertex, four vertices a quad. So a draw needs no vertex attributes, and the quads
 // of all chunks lie in one texture. OpenGL adds the first vertex of a draw to that number; OpenGL
-// ES 3.0 cannot, so there it is a uniform. The rectangle of a quad that is a face of a shape lies in
-// a second texture (shape_texture.hpp).
+// ES 3.0 cannot, so there it is a uniform. The rectangle of a quad that is a face of a shape lies
+// in a second texture (shape_texture.hpp).
 #pragma once
 #include "client/render/shape_texture.hpp"
 #include "client/render/texel_store.hpp"

@@ -1,6 +1,6 @@
-// FilePanel: the part of the tool window in which the clipboard is read from a file or written to one.
-// It asks how a model becomes voxels, if the file has one. It reads nothing itself: it returns what
-// the user wants. One thread.
+// FilePanel: the part of the tool window in which the clipboard is read from a file or written to
+// one. It asks how a model becomes voxels, if the file has one. It reads nothing itself: it returns
+// what the user wants. One thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,8 +16,8 @@ class FilePanel {
  public:
   /// Makes the part with ImGui. Returns true if the user wants the selection to be copied first.
   bool build(const HudState& state);
-  /// Takes a file that was dropped on the window. Returns the order to read it, with the choices that
-  /// the panel shows.
+  /// Takes a file that was dropped on the window. Returns the order to read it, with the choices
+  /// that the panel shows.
   ClipboardOfFile drop(std::string file);
   /// Returns what the user wants, once.
   std::optional<UiAction> take() { return std::exchange(wanted_, std::nullopt); }

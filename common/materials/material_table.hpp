@@ -89,9 +89,9 @@ class MaterialTable {
 
   /// Fails if the shapes cannot be given together: with bad_value if a material is unknown, empty,
   /// has a shape or occurs twice, if a shape is a cube or check_shape() fails for it, and with
-  /// limit_exceeded for more than kTableShapesMax different shapes. The error's offset is the number
-  /// of the entry. Cost: O(entries log size), and that of check_shape() for each shape that the table
-  /// lacks.
+  /// limit_exceeded for more than kTableShapesMax different shapes. The error's offset is the
+  /// number of the entry. Cost: O(entries log size), and that of check_shape() for each shape that
+  /// the table lacks.
   Result<void> check_given(std::span<const GivenShape> given) const;
   /// Gives rows a shape. Fails as check_given() does; then nothing changes.
   Result<void> give_shapes(std::span<const GivenShape> given);

@@ -1,4 +1,5 @@
-// The mesh of a chunk of cubes and shapes: mesh_rdm() for the cubes, then mesh_shapes() for the rest.
+// The mesh of a chunk of cubes and shapes: mesh_rdm() for the cubes, then mesh_shapes() for the
+// rest.
 #pragma once
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/mesh_materials.hpp"

@@ -1,5 +1,5 @@
-// MeshMaterials: the properties of a world's materials that meshers read. They are the visibility of
-// each material as a cube, as a shape and from afar, and the shapes.
+// MeshMaterials: the properties of a world's materials that meshers read. They are the visibility
+// of each material as a cube, as a shape and from afar, and the shapes.
 #pragma once
 #include <memory>
 #include <span>
@@ -21,8 +21,8 @@ struct MeshMaterials {
   /// The visibilities for the mesh of the shapes (mesh_shapes()): the materials have those of their
   /// rows.
   VisibilityTable rows;
-  /// The visibilities for coarse levels of detail, whose cells are all cubes: a material with a shape
-  /// counts as a cube if it fills at least half of its voxel, and is empty otherwise.
+  /// The visibilities for coarse levels of detail, whose cells are all cubes: a material with a
+  /// shape counts as a cube if it fills at least half of its voxel, and is empty otherwise.
   VisibilityTable tiles;
   ShapeTable shapes;
 };

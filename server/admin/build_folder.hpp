@@ -23,7 +23,8 @@ struct BuildFolder {
 
 /// Lists a folder, without the folders in it, and the files of the library. The error is one line.
 /// Fails if the folder has more than `files_max` names that end with .rsb, in upper or lower case.
-/// Blocks on the disk. Cost: O(files of the folder and builds of the library), without reading files.
+/// Blocks on the disk. Cost: O(files of the folder and builds of the library), without reading
+/// files.
 Result<BuildFolder, std::string> list_build_folder(LibraryReader& library, const std::string& path,
                                                    std::uint64_t files_max,
                                                    const ShouldContinue& should_continue);

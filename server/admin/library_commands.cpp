@@ -46,8 +46,8 @@ Result<LibraryQuery, std::string> parse_builds_list(WordReader& reader) {
   return reader.result(query);
 }
 
-/// Returns the command that lists the builds of the query with lower numbers. Words of a command have
-/// no quotes in them.
+/// Returns the command that lists the builds of the query with lower numbers. Words of a command
+/// have no quotes in them.
 std::string next_page_command(const LibraryQuery& query, Sequence before) {
   std::string line = "builds list";
   for (const auto& [word, text] :

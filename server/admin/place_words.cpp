@@ -41,8 +41,8 @@ struct MatchedBuild {
   MaterialMatch match;
 };
 
-/// Gives each missing material the nearest one of its family, or the nearest colour of the table if the
-/// table lacks the family. Cost: O(looks that differ * table + members of the families).
+/// Gives each missing material the nearest one of its family, or the nearest colour of the table if
+/// the table lacks the family. Cost: O(looks that differ * table + members of the families).
 void match_nearest(std::span<const BuildMaterial> materials, const MaterialTable& table,
                    MaterialMatch& match) {
   std::map<std::pair<MaterialColour, Visibility>, Material> found;

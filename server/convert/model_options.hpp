@@ -6,7 +6,8 @@
 
 namespace runstone {
 
-/// Adds an option for each of kModelWords. Their values go to `choices`, which must outlive the parsing.
+/// Adds an option for each of kModelWords. Their values go to `choices`, which must outlive the
+/// parsing.
 void add_model_options(CLI::App& app, ModelChoices& choices);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// TurnedParts: the parts of another ImportParts, turned by quarter turns. It is for a source of one part,
-// whose lowest corner stays.
+// TurnedParts: the parts of another ImportParts, turned by quarter turns. It is for a source of one
+// part, whose lowest corner stays.
 #pragma once
 #include <cstddef>
 #include <memory>

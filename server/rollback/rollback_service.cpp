@@ -34,8 +34,8 @@ std::string progress_text(const RestoreJob::Progress& p, TimeUs elapsed_us) {
   return text;
 }
 
-/// Returns true if nobody but the author is connected. Then nobody else's edits need the time between
-/// two slices.
+/// Returns true if nobody but the author is connected. Then nobody else's edits need the time
+/// between two slices.
 bool is_alone(const WorldServer& world, AuthorId author) {
   if (world.session_count() != 1) return world.session_count() == 0;
   const auto online = world.people().online();

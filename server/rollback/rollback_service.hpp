@@ -1,8 +1,8 @@
 // RollbackService: carries out the commands for undo, redo and rollback. It keeps previews and
-// jobs, has workers read the log, and lets each job write a slice per tick. If nobody but the author
-// of the job is connected, it writes a slice whenever one is planned. A command gets one or more
-// answers. The last answer is sent when the work is done and on disk.
-// Threads: the world strand. It uses no clock, thread or socket.
+// jobs, has workers read the log, and lets each job write a slice per tick. If nobody but the
+// author of the job is connected, it writes a slice whenever one is planned. A command gets one or
+// more answers. The last answer is sent when the work is done and on disk. Threads: the world
+// strand. It uses no clock, thread or socket.
 #pragma once
 #include <atomic>
 #include <cstdint>

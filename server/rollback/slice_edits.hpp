@@ -1,5 +1,6 @@
-// SliceEdits: the edits that a restore job writes in one step. Fills of neighbouring chunks become one
-// edit, so a large fill that is taken back has about as many edits as it had. Thread: the world strand.
+// SliceEdits: the edits that a restore job writes in one step. Fills of neighbouring chunks become
+// one edit, so a large fill that is taken back has about as many edits as it had. Thread: the world
+// strand.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +18,9 @@ class SliceEdits {
   SliceEdits(const WorldServer& world, AuthorId author, std::int32_t chunk_edge)
       : world_(world), author_(author), chunk_edge_(chunk_edge) {}
 
-  /// Adds an edit. If it is a fill that shares a whole side with the fill before it, has its material,
-  /// mask and subject, and the role of the author allows both as one edit, it becomes a part of that.
+  /// Adds an edit. If it is a fill that shares a whole side with the fill before it, has its
+  /// material, mask and subject, and the role of the author allows both as one edit, it becomes a
+  /// part of that.
   void add(const EditDescriptor& edit, Sequence subject);
   /// Returns edit_work() of all edits together.
   std::size_t work() const { return work_; }

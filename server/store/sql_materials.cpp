@@ -73,8 +73,8 @@ StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
       are_for_old_rows = are_for_old_rows || !first_new || row.material < *first_new;
   }
   if (!has_shapes) return {};
-  // Tiles of voxels that became shapes are no longer right. The next opening of the world removes the
-  // tiles of other rules, and 0 is the number of none.
+  // Tiles of voxels that became shapes are no longer right. The next opening of the world removes
+  // the tiles of other rules, and 0 is the number of none.
   if (are_for_old_rows) {
     if (auto put = meta_table_.put("tile_rules", std::int64_t{0}); !put) return put;
   }

@@ -192,7 +192,8 @@ class SqlStore final : public Store {
   StoreResult<void> append_materials(const EditRecord& record, MaterialTable& table) const;
   /// Marks the world as one with shapes if a record gives some.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
-  /// Fails (bad_request) if new materials or shapes among the records do not continue the material table.
+  /// Fails (bad_request) if new materials or shapes among the records do not continue the material
+  /// table.
   StoreResult<void> check_continues_materials(std::span<const EditRecord> records);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);

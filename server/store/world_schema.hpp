@@ -25,8 +25,8 @@ inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// log may have records that programs of format 6 do not know.
 inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// The format of a world in which a material has, or had once, a shape (kShapesKey): its material
-/// table and its log have what programs of format 7 do not know. It has the tables of a library only
-/// if it has a library.
+/// table and its log have what programs of format 7 do not know. It has the tables of a library
+/// only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;

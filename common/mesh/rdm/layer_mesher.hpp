@@ -101,8 +101,8 @@ class LayerMesher {
     for_each_part(touched.slow, [&](std::uint32_t begin, std::uint32_t end) {
       const std::uint64_t read =
           runs_of(begin == 0 ? 0 : begin - 1, std::min(end + 1, e_.s)).count();
-      // A part has all quads of its layers on the slow sides, a third of the sides. On the others it
-      // has those of the touched layers.
+      // A part has all quads of its layers on the slow sides, a third of the sides. On the others
+      // it has those of the touched layers.
       const std::uint64_t quads_read = quads * read / runs;
       cost += kOfSweep + kOfLayer * layers + read + quads_read / 3 +
               quads_read * 2 * layers / (3 * layers_of_chunk);

@@ -61,8 +61,8 @@ class FaceLists {
     room_in_all_ -= in_all;
     return true;
   }
-  /// Joins the quads and replaces `out` by them, ascending by direction. Requires lists in the order
-  /// of the walk: each list ascends by layer, line and place. Cost: O(quads).
+  /// Joins the quads and replaces `out` by them, ascending by direction. Requires lists in the
+  /// order of the walk: each list ascends by layer, line and place. Cost: O(quads).
   void finish(AxisOrder order, ShapeQuads& out);
   /// Returns the quads for which there is memory.
   std::size_t capacity() const;
@@ -75,8 +75,8 @@ class FaceLists {
   std::size_t join(Quad* first, const Quad* end, Direction d, Axis along);
 
   std::array<Pass, 2> passes_;
-  std::size_t room_ = 0;         // in each list
-  std::size_t room_in_all_ = 0;  // quads until the next look at their number
+  std::size_t room_ = 0;              // in each list
+  std::size_t room_in_all_ = 0;       // quads until the next look at their number
   std::vector<std::uint32_t> table_;  // of join(): number of a quad + 1, by a hash of its place
 };
 

@@ -40,9 +40,9 @@ inline constexpr std::uint32_t kGroupFaces = 64;
 
 class PreparedShapes {
  public:
-  /// Begins a chunk. Requires that `shapes` outlives the use. What was prepared for the chunk before
-  /// stays if it had the same shapes and axis order, within a bound of memory. Cost: O(1), or
-  /// O(shapes).
+  /// Begins a chunk. Requires that `shapes` outlives the use. What was prepared for the chunk
+  /// before stays if it had the same shapes and axis order, within a bound of memory. Cost: O(1),
+  /// or O(shapes).
   void begin(const ShapeTable& shapes, AxisOrder order);
 
   /// Returns the shape of this number. It and the faces are valid until the next call.
@@ -54,8 +54,8 @@ class PreparedShapes {
   /// kGroupFaces. Cost: O(1); O(faces) for a pair that was not among the last ones.
   std::uint64_t covered(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
                         std::uint32_t end) {
-    // Faces have numbers below 2^10 within a shape, and `first` ascends with them, so that the first
-    // face of a group names the group.
+    // Faces have numbers below 2^10 within a shape, and `first` ascends with them, so that the
+    // first face of a group names the group.
     const std::uint64_t key = std::uint64_t{first} << 32 | std::uint64_t{own} << 16 | other;
     Memo& memo = memos_[(key * 0x9e37'79b9'7f4a'7c15) >> (64 - kMemoBits)];
     if (memo.key != key) memo = {key, cover(own, other, d, first, end)};

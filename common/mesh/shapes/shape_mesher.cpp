@@ -37,8 +37,8 @@ struct Piece {
   Material material;
 };
 
-/// The walk over the runs of one chunk. A cursor for each neighbouring line, before and behind along
-/// the middle and the slowest axis, moves on in step.
+/// The walk over the runs of one chunk. A cursor for each neighbouring line, before and behind
+/// along the middle and the slowest axis, moves on in step.
 template <class Runs>
 class ShapeWalk {
  public:
@@ -197,8 +197,8 @@ class ShapeWalk {
     return prepared_.covered(shape.number, number, d, first, end);
   }
 
-  /// Adds the faces on the border along the fastest axis: the next voxel is one of the piece, but at
-  /// its end.
+  /// Adds the faces on the border along the fastest axis: the next voxel is one of the piece, but
+  /// at its end.
   void add_along(const Piece& piece, const PreparedShape& shape, std::size_t side,
                  std::uint32_t first, std::uint32_t end) {
     const Direction d = directions_[side];

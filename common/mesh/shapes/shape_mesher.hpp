@@ -1,7 +1,7 @@
 // The mesh of the voxels that are no cubes. It reads runs: a run of a shape gives one quad for each
 // face that joins along the fastest axis, and one a voxel for each that does not. Equal strips of
-// neighbouring lines and layers are joined afterwards. The sweep of the cubes (rdm_mesher.hpp) takes
-// these voxels for empty ones, so worlds of cubes pay nothing.
+// neighbouring lines and layers are joined afterwards. The sweep of the cubes (rdm_mesher.hpp)
+// takes these voxels for empty ones, so worlds of cubes pay nothing.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -28,8 +28,8 @@ class ShapeScratch {
   std::unique_ptr<State> state_;
 };
 
-/// The faces of shapes that one chunk shows. A chunk with more, which only shapes of very many faces
-/// reach, shows the first ones in the order of its runs.
+/// The faces of shapes that one chunk shows. A chunk with more, which only shapes of very many
+/// faces reach, shows the first ones in the order of its runs.
 inline constexpr std::size_t kShapeQuadsMax = std::size_t{1} << 21;
 
 /// Replaces `out` by the quads of the shapes of `chunk`.

@@ -56,7 +56,8 @@ class Receipts {
 
   // Materials.
   /// Sends the materials that an open session lacks, then the shapes. Closes a session without the
-  /// feature materials, and one whose queue is full. A session without the feature shapes gets none.
+  /// feature materials, and one whose queue is full. A session without the feature shapes gets
+  /// none.
   void send_materials(Session& session);
   void send_materials_to_all();
 

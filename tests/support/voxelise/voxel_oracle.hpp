@@ -22,8 +22,9 @@ class VoxelOracle {
   VoxelPos sides() const { return sides_; }
   /// Returns true if a voxel is in the surface.
   bool is_surface(VoxelPos voxel, SurfaceMode mode) const;
-  /// Returns true if a voxel is not inside, and a triangle crosses the line from its centre to that of
-  /// a neighbour that is not inside either, and does so within the voxel. Requires a closed mesh.
+  /// Returns true if a voxel is not inside, and a triangle crosses the line from its centre to that
+  /// of a neighbour that is not inside either, and does so within the voxel. Requires a closed
+  /// mesh.
   bool is_wall(VoxelPos voxel) const;
   /// Returns true if the ray from the centre of a voxel along +z meets an odd number of triangles.
   bool is_inside(VoxelPos voxel) const;

@@ -19,8 +19,8 @@
 namespace runstone::test {
 namespace {
 
-/// Returns the names that the rules of states, colours and shapes have, without namespace. An example
-/// stands for each beginning or end of a name.
+/// Returns the names that the rules of states, colours and shapes have, without namespace. An
+/// example stands for each beginning or end of a name.
 const std::vector<std::string>& known_block_names() {
   static const std::vector<std::string> names = [] {
     std::set<std::string> out;

@@ -30,8 +30,9 @@ std::string shown_at(const FileBuild& build, VoxelPos cell) {
   return row.visibility == Visibility::empty ? "" : row.name;
 }
 
-/// The rule of tiles, cell by cell: the most exposed of eight, then the upper one, then the one with
-/// the lower x, then the one with the lower z. Faces to the outside of a tile of 256 do not count.
+/// The rule of tiles, cell by cell: the most exposed of eight, then the upper one, then the one
+/// with the lower x, then the one with the lower z. Faces to the outside of a tile of 256 do not
+/// count.
 std::string coarse_at(const FileBuild& build, VoxelPos cell) {
   int best = -1;
   std::string out;

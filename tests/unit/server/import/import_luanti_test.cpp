@@ -21,8 +21,8 @@ namespace {
 
 const std::string kWorld = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luanti_v7_small";
 
-/// Calls f(block, name of every node, with its param2 if that is not 0) for each row of a map, without
-/// any code of the importer.
+/// Calls f(block, name of every node, with its param2 if that is not 0) for each row of a map,
+/// without any code of the importer.
 void each_block(const std::string& folder,
                 const std::function<void(ChunkCoord, const std::vector<std::string>&)>& f) {
   sqlite3* db = nullptr;

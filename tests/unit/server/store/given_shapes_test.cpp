@@ -1,4 +1,5 @@
-// Shapes of the materials of a world on disk: from record to record, compacted, copied, and the format.
+// Shapes of the materials of a world on disk: from record to record, compacted, copied, and the
+// format.
 #include <catch2/catch.hpp>
 
 #include "server/store/copy_stored_world.hpp"

@@ -106,8 +106,8 @@ class FaultyLife {
     const auto nothing = [] {};
     const auto edit = [&] { require(append(true)); };
     const auto edit_and_keyframe = [&] {
-      // An interrupted compaction leaves its records to the next one. Each would have more statements
-      // than the one before, and the test would never end.
+      // An interrupted compaction leaves its records to the next one. Each would have more
+      // statements than the one before, and the test would never end.
       if (written_.head < written_.end().version.seq) require(compact());
       edit();
       require(save_keyframe());

@@ -128,8 +128,8 @@ TEST_CASE("an opaque cube hides the border of a shape, and a shape hides what it
     const ShapeQuads below_rock = shapes_in(
         chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kRock}, {{{2, 3, 4}, {3, 4, 5}}, kSlab}}));
     CHECK(below_rock.opaque.size() == 6);
-    // The side of a slab is hidden by a full shape, but not by an upper slab. That of the full shape
-    // is not hidden by the slab.
+    // The side of a slab is hidden by a full shape, but not by an upper slab. That of the full
+    // shape is not hidden by the slab.
     const ShapeQuads beside_full = shapes_in(
         chunk_of(order, {{{{2, 4, 4}, {3, 5, 5}}, kFull}, {{{3, 4, 4}, {4, 5, 5}}, kSlab}}));
     CHECK(beside_full.opaque.size() == 11);
