@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "common/shapes/shape_table.hpp"
-
 using namespace runstone;
 
 namespace {
@@ -198,8 +196,6 @@ TEST_CASE("rows get a shape once, all of a list or none", "[materials][shapes]")
   CHECK(visibilities(table) == std::vector<Visibility>{empty, opaque, opaque, empty});
   CHECK(cube_visibilities(table) == std::vector<Visibility>{empty, empty, empty, empty});
   CHECK(half_filled_visibilities(table) == std::vector<Visibility>{empty, opaque, empty, empty});
-  const ShapeTable shapes(shapes_of(table));
-  CHECK(half_filled_visibilities(table, shapes) == half_filled_visibilities(table));
 }
 
 TEST_CASE("a row that is added keeps its shape, and an empty one must have none",
