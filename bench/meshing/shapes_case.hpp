@@ -1,5 +1,5 @@
-// The shapes case: the chunks of a village with stairs, slabs, panes, fences and plants are meshed with
-// their shapes, and again as if every material were a cube.
+// The shapes case: the chunks of a village with stairs, slabs, panes, fences and plants are meshed
+// with their shapes, and again as if every material were a cube.
 #pragma once
 #include <cstddef>
 

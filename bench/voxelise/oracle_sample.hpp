@@ -1,6 +1,6 @@
-// OracleSample: voxels of a result that are compared with the oracle of the tests, which computes each
-// of them on its own from all triangles. Half of them are drawn near the surface, where an error would
-// be, and half anywhere in the box. The same seed draws the same voxels. One thread.
+// OracleSample: voxels of a result that are compared with the oracle of the tests, which computes
+// each of them on its own from all triangles. Half of them are drawn near the surface, where an
+// error would be, and half anywhere in the box. The same seed draws the same voxels. One thread.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // `runstone-bench voxelise`: statues of 10^4 to 10^6 triangles into runs, by the voxeliser and by
-// way of a grid of one byte a voxel. The results of both are compared, and voxels of all ways with the
-// oracle of the tests.
+// way of a grid of one byte a voxel. The results of both are compared, and voxels of all ways with
+// the oracle of the tests.
 #pragma once
 #include <cstdint>
 #include <iosfwd>

@@ -1,5 +1,6 @@
-// Village: the town with shapes, as an imported build has them: panes in the windows, roofs of stairs
-// and slabs, fences around the lots, plants in the gardens, and carpets and furniture on the floors.
+// Village: the town with shapes, as an imported build has them: panes in the windows, roofs of
+// stairs and slabs, fences around the lots, plants in the gardens, and carpets and furniture on the
+// floors.
 #pragma once
 #include <span>
 #include <vector>

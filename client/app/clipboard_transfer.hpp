@@ -1,6 +1,6 @@
-// ClipboardTransfer: reads the clipboard of the tools from a file of any format, or writes it to one,
-// for a player at the window. Files are read and written on a thread of their own: a town must not delay a
-// frame. One file at a time. Thread: the main thread.
+// ClipboardTransfer: reads the clipboard of the tools from a file of any format, or writes it to
+// one, for a player at the window. Files are read and written on a thread of their own: a town must
+// not delay a frame. One file at a time. Thread: the main thread.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -39,9 +39,9 @@ class ClipboardTransfer {
   std::optional<PlayerNotice> step(ToolBox& tools);
   /// Returns true once after a file became the clipboard.
   bool take_loaded() { return std::exchange(has_loaded_, false); }
-  /// Gives up the file that is being read. The clipboard stays as it is. The next file can begin when
-  /// the thread has ended: step() says so. Files of other formats than models are read to their end
-  /// first. Does nothing if no file is being read.
+  /// Gives up the file that is being read. The clipboard stays as it is. The next file can begin
+  /// when the thread has ended: step() says so. Files of other formats than models are read to
+  /// their end first. Does nothing if no file is being read.
   void stop();
   bool is_busy() const { return !state_.empty(); }
   /// Returns what is under way, such as "reading castle.schem".

@@ -13,8 +13,8 @@ struct BodyMaterials {
   MaterialSet liquid;  // the whole voxel
 };
 
-/// Returns those of a table. `shapes` are its shapes; null: the function makes them, if a body meets
-/// any. Cost: O(materials), and for null that of ShapeTable.
+/// Returns those of a table. `shapes` are its shapes; null: the function makes them, if a body
+/// meets any. Cost: O(materials), and for null that of ShapeTable.
 BodyMaterials body_materials(const MaterialTable& table, ShapeTablePtr shapes = nullptr);
 
 }  // namespace runstone

@@ -41,9 +41,9 @@ class MeshPipeline {
   bool draws() const { return draw_queue_ != nullptr; }
   std::string renderer_name() const { return draw_queue_ ? draw_queue_->screen_name() : "none"; }
 
-  /// Sets the world's materials, and `meshed`, which mesh_materials_of() makes of them. If a material
-  /// lies before the first one that differs from the table before, its voxels look the same, and
-  /// only chunks with other materials are meshed again. Otherwise all chunks are.
+  /// Sets the world's materials, and `meshed`, which mesh_materials_of() makes of them. If a
+  /// material lies before the first one that differs from the table before, its voxels look the
+  /// same, and only chunks with other materials are meshed again. Otherwise all chunks are.
   void set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed);
   void set_materials(const MaterialTable& materials) {
     set_materials(materials, mesh_materials_of(materials));

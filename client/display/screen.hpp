@@ -12,9 +12,9 @@
 #include "client/render/renderer.hpp"
 #include "common/core/coords.hpp"
 #include "common/materials/material_table.hpp"
-#include "common/shapes/shape_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "common/shapes/shape_table.hpp"
 
 namespace runstone {
 

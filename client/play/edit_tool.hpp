@@ -61,8 +61,8 @@ class EditTool {
   /// Returns true if the tool acts again and again while the button is held.
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
   /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits
-  /// after it are not proposed. Those that only follow the first one (ToolAction::has_followers) are left
-  /// out if they are refused. An action that needs_build() is begun by
+  /// after it are not proposed. Those that only follow the first one (ToolAction::has_followers)
+  /// are left out if they are refused. An action that needs_build() is begun by
   /// build(). If `made` is a failure, fails with it.
   Result<void, std::string> propose(const ToolEdits& made, TimeUs now_us);
 
@@ -115,8 +115,8 @@ class EditTool {
  private:
   /// Proposes the edits, unless they would put a voxel where the player stands.
   Result<void, std::string> propose_beside(const ToolEdits& made, TimeUs now_us);
-  /// Proposes an edit that follows the first one of its action. It is left out if the client does not
-  /// accept it.
+  /// Proposes an edit that follows the first one of its action. It is left out if the client does
+  /// not accept it.
   void follow(const EditDescriptor& edit, TimeUs now_us);
 
   ClientSession& session_;

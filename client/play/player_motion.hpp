@@ -20,7 +20,8 @@ class PlayerMotion {
   /// Both must outlive the object.
   PlayerMotion(const Replica& replica, Player& player) : replica_(replica), player_(player) {}
 
-  /// Takes the materials of the world and their shapes: they decide where a walking player is stopped.
+  /// Takes the materials of the world and their shapes: they decide where a walking player is
+  /// stopped.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
   /// Applies the input of the last `seconds`. Cost: that of Player::walk().
   void step(const WindowInput& input, double seconds, const LookSettings& look);

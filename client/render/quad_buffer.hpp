@@ -26,7 +26,8 @@ class QuadBuffer {
   /// Sets the shapes of the materials of the quads.
   void set_shapes(const ShapeTable& shapes) { shapes_.set(shapes); }
   /// Binds quads, shapes and indices, and sets the uniforms `quads` and `shapes`; the shapes are
-  /// bound to kShapeUnit. Requires that the program is in use. Returns the location of its uniform `first_vertex`, -1 in OpenGL, which draw() takes.
+  /// bound to kShapeUnit. Requires that the program is in use. Returns the location of its uniform
+  /// `first_vertex`, -1 in OpenGL, which draw() takes.
   GLint bind(const GlProgram& program, GLint unit) const;
   /// Draws the spans in their order. Requires bind() before, and that its program is in use.
   void draw(std::span<const QuadSpan> spans, GLint first_vertex);

@@ -56,8 +56,8 @@ constexpr const char* kGhostFragmentShader =
     "  vec2 st = face.x > 0.5 ? voxel.zy : face.y > 0.5 ? voxel.xz : voxel.xy;\n"
     "  vec2 edge = abs(fract(st) - 0.5);\n"
     "  float rim = step(0.46, max(edge.x, edge.y));\n"
-    // Where a cell has few pixels, lines between cells would flicker and make patterns of their own.
-    // There their mean is drawn instead: lines cover 1 - 0.92 * 0.92 of a face.
+    // Where a cell has few pixels, lines between cells would flicker and make patterns of their
+    // own. There their mean is drawn instead: lines cover 1 - 0.92 * 0.92 of a face.
     "  float pixel = max(fwidth(st.x), fwidth(st.y));\n"
     "  rim = mix(0.15, rim, clamp(1.5 - 3.0 * pixel, 0.0, 1.0));\n"
     "  vec3 c = sqrt(mix(colour.rgb, tint.rgb, tint.a)) * (0.80 + 0.20 * normal.y);\n"

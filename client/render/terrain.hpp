@@ -183,7 +183,7 @@ class Terrain {
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;
   ShapeTablePtr shapes_;      // of the materials
-  std::vector<Quad> staged_;                  // on their way to the GPU; kept for its capacity
+  std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
   ShadowMaps shadows_;
   std::map<ChunkKey, Chunk> chunks_;  // those with quads
   std::map<ChunkKey, Tile> tiles_;    // those with quads

@@ -76,8 +76,8 @@ struct Plane {
   std::int32_t at = 0;
 };
 
-/// Counts the quads of a node by their places along one axis. Of the places only those with an entry
-/// are visited, so that sixteenths do not cost more than whole voxels.
+/// Counts the quads of a node by their places along one axis. Of the places only those with an
+/// entry are visited, so that sixteenths do not cost more than whole voxels.
 class PlaceCounts {
  public:
   struct Count {
@@ -125,9 +125,9 @@ struct TransparentTree::Building {
       : shapes(of_quads), counts{PlaceCounts(step), PlaceCounts(step), PlaceCounts(step)} {}
 
   /// Returns the plane that divides the fewest quads which cannot be cut there; of equal ones, that
-  /// which cuts the fewest, and then that with the most equal sides. It is the plane of a quad, or a
-  /// border between a plant and another quad. Returns nullopt if there is none: then all quads are
-  /// planes of plants in one voxel. Requires quads.
+  /// which cuts the fewest, and then that with the most equal sides. It is the plane of a quad, or
+  /// a border between a plant and another quad. Returns nullopt if there is none: then all quads
+  /// are planes of plants in one voxel. Requires quads.
   std::optional<Plane> best_plane(const std::vector<QuadFields>& quads) {
     for (const QuadFields& quad : quads) {
       const Rectangle r = rectangle_of(quad, shapes);

@@ -1,10 +1,11 @@
 // TransparentTree: gives, for every place of the eye, the order in which the transparent quads of a
 // chunk are blended correctly: what lies behind comes first, also between faces of different
-// directions, and between faces of cubes and of shapes. It is a binary space partition (Fuchs, Kedem
-// and Naylor 1980) whose planes are those of the quads. A quad that crosses a plane is cut into two,
-// so no quads hide each other in a circle. There are two exceptions, both within one voxel:
-//   - A quad cannot be cut inside of a voxel. If each plane of some quads lies inside of a voxel and
-//     crosses another of them there, one piece is ordered by its middle.
+// directions, and between faces of cubes and of shapes. It is a binary space partition (Fuchs,
+// Kedem and Naylor 1980) whose planes are those of the quads. A quad that crosses a plane is cut
+// into two, so no quads hide each other in a circle. There are two exceptions, both within one
+// voxel:
+//   - A quad cannot be cut inside of a voxel. If each plane of some quads lies inside of a voxel
+//     and crosses another of them there, one piece is ordered by its middle.
 //   - The planes of a plant cross each other, and have no order among themselves.
 // Pure.
 #pragma once
@@ -26,9 +27,9 @@ class TransparentTree {
   /// A chunk with more quads, or with more pieces of them, has no tree.
   static constexpr std::size_t kQuadsMax = 1024, kPiecesMax = 2048;
 
-  /// Makes the tree of a chunk's quads. `shapes` has the faces to which the quads refer; a quad whose
-  /// face it does not have counts as a side of whole voxels. Returns nullopt if the quads are too
-  /// many. Cost: O(pieces x depth of the tree).
+  /// Makes the tree of a chunk's quads. `shapes` has the faces to which the quads refer; a quad
+  /// whose face it does not have counts as a side of whole voxels. Returns nullopt if the quads are
+  /// too many. Cost: O(pieces x depth of the tree).
   static std::optional<TransparentTree> build(std::span<const Quad> quads,
                                               const ShapeTable& shapes);
 

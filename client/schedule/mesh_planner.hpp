@@ -64,11 +64,12 @@ struct MeshJob {
   Urgency urgency = Urgency::terrain;  // of the changes that the mesh shows
 };
 
-/// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its own
-/// runs determine it:
-///   - A run of cubes that alternates with air has three faces on average. Runs of the neighbours can
-///     cut faces at the border further.
-///   - A run of a shape has all faces of each voxel. All shapes of a chunk have kShapeQuadsMax at most.
+/// Returns a bound of the quads that meshing a chunk with these runs makes, in bytes, as far as its
+/// own runs determine it:
+///   - A run of cubes that alternates with air has three faces on average. Runs of the neighbours
+///     can cut faces at the border further.
+///   - A run of a shape has all faces of each voxel. All shapes of a chunk have kShapeQuadsMax at
+///     most.
 /// Cost: O(1) if no material has a shape, otherwise O(runs).
 std::size_t mesh_bytes_about(const MeshJob& job, const ShapeTable& shapes);
 

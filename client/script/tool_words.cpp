@@ -126,8 +126,8 @@ script::Step symmetry_step(ScriptWords& words) {
   return symmetry;
 }
 
-/// Returns the bytes of `text` that name a file. Behind the name of a model, which may have blanks, words
-/// of ModelChoices may stand.
+/// Returns the bytes of `text` that name a file. Behind the name of a model, which may have blanks,
+/// words of ModelChoices may stand.
 std::size_t file_name_bytes(std::string_view text) {
   if (file_refusal(std::string(text), false).empty()) return text.size();
   for (std::size_t end = text.find(' '); end != std::string_view::npos;

@@ -62,8 +62,8 @@ class ServerConnection {
     materials_added,   // welcome() has more materials now, or materials with other shapes
     for_session,       // the session decides whether the message is allowed in this state
   };
-  /// Handles the messages of the handshake, pongs, new materials and shapes once open, and goodbyes. Leaves
-  /// other messages as they are.
+  /// Handles the messages of the handshake, pongs, new materials and shapes once open, and
+  /// goodbyes. Leaves other messages as they are.
   Dispatch receive(Message& message, const Arrival& arrival);
   /// Notes that a valid message arrived that did not pass through receive().
   void note_message(TimeUs now_us) { last_message_us_ = now_us; }

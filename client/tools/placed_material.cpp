@@ -52,7 +52,8 @@ Direction turned_right(Direction horizontal) {
   }
 }
 
-/// Returns the rotation of what stands and faces the player: sixteenths of a turn from south over west.
+/// Returns the rotation of what stands and faces the player: sixteenths of a turn from south over
+/// west.
 std::string facing_rotation(const LookDirection& look) {
   const double turns = std::atan2(look.x, -look.z) / (2 * std::numbers::pi);
   return std::to_string((std::lround(turns * 16) + 32) % 16);
@@ -64,12 +65,13 @@ constexpr std::string_view kFacingAway =
 constexpr std::string_view kOnFace =
     "*shulker_box end_rod *lightning_rod *_amethyst_bud amethyst_cluster";
 constexpr std::string_view kOnWall =
-    "ladder *wall_torch *wall_sign *wall_banner *wall_skull *wall_head *coral_wall_fan tripwire_hook";
+    "ladder *wall_torch *wall_sign *wall_banner *wall_skull *wall_head *coral_wall_fan "
+    "tripwire_hook";
 constexpr std::string_view kStandsOrHangs =
     "*torch *_sign sign *_banner *_skull *_head *_coral_fan";
 
-/// Returns the family of a block that stands in place of one that hangs on a wall, and the other way
-/// round: "oak_sign" and "oak_wall_sign".
+/// Returns the family of a block that stands in place of one that hangs on a wall, and the other
+/// way round: "oak_sign" and "oak_wall_sign".
 std::string standing_or_hanging(const std::string& family, bool hangs) {
   const std::size_t path = family.find(':') == std::string::npos ? 0 : family.find(':') + 1;
   constexpr std::string_view kWall = "wall_";

@@ -31,8 +31,8 @@ class MirroredMaterials {
     return at->second;
   }
   /// Returns the mirrored form of a clipboard of one descriptor, without moving its cells.
-  const std::shared_ptr<const Clipboard>& mirrored(const std::shared_ptr<const Clipboard>& clipboard,
-                                                   Axis axis) {
+  const std::shared_ptr<const Clipboard>& mirrored(
+      const std::shared_ptr<const Clipboard>& clipboard, Axis axis) {
     auto& form = clipboards_[{clipboard, axis}];
     if (!form) form = with_turned_materials(clipboard, Orientation{}.mirrored(axis), table_);
     return form;

@@ -31,7 +31,8 @@ struct Symmetry {
 };
 
 /// Returns the edit mirrored along an axis: the voxel at coordinate v moves to centre2 - v, and
-/// materials become their mirrored forms (turned_material()). Requires a valid edit that has voxels.
+/// materials become their mirrored forms (turned_material()). Requires a valid edit that has
+/// voxels.
 EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2,
                         const MaterialTable& materials);
 
@@ -45,9 +46,9 @@ std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits, const
 /// One thread.
 class MirroredBuilds {
  public:
-  /// Returns the build mirrored along x, z or both, with the mirrored materials. Keeps the forms of the
-  /// last build that was asked for. Call forget() when the table changes. Fails as turned() does. Cost:
-  /// that of turned() for a new form, otherwise O(1).
+  /// Returns the build mirrored along x, z or both, with the mirrored materials. Keeps the forms of
+  /// the last build that was asked for. Call forget() when the table changes. Fails as turned()
+  /// does. Cost: that of turned() for a new form, otherwise O(1).
   Result<BuildPtr> mirrored(const BuildPtr& build, bool along_x, bool along_z,
                             const MaterialTable& materials);
   void forget() { *this = MirroredBuilds(); }

@@ -33,8 +33,8 @@ struct ToolAction {
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
-  /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one is
-  /// refused, it is left out without a word.
+  /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one
+  /// is refused, it is left out without a word.
   bool has_followers = false;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 

@@ -99,8 +99,8 @@ class ToolBox {
   Result<void, std::string> rotate(int quarters);
   /// Mirrors the clipboard along an axis of the world, with its materials.
   Result<void, std::string> mirror(Axis axis);
-  /// Returns what the last rotate() or mirror() could not do, as a sentence for the player, or an empty
-  /// text.
+  /// Returns what the last rotate() or mirror() could not do, as a sentence for the player, or an
+  /// empty text.
   const std::string& turn_notice() const { return turn_notice_; }
 
   const Symmetry& symmetry() const { return symmetry_; }
@@ -108,9 +108,9 @@ class ToolBox {
   void set_symmetry(const Symmetry& symmetry);
 
   /// Takes the materials of the world. The clipboard of another world gets the ids that materials
-  /// of the same names have in this world. Other members of their families, and otherwise those with
-  /// the nearest colours, take the place of materials that the world lacks; the returned text names
-  /// these, and is empty if there are none.
+  /// of the same names have in this world. Other members of their families, and otherwise those
+  /// with the nearest colours, take the place of materials that the world lacks; the returned text
+  /// names these, and is empty if there are none.
   std::string set_materials(const MaterialTable& materials);
   /// Does so with what previews read of the materials: `meshed` is mesh_materials_of() them.
   std::string set_materials(const MaterialTable& materials, const MeshMaterialsPtr& meshed);

@@ -1,5 +1,5 @@
-// The materials of a world when a clipboard or an edit is turned or mirrored. A build of a file, which
-// has names in place of a world's materials, is turned by common/formats/file_build_turn.hpp.
+// The materials of a world when a clipboard or an edit is turned or mirrored. A build of a file,
+// which has names in place of a world's materials, is turned by common/formats/file_build_turn.hpp.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -19,8 +19,8 @@ namespace runstone {
 ///   - the one that has the name for the new lie (turned_material_name());
 ///   - otherwise the first of its family whose shape looks like the turned one;
 ///   - otherwise nullopt: it has no turned form in this world, and stays as it is.
-/// A material that the turn does not change is returned, and so is one that the table does not know.
-/// Cost: that of turned_material_name(), and of the family.
+/// A material that the turn does not change is returned, and so is one that the table does not
+/// know. Cost: that of turned_material_name(), and of the family.
 std::optional<Material> turned_material(Material material, const Orientation& orientation,
                                         const MaterialTable& table);
 
@@ -34,9 +34,9 @@ struct TurnedMaterials {
 TurnedMaterials turned_materials(std::span<const Material> palette, const Orientation& orientation,
                                  const MaterialTable& table);
 
-/// Returns a clipboard of one descriptor with the materials for an orientation in which it is pasted.
-/// Its cells do not move. Returns the clipboard itself if no material changes, or if the result were
-/// too large for a descriptor. Cost: O(runs) if a material changes.
+/// Returns a clipboard of one descriptor with the materials for an orientation in which it is
+/// pasted. Its cells do not move. Returns the clipboard itself if no material changes, or if the
+/// result were too large for a descriptor. Cost: O(runs) if a material changes.
 std::shared_ptr<const Clipboard> with_turned_materials(std::shared_ptr<const Clipboard> clipboard,
                                                        const Orientation& orientation,
                                                        const MaterialTable& table);

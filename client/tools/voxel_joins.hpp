@@ -1,5 +1,5 @@
-// Voxel joins: fences, panes and walls that join their neighbours. The states are chosen when a voxel is
-// placed or removed, as edits, and never by drawing: so all clients see one world. Pure.
+// Voxel joins: fences, panes and walls that join their neighbours. The states are chosen when a
+// voxel is placed or removed, as edits, and never by drawing: so all clients see one world. Pure.
 #pragma once
 #include <functional>
 #include <optional>
@@ -15,21 +15,24 @@ namespace runstone {
 /// Returns the material of a voxel, or nullopt if it is not known.
 using VoxelReader = std::function<std::optional<Material>(VoxelPos)>;
 
-/// Returns the member of a material's family that joins the four neighbours of a place, or the material
-/// if its family joins nothing. Of the members that the table has, the one with the fewest states that
-/// differ. These join:
+/// Returns the member of a material's family that joins the four neighbours of a place, or the
+/// material if its family joins nothing. Of the members that the table has, the one with the fewest
+/// states that differ. These join:
 ///   - fences: fences, but those of nether brick only each other;
 ///   - panes, bars and walls: each other;
 ///   - fences and walls: fence gates on the two sides of their posts;
-///   - all of them: cubes that stop a body but for leaves, and shapes that fill the side of the voxel.
-/// Cost: O(rules), some 10 microseconds for each neighbour with a shape, and that of nearest_member().
+///   - all of them: cubes that stop a body but for leaves, and shapes that fill the side of the
+///     voxel.
+/// Cost: O(rules), some 10 microseconds for each neighbour with a shape, and that of
+/// nearest_member().
 Material joined_material(VoxelPos at, Material material, const MaterialTable& table,
                          const VoxelReader& voxels);
 
 /// Returns the edits that set a voxel: first the voxel itself, joined if it joins, and then those
-/// neighbours that join and change, of which only the side towards it changes. Each edit of a neighbour
-/// has a mask, so that it changes nothing if somebody else has changed the neighbour. At most five
-/// edits. Neighbours that are not known do not change. Cost: that of five joined_material().
+/// neighbours that join and change, of which only the side towards it changes. Each edit of a
+/// neighbour has a mask, so that it changes nothing if somebody else has changed the neighbour. At
+/// most five edits. Neighbours that are not known do not change. Cost: that of five
+/// joined_material().
 std::vector<EditDescriptor> joined_edits(VoxelPos at, Material material, const MaterialTable& table,
                                          const VoxelReader& voxels);
 

@@ -1,6 +1,6 @@
 // PanelWindows: the windows of the interface that are used beside playing: tools, timeline, map,
-// rollback and the library of builds. The desktop client and the browser client have them in common.
-// One thread.
+// rollback and the library of builds. The desktop client and the browser client have them in
+// common. One thread.
 #pragma once
 #include <array>
 #include <vector>

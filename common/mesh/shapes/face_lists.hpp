@@ -75,8 +75,8 @@ class FaceLists {
   std::size_t join(Quad* first, const Quad* end, Direction d, Axis along);
 
   std::array<Pass, 2> passes_;
-  std::size_t room_ = 0;         // in each list
-  std::size_t room_in_all_ = 0;  // quads until the next look at their number
+  std::size_t room_ = 0;              // in each list
+  std::size_t room_in_all_ = 0;       // quads until the next look at their number
   std::vector<std::uint32_t> table_;  // of join(): number of a quad + 1, by a hash of its place
 };
 

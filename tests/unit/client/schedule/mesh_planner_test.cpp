@@ -280,7 +280,8 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
 }
 
-TEST_CASE("the bound of a mesh's bytes counts the faces of shapes in each voxel", "[schedule][shapes]") {
+TEST_CASE("the bound of a mesh's bytes counts the faces of shapes in each voxel",
+          "[schedule][shapes]") {
   Shape bars;
   for (std::uint8_t i = 0; i < 32; ++i) {
     const auto x = static_cast<std::uint8_t>(i % 8 * 2 + 1);

@@ -150,10 +150,9 @@ TEST_CASE("symmetric copies have mirrored materials", "[tools][hands]") {
   // The copies of one clipboard have one clipboard. They are too far apart to be merged.
   const auto clipboard = Clipboard::of({east}, uniform_chunk(Extent{2, 1, 1}, 1));
   REQUIRE(clipboard);
-  const auto copies =
-      with_copies({{Paste{{300, 0, 0}, *clipboard, {}}, {}, kEmpty},
-                   {Paste{{900, 0, 0}, *clipboard, {}}, {}, kEmpty}},
-                  {SymmetryKind::x, 0, 0}, table);
+  const auto copies = with_copies({{Paste{{300, 0, 0}, *clipboard, {}}, {}, kEmpty},
+                                   {Paste{{900, 0, 0}, *clipboard, {}}, {}, kEmpty}},
+                                  {SymmetryKind::x, 0, 0}, table);
   REQUIRE(copies.size() == 4);
   CHECK(std::get<Paste>(copies[1].shape).clipboard != *clipboard);
   CHECK(std::get<Paste>(copies[1].shape).clipboard == std::get<Paste>(copies[3].shape).clipboard);
