@@ -6,7 +6,8 @@ namespace runstone::bench {
 
 VisibleVoxel draw_visible_voxel(const ChunkMesh& mesh, SplitMix64& rng) {
   const std::size_t opaque = mesh.opaque.quads.size();
-  const std::size_t i = rng.below(static_cast<std::uint32_t>(mesh.quad_count()));
+  const std::size_t count = opaque + mesh.transparent.quads.size();
+  const std::size_t i = rng.below(static_cast<std::uint32_t>(count));
   const QuadFields q =
       unpack(i < opaque ? mesh.opaque.quads[i] : mesh.transparent.quads[i - opaque]);
   std::array<std::int32_t, 3> at = {q.x, q.y, q.z};

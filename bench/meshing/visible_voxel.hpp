@@ -11,7 +11,7 @@ struct VisibleVoxel {
   Direction direction;  // of the face
 };
 
-/// Draws a random place of a random quad. Requires a mesh that is not empty.
+/// Draws a random place of a random quad of cubes. Requires a mesh that has one.
 VisibleVoxel draw_visible_voxel(const ChunkMesh& mesh, SplitMix64& rng);
 
 }  // namespace runstone::bench

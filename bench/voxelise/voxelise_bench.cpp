@@ -182,7 +182,8 @@ Result<VoxeliseResult, std::string> run_voxelise_bench(const BenchOptions& optio
 void write_table(const VoxeliseResult& result, std::ostream& out) {
   fmt::print(
       out,
-      "\n| mesh into | triangles | longest side | processor s | s | peak MB besides the mesh | voxels | runs | "
+      "\n| mesh into | triangles | longest side | processor s | s | peak MB besides the mesh "
+      "| voxels | runs | "
       "MB of runs | wrong, of those compared |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const VoxeliseRow& row : result.rows) {
     fmt::print(out, "| {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {} | {} | {:.1f} | {} of {} |\n",

@@ -62,8 +62,8 @@ class EditTool {
   bool repeats() const { return &box_.tool() == box_.tools().front().get(); }
   /// Proposes the edits in their order, as one action. Fails with the first refusal; the edits
   /// after it are not proposed. Those that only follow the first one (ToolAction::has_followers)
-  /// are left out if they are refused. An action that needs_build() is begun by build(). If `made`
-  /// is a failure, fails with it.
+  /// are left out if they are refused. An action that needs_build() is begun by
+  /// build(). If `made` is a failure, fails with it.
   Result<void, std::string> propose(const ToolEdits& made, TimeUs now_us);
 
   /// Begins an action of any size. `name` is a verb for the player, such as "fill". Fails if one is

@@ -11,7 +11,8 @@ namespace runstone {
 
 /// The corners of a quad stand in the order 0: (0, 0), 1: (1, 0), 2: (0, 1), 3: (1, 1) along u and
 /// v; a negative face reverses u, so that it has the opposite winding. `inside` is the depth below
-/// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above.
+/// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
+/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \
@@ -48,8 +49,11 @@ namespace runstone {
   "    vec3 high = vec3((f >> 5) & 31u, (f >> 15) & 31u, (f >> 25) & 31u) * 0.0625;\n" \
   "    place = vec3(mix(low.x, high.x, cv), mix(low.y, high.y + w - 1.0, cu),\n"       \
   "                 mix(low.z, high.z + h - 1.0, cv));\n"                              \
-  "    if (low.x != high.x) c.normal = vec3(0.0, 1.0, 0.0);\n"                         \
   "    c.inside = 0.03125;\n"                                                          \
+  "    if (low.x != high.x) {\n"                                                       \
+  "      c.normal = vec3(0.0, 1.0, 0.0);\n"                                            \
+  "      c.inside = 0.0;\n"                                                            \
+  "    }\n"                                                                            \
   "  }\n"                                                                              \
   "  c.at = base + n * place.x + u * place.y + v * place.z;\n"                         \
   "  return c;\n"                                                                      \

@@ -69,7 +69,8 @@ struct MeshJob {
 ///   - A run of cubes that alternates with air has three faces on average. Runs of the neighbours
 ///     can cut faces at the border further.
 ///   - A run of a shape has all faces of each voxel. All shapes of a chunk have kShapeQuadsMax at
-///     most. Cost: O(1) if no material has a shape, otherwise O(runs).
+///     most.
+/// Cost: O(1) if no material has a shape, otherwise O(runs).
 std::size_t mesh_bytes_about(const MeshJob& job, const ShapeTable& shapes);
 
 enum class JobSize : std::uint8_t {

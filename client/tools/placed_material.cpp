@@ -65,7 +65,8 @@ constexpr std::string_view kFacingAway =
 constexpr std::string_view kOnFace =
     "*shulker_box end_rod *lightning_rod *_amethyst_bud amethyst_cluster";
 constexpr std::string_view kOnWall =
-    "ladder *wall_torch *wall_sign *wall_banner *wall_skull *wall_head *coral_wall_fan tripwire_hook";
+    "ladder *wall_torch *wall_sign *wall_banner *wall_skull *wall_head *coral_wall_fan "
+    "tripwire_hook";
 constexpr std::string_view kStandsOrHangs =
     "*torch *_sign sign *_banner *_skull *_head *_coral_fan";
 

@@ -1,6 +1,8 @@
 #include "client/tools/symmetry.hpp"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "client/tools/build_words.hpp"
@@ -15,10 +17,38 @@ std::int32_t& along(VoxelPos& at, Axis axis) {
   return axis == Axis::x ? at.x : axis == Axis::y ? at.y : at.z;
 }
 
+/// The mirrored materials of one action, each looked up once.
+class MirroredMaterials {
+ public:
+  explicit MirroredMaterials(const MaterialTable& table) : table_(table) {}
+  /// Returns the mirrored form, or the material itself if it has none.
+  Material mirrored(Material material, Axis axis) {
+    const auto [at, is_new] = known_.try_emplace({material, axis}, material);
+    if (is_new) {
+      const auto now = turned_material(material, Orientation{}.mirrored(axis), table_);
+      at->second = now.value_or(material);
+    }
+    return at->second;
+  }
+  /// Returns the mirrored form of a clipboard of one descriptor, without moving its cells.
+  const std::shared_ptr<const Clipboard>& mirrored(
+      const std::shared_ptr<const Clipboard>& clipboard, Axis axis) {
+    auto& form = clipboards_[{clipboard, axis}];
+    if (!form) form = with_turned_materials(clipboard, Orientation{}.mirrored(axis), table_);
+    return form;
+  }
+
+ private:
+  const MaterialTable& table_;
+  std::map<std::pair<Material, Axis>, Material> known_;
+  std::map<std::pair<std::shared_ptr<const Clipboard>, Axis>, std::shared_ptr<const Clipboard>>
+      clipboards_;
+};
+
 struct Mirror {
   Axis axis;
   std::int32_t centre2;
-  const MaterialTable& materials;
+  MirroredMaterials& materials;
 
   void turn(VoxelPos& at) const { along(at, axis) = centre2 - along(at, axis); }
   void operator()(SetVoxel& s) const { turn(s.at); }
@@ -37,7 +67,7 @@ struct Mirror {
     std::int32_t& low = along(s.at, axis);
     low = centre2 - (low + sides[static_cast<std::size_t>(axis)] - 1);
     // An orientation turns cells, not materials: these are as they lie in the world.
-    s.clipboard = with_turned_materials(s.clipboard, Orientation{}.mirrored(axis), materials);
+    s.clipboard = materials.mirrored(s.clipboard, axis);
     s.orientation = s.orientation.mirrored(axis);
   }
   void operator()(RightsEdit&) const {}
@@ -54,29 +84,32 @@ void append_new(std::vector<EditDescriptor>& to, EditDescriptor edit) {
   if (!is_known) to.push_back(std::move(edit));
 }
 
+EditDescriptor mirrored_with(MirroredMaterials& materials, const EditDescriptor& edit, Axis axis,
+                             std::int32_t centre2) {
+  EditDescriptor out = edit;
+  std::visit(Mirror{axis, centre2, materials}, out.shape);
+  out.material = materials.mirrored(out.material, axis);
+  out.mask.material = materials.mirrored(out.mask.material, axis);
+  return out;
+}
+
 }  // namespace
 
 EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t centre2,
                         const MaterialTable& materials) {
-  EditDescriptor out = edit;
-  std::visit(Mirror{axis, centre2, materials}, out.shape);
-  const auto mirror = [&](Material& material) {
-    material =
-        turned_material(material, Orientation{}.mirrored(axis), materials).value_or(material);
-  };
-  mirror(out.material);
-  mirror(out.mask.material);
-  return out;
+  MirroredMaterials forms(materials);
+  return mirrored_with(forms, edit, axis, centre2);
 }
 
 std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits, const Symmetry& symmetry,
                                         const MaterialTable& materials) {
   if (symmetry.kind == SymmetryKind::none) return edits;
+  MirroredMaterials forms(materials);
   const auto in_x = [&](const EditDescriptor& e) {
-    return mirrored(e, Axis::x, symmetry.centre2_x, materials);
+    return mirrored_with(forms, e, Axis::x, symmetry.centre2_x);
   };
   const auto in_z = [&](const EditDescriptor& e) {
-    return mirrored(e, Axis::z, symmetry.centre2_z, materials);
+    return mirrored_with(forms, e, Axis::z, symmetry.centre2_z);
   };
   std::vector<EditDescriptor> out;
   for (const EditDescriptor& edit : edits) {

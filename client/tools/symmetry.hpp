@@ -37,7 +37,8 @@ EditDescriptor mirrored(const EditDescriptor& edit, Axis axis, std::int32_t cent
                         const MaterialTable& materials);
 
 /// Returns the edits and their copies, each once. If there are copies, they are merged into one
-/// edit where merge_edits() can do it.
+/// edit where merge_edits() can do it. Each material is mirrored once. Cost: O(edits), and that of
+/// turned_material() for each material.
 std::vector<EditDescriptor> with_copies(std::vector<EditDescriptor> edits, const Symmetry& symmetry,
                                         const MaterialTable& materials);
 

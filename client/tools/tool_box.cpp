@@ -17,10 +17,12 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/build_info.hpp"
+#include "common/formats/file_build_turn.hpp"
 #include "common/formats/material_family.hpp"
 #include "common/formats/turned_names.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
+#include "common/shapes/shape_faces.hpp"
 #include "common/shapes/turned_shape.hpp"
 
 namespace runstone {
@@ -419,10 +421,19 @@ Result<BuildPtr> ToolBox::with_turned_rows(BuildPtr build, const Orientation& or
     // No world is open: its table will have the names.
     const std::array<Axis, 3> along = {orientation.along(Axis::x), orientation.along(Axis::y),
                                        orientation.along(Axis::z)};
+    std::size_t stuck = 0;
     for (MaterialRow& row : clipboard_rows_) {
-      row.name = turned_material_name(row.name, along, orientation.flips).value_or(row.name);
-      row.shape = turned(row.shape, along, orientation.flips);
+      auto name = turned_material_name(row.name, along, orientation.flips);
+      Shape shape = turned(row.shape, along, orientation.flips);
+      // Name and shape turn together, as in a build of a file.
+      if (!name || (!shape.is_cube() && !check_shape(shape))) {
+        ++stuck;
+        continue;
+      }
+      row.name = *std::move(name);
+      row.shape = std::move(shape);
     }
+    turn_notice_ = stuck_notice(stuck);
     return build;
   }
   const TurnedMaterials now = turned_materials(build->palette(), orientation, materials_);

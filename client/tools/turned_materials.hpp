@@ -18,9 +18,9 @@ namespace runstone {
 /// Returns the material that a material of a world becomes when its voxel is turned:
 ///   - the one that has the name for the new lie (turned_material_name());
 ///   - otherwise the first of its family whose shape looks like the turned one;
-///   - otherwise nullopt: it has no turned form in this world, and stays as it is. A material that
-///     the turn does not change is returned, and so is one that the table does not know. Cost: that
-///     of turned_material_name(), and of the family.
+///   - otherwise nullopt: it has no turned form in this world, and stays as it is.
+/// A material that the turn does not change is returned, and so is one that the table does not
+/// know. Cost: that of turned_material_name(), and of the family.
 std::optional<Material> turned_material(Material material, const Orientation& orientation,
                                         const MaterialTable& table);
 

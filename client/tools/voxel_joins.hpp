@@ -22,8 +22,9 @@ using VoxelReader = std::function<std::optional<Material>(VoxelPos)>;
 ///   - panes, bars and walls: each other;
 ///   - fences and walls: fence gates on the two sides of their posts;
 ///   - all of them: cubes that stop a body but for leaves, and shapes that fill the side of the
-///     voxel. Cost: O(rules), some 10 microseconds for each neighbour with a shape, and that of
-///     nearest_member().
+///     voxel.
+/// Cost: O(rules), some 10 microseconds for each neighbour with a shape, and that of
+/// nearest_member().
 Material joined_material(VoxelPos at, Material material, const MaterialTable& table,
                          const VoxelReader& voxels);
 

@@ -1,6 +1,6 @@
-// FilePanel: the part of the tool window in which the clipboard is read from a file or written to
-// one. It asks how a model becomes voxels, if the file has one. It reads nothing itself: it returns
-// what the user wants. One thread.
+// FilePanel: the part of the tool window for files of the clipboard. The user chooses a file to
+// read or to write. If the file holds a model, the user also chooses how it becomes voxels. The
+// panel does not open files: it returns the order of the user. One thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,12 +14,12 @@ namespace runstone {
 
 class FilePanel {
  public:
-  /// Makes the part with ImGui. Returns true if the user wants the selection to be copied first.
+  /// Builds the widgets with ImGui. Returns true if the user orders a copy of the selection first.
   bool build(const HudState& state);
-  /// Takes a file that was dropped on the window. Returns the order to read it, with the choices
+  /// Takes a file that was dropped on the window. Returns the order to read it with the choices
   /// that the panel shows.
   ClipboardOfFile drop(std::string file);
-  /// Returns what the user wants, once.
+  /// Returns the order that the user gave since the last call, or nullopt if there is none.
   std::optional<UiAction> take() { return std::exchange(wanted_, std::nullopt); }
 
  private:
@@ -30,7 +30,7 @@ class FilePanel {
   ModelChoices choices() const;
 
   std::string file_;    // a path, as typed
-  ModelChoices model_;  // but for its size
+  ModelChoices model_;  // its size is in the next three members
   int voxels_ = kModelVoxelsUsual;
   double voxels_per_metre_ = 1;
   bool is_by_metres_ = false;

@@ -1,5 +1,5 @@
 // ModelChoices: what a person chooses when a file with a model becomes a build (docs/models.md).
-// The same for programs, commands, scripts and windows. Plain data. Thread: any.
+// Programs, commands, scripts and windows have the same choices. Plain data. Thread: any.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -11,6 +11,7 @@
 #include "client/platform/egl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
 #include "client/render/renderer.hpp"
+#include "client/render/transparent_tree.hpp"
 #include "common/core/hash.hpp"
 #include "common/mesh/quad.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -208,6 +209,111 @@ TEST_CASE("a plant is seen from all sides, and equal faces in a row are one quad
   const auto two = count(drawn(*context, materials, quads_of(2, 2), down));
   CHECK(one > 20);
   CHECK(std::abs(static_cast<double>(two) / static_cast<double>(one) - 2) < 0.15);
+}
+
+TEST_CASE("a joined inner face whose other side begins inside of the voxel is drawn in its place",
+          "[render]") {
+  std::string tried;
+  const auto context = make_osmesa_context(tried);
+  if (!context) {
+    WARN("no context: " << tried);
+    return;
+  }
+  // A beam along x. Its upper face lies inside of the voxel, goes from 4 to 12 along z, which is u
+  // there, and joins along x, which is v.
+  MaterialTable materials, cubes;
+  MaterialInfo beam{"beam", {220, 30, 30, 255}, Visibility::opaque, {}};
+  REQUIRE(cubes.add(beam).has_value());
+  beam.shape = {ShapeForm::boxes, {{{0, 4, 4}, {16, 9, 12}}}};
+  REQUIRE(materials.add(beam).has_value());
+  ChunkMesh shapes, voxels;
+  const ShapeFaces faces(beam.shape);
+  for (std::size_t i = 0; i < faces.faces().size(); ++i) {
+    const ShapeFace& face = faces.faces()[i];
+    QuadFields quad{0, 0, 0, 1, 1, face.direction, 1};
+    quad.face = static_cast<std::uint16_t>(i + 1);
+    if (face.direction == Direction::pos_y) {
+      REQUIRE(face.u0 == 4);
+      REQUIRE(face.depth == 9);
+      quad.height = 2;
+    } else if (face.direction == Direction::pos_z) {
+      REQUIRE(face.v0 == 4);
+      quad.width = 2;
+    } else {
+      continue;
+    }
+    shapes.shapes.opaque.push_back(pack(quad));
+  }
+  REQUIRE(shapes.shapes.opaque.size() == 2);
+  // The same faces, of voxels of one sixteenth. Widths are along u, heights along v.
+  voxels.opaque.quads = {pack({0, 8, 4, 8, 32, Direction::pos_y, 1}),
+                         pack({0, 4, 11, 32, 5, Direction::pos_z, 1})};
+  for (std::size_t d = 0; d < kDirectionCount; ++d) {
+    for (std::size_t layer = 0; layer < kSideMax; ++layer) {
+      const std::size_t at = d * kSideMax + layer;
+      const auto up = static_cast<std::size_t>(Direction::pos_y) * kSideMax + 8;
+      const auto south = static_cast<std::size_t>(Direction::pos_z) * kSideMax + 11;
+      voxels.opaque.first[at] = (at > up ? 1U : 0U) + (at > south ? 1U : 0U);
+    }
+  }
+  voxels.opaque.first.back() = 2;
+  std::size_t red = 0, different = 0;
+  for (const double yaw : {-0.6, 0.1, 0.7}) {
+    const auto a = drawn(*context, materials, shapes, at_cube(2, yaw + M_PI, -0.7));
+    const auto b = drawn(*context, cubes, voxels, at_cube(kFineEdge, yaw + M_PI, -0.7));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      red += b[i] ? 1 : 0;
+      different += a[i] != b[i] ? 1 : 0;
+    }
+  }
+  CAPTURE(red, different);
+  CHECK(red > 1000);
+  CHECK(different <= red / 50);  // along outlines
+}
+
+TEST_CASE("transparent shapes are drawn with a tree and without one", "[render]") {
+  std::string tried;
+  const auto context = make_osmesa_context(tried);
+  if (!context) {
+    WARN("no context: " << tried);
+    return;
+  }
+  MaterialTable materials;
+  MaterialInfo pane{"pane", {220, 30, 30, 200}, Visibility::transparent, {}};
+  pane.shape = {ShapeForm::boxes, {{{0, 0, 7}, {16, 16, 9}}}};
+  REQUIRE(materials.add(pane).has_value());
+  const ShapeFaces faces(pane.shape);
+  const auto panes = [&](std::size_t times) {
+    ChunkMesh out;
+    for (std::size_t time = 0; time < times; ++time) {
+      for (std::size_t i = 0; i < faces.faces().size(); ++i) {
+        const ShapeFace& face = faces.faces()[i];
+        if (face.direction != Direction::pos_z) continue;
+        // The other panes lie beside the picture.
+        QuadFields quad{0, 0, 0, 1, 1, face.direction, 1};
+        if (time > 0) quad.x = static_cast<std::uint8_t>(16 + time % 16);
+        if (time > 0) quad.z = static_cast<std::uint8_t>(time / 16 % 32);
+        quad.face = static_cast<std::uint16_t>(i + 1);
+        out.shapes.transparent.push_back(pack(quad));
+      }
+    }
+    return out;
+  };
+  const auto count = [](const std::vector<bool>& red) {
+    return std::count(red.begin(), red.end(), true);
+  };
+  // A camera near the first pane, which sees no other.
+  Camera near = at_cube(1, M_PI, 0);
+  const auto alone = count(drawn(*context, materials, panes(1), near));
+  CHECK(alone > 1000);
+  // More quads than a tree takes.
+  const std::size_t many = TransparentTree::kQuadsMax + 1;
+  const ChunkMesh mesh = panes(many);
+  REQUIRE_FALSE(TransparentTree::build(mesh.shapes.transparent, ShapeTable(shapes_of(materials))));
+  const auto with_others = count(drawn(*context, materials, mesh, near));
+  CHECK(with_others >= alone);
+  CHECK(with_others < alone + alone / 2);
+  CHECK(count(drawn(*context, materials, ChunkMesh{}, near)) == 0);
 }
 
 }  // namespace runstone

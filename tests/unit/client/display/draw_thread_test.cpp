@@ -185,7 +185,7 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
       std::vector<Shape>{{}, {ShapeForm::boxes, {ShapeBox{{0, 0, 0}, {16, 8, 16}}}}});
   bench.thread.set_materials(MaterialTable{}, shapes);
   bench.thread.draw(small_frame());
-  bench.take_frames(1);
+  bench.take_frames(2);
   const std::string all = "materials " + std::to_string(MaterialTable{}.size());
   CHECK(bench.screen_log.lines() ==
         Lines{all, "draw", all + " shapes " + std::to_string(shapes->serial()), "draw"});

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "client/tools/symmetry.hpp"
+#include "client/tools/tool_box.hpp"
+#include "common/formats/file_build_turn.hpp"
 #include "tests/unit/client/tools/hands_table.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
@@ -107,6 +109,35 @@ TEST_CASE("the clipboard turns its materials, and four turns give it back", "[to
   CHECK(bench.box.turn_notice().empty());
 }
 
+TEST_CASE("before a world is open, a material without a state for the new direction stays as it is",
+          "[tools][hands]") {
+  const MaterialTable table = stairs_table();
+  ToolBench bench;
+  bench.show_flat();
+  static_cast<void>(bench.box.set_materials(table));
+  bench.predict({{SetVoxel{{0, 0, 0}}, {}, id_in(table, "minecraft:oak_stairs")},
+                 {SetVoxel{{1, 0, 0}}, {}, id_in(table, "minecraft:torch")}});
+  bench.box.select(VoxelBox{{0, 0, 0}, {2, 1, 1}});
+  REQUIRE(bench.box.copy(bench.replica, true));
+  const std::span<const MaterialRow> rows = bench.box.clipboard_rows();
+  ToolBox closed;
+  static_cast<void>(closed.set_clipboard(bench.box.clipboard().build, EmptyCells::skipped,
+                                         {rows.begin(), rows.end()}));
+  // Stairs have a state for upside down, and a torch has none.
+  REQUIRE(closed.mirror(Axis::y));
+  CHECK(closed.turn_notice() == stuck_notice(1));
+  std::size_t torches = 0, stairs = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const MaterialRow& row = closed.clipboard_rows()[i];
+    torches += row == rows[i] && row.name == "minecraft:torch" ? 1 : 0;
+    stairs += row.name == "minecraft:oak_stairs[half=top]" && row.shape != rows[i].shape ? 1 : 0;
+  }
+  CHECK(torches == 1);
+  CHECK(stairs == 1);
+  REQUIRE(closed.rotate(1));
+  CHECK(closed.turn_notice().empty());
+}
+
 TEST_CASE("symmetric copies have mirrored materials", "[tools][hands]") {
   const MaterialTable table = stairs_table();
   const Material east = id_in(table, "minecraft:oak_stairs[facing=east]"),
@@ -116,6 +147,15 @@ TEST_CASE("symmetric copies have mirrored materials", "[tools][hands]") {
   // A copy onto itself keeps the material of the click.
   CHECK(with_copies({{SetVoxel{{0, 0, 0}}, {}, east}}, {SymmetryKind::x, 0, 0}, table) ==
         std::vector<EditDescriptor>{{SetVoxel{{0, 0, 0}}, {}, east}});
+  // The copies of one clipboard have one clipboard. They are too far apart to be merged.
+  const auto clipboard = Clipboard::of({east}, uniform_chunk(Extent{2, 1, 1}, 1));
+  REQUIRE(clipboard);
+  const auto copies = with_copies({{Paste{{300, 0, 0}, *clipboard, {}}, {}, kEmpty},
+                                   {Paste{{900, 0, 0}, *clipboard, {}}, {}, kEmpty}},
+                                  {SymmetryKind::x, 0, 0}, table);
+  REQUIRE(copies.size() == 4);
+  CHECK(std::get<Paste>(copies[1].shape).clipboard != *clipboard);
+  CHECK(std::get<Paste>(copies[1].shape).clipboard == std::get<Paste>(copies[3].shape).clipboard);
   ToolBench bench;
   bench.show_flat();
   static_cast<void>(bench.box.set_materials(table));

@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "common/shapes/shape_table.hpp"
-
 using namespace runstone;
 
 namespace {
