@@ -15,7 +15,7 @@ namespace {
 
 void read(ByteView file) {
   const Format format{"png", ".png", read_height_map, material_of_look};
-  const auto build = read_foreign_build(format, file, {true, std::size_t{8} << 20, ""});
+  const auto build = read_foreign_build(format, file, {.bytes_max = std::size_t{8} << 20});
   if (build) RUNSTONE_ASSERT(validate_build_materials(build->materials).has_value());
   if (!build) RUNSTONE_ASSERT(build.error().what[0] != '\0');
   const auto both =

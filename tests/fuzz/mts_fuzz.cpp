@@ -17,7 +17,7 @@ namespace {
 const Format kSchematic{"mts", ".mts", read_mts, material_of_luanti_node, write_mts};
 
 void read(ByteView file) {
-  const ForeignReading reading{true, std::size_t{8} << 20, ""};
+  const ForeignReading reading{.bytes_max = std::size_t{8} << 20};
   const auto build = read_foreign_build(kSchematic, file, reading);
   if (!build) {
     RUNSTONE_ASSERT(build.error().what[0] != '\0');

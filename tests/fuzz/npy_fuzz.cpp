@@ -17,7 +17,7 @@ const Format kArrays[] = {{"npy", ".npy", read_npy, material_of_look, write_npy}
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const ForeignReading reading{true, std::size_t{8} << 20, ""};
+  const ForeignReading reading{.bytes_max = std::size_t{8} << 20};
   for (const Format& format : kArrays) {
     const auto build = read_foreign_build(format, {data, size}, reading);
     if (!build) {

@@ -10,7 +10,7 @@ using namespace runstone;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const Format format{"qb", ".qb", read_qb, material_of_look};
-  const auto build = read_foreign_build(format, {data, size}, {true, std::size_t{8} << 20, ""});
+  const auto build = read_foreign_build(format, {data, size}, {.bytes_max = std::size_t{8} << 20});
   if (!build) {
     RUNSTONE_ASSERT(build.error().what[0] != '\0');
     return 0;

@@ -11,7 +11,7 @@ using namespace runstone;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const Format format{"vox", ".vox", read_vox, material_of_look, write_vox};
-  const ForeignReading reading{true, std::size_t{8} << 20, ""};
+  const ForeignReading reading{.bytes_max = std::size_t{8} << 20};
   const auto build = read_foreign_build(format, {data, size}, reading);
   if (!build) {
     RUNSTONE_ASSERT(build.error().what[0] != '\0');
