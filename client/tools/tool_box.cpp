@@ -17,7 +17,6 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/build_info.hpp"
-#include "common/formats/file_build_turn.hpp"
 #include "common/formats/material_family.hpp"
 #include "common/formats/turned_names.hpp"
 #include "common/materials/material_lookup.hpp"

@@ -139,11 +139,4 @@ Result<TurnedFileBuild> turned_file_build(const FileBuild& build, const Orientat
   return TurnedFileBuild{*std::move(made), stuck};
 }
 
-std::string stuck_notice(std::size_t stuck) {
-  if (stuck == 0) return {};
-  if (stuck == 1) return "1 material has no state for the new direction, and lies as before";
-  return std::to_string(stuck) +
-         " materials have no state for the new direction, and lie as before";
-}
-
 }  // namespace runstone

@@ -37,7 +37,4 @@ struct TurnedFileBuild {
 Result<TurnedFileBuild> turned_file_build(const FileBuild& build, const Orientation& orientation,
                                           std::size_t bytes_max = kBuildBytesMax);
 
-/// Returns a line for the person who turned a build, or an empty text if no material is stuck.
-std::string stuck_notice(std::size_t stuck);
-
 }  // namespace runstone

@@ -275,4 +275,11 @@ std::optional<std::string> turned_material_name(std::string_view name, std::arra
   return out;
 }
 
+std::string stuck_notice(std::size_t stuck) {
+  if (stuck == 0) return {};
+  if (stuck == 1) return "1 material has no state for the new direction, and lies as before";
+  return std::to_string(stuck) +
+         " materials have no state for the new direction, and lie as before";
+}
+
 }  // namespace runstone

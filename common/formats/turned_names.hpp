@@ -2,6 +2,7 @@
 // materials tell that they are one block in two states. No table or file has a record of it.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,5 +26,8 @@ namespace runstone {
 /// Requires each axis once. Cost: O(rules + bytes), and some shapes.
 std::optional<std::string> turned_material_name(std::string_view name, std::array<Axis, 3> along,
                                                 std::uint8_t flips);
+
+/// Returns a line for the person who turned a build, or an empty text if no material is stuck.
+std::string stuck_notice(std::size_t stuck);
 
 }  // namespace runstone

@@ -15,6 +15,7 @@
 #include "common/formats/file_build_turn.hpp"
 #include "common/formats/material_family.hpp"
 #include "common/formats/material_match.hpp"
+#include "common/formats/turned_names.hpp"
 #include "common/materials/nearest_material.hpp"
 #include "server/rollback/count_text.hpp"
 

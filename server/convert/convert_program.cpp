@@ -15,6 +15,7 @@
 #include "common/formats/file_build.hpp"
 #include "common/formats/file_build_turn.hpp"
 #include "common/formats/mapped_build.hpp"
+#include "common/formats/turned_names.hpp"
 #include "server/convert/model_options.hpp"
 #include "server/mapping/material_map_file.hpp"
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/formats/file_build_turn.hpp"
+#include "common/formats/turned_names.hpp"
 
 namespace runstone {
 Result<std::optional<ImportPart>, std::string> TurnedParts::read(std::size_t index,

@@ -1,4 +1,5 @@
 #include "common/formats/file_build_turn.hpp"
+#include "common/formats/turned_names.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
