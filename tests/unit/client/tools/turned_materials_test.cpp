@@ -4,7 +4,7 @@
 
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool_box.hpp"
-#include "common/formats/file_build_turn.hpp"
+#include "common/formats/turned_names.hpp"
 #include "tests/unit/client/tools/hands_table.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
