@@ -137,6 +137,8 @@ class Replica {
   void receive(const DigestCheck& check, TimeUs now_us);
   /// Allows local edits to use the materials below `count` from now on.
   void set_material_count(std::size_t count) { parameters_->material_count = count; }
+  /// Reports that materials got shapes, so that SessionAccepted::tile_rules holds no longer.
+  void end_tile_rules() { far_tiles_.end_rules(); }
   void receive(const Permissions& permissions) { ground_.receive(permissions); }
   /// Fails as KnownGround::receive() does.
   Result<void> receive(const ProtectedGround& change) { return ground_.receive(change); }

@@ -66,6 +66,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
     case ServerConnection::Dispatch::materials_added:
+      if (std::holds_alternative<ShapesGiven>(message)) replica_->end_tile_rules();
       return replica_->set_material_count(welcome()->materials.size());
     case ServerConnection::Dispatch::for_session:
       break;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "common/core/hash.hpp"
 #include "common/materials/visibility_as_cube.hpp"
 #include "common/shapes/shape_faces.hpp"
 
@@ -176,6 +177,18 @@ std::vector<Visibility> half_filled_visibilities(const MaterialTable& table) {
   for (const MaterialInfo& row : table.rows())
     out.push_back(visibility_as_cube(row.visibility, row.shape));
   return out;
+}
+
+std::uint64_t tile_shapes_number(const MaterialTable& table) {
+  std::uint64_t number = 0;
+  if (!table.has_shapes()) return number;
+  const std::vector<Visibility> as_cubes = half_filled_visibilities(table);
+  for (std::size_t id = 0; id < table.size(); ++id) {
+    if (table[static_cast<Material>(id)].shape.is_cube()) continue;
+    const std::uint64_t is_filled = as_cubes[id] == Visibility::empty ? 0 : 1;
+    number = mix64(number ^ (std::uint64_t{id} << 1 | is_filled));
+  }
+  return number;
 }
 
 std::vector<Shape> shapes_of(const MaterialTable& table) {

@@ -112,6 +112,11 @@ std::vector<Visibility> cube_visibilities(const MaterialTable& table);
 /// O(boxes of the materials).
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
 
+/// Returns a number that stands for how the shapes of the table count in tiles and on maps: which
+/// materials have one, and which of them fill at least half of a voxel. 0 if all are cubes. Cost:
+/// that of half_filled_visibilities().
+std::uint64_t tile_shapes_number(const MaterialTable& table);
+
 /// Returns the shape of each material by id, as ShapeTable takes them.
 std::vector<Shape> shapes_of(const MaterialTable& table);
 

@@ -5,6 +5,7 @@
 
 #include "common/core/hex.hpp"
 #include "common/os/steady_clock.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/map/map_builders.hpp"
 #include "server/map/map_json.hpp"
 
@@ -14,10 +15,12 @@ namespace {
 /// Raise it with each change of how tiles are drawn: browsers then load them again.
 constexpr int kMapStyle = 1;
 
-/// Ground without edits has the version 0 in every world, so the tag names the world, too.
-std::string etag_of(const WorldId& world, const Version& version) {
+/// Ground without edits has the version 0 in every world, so the tag names the world, too. Shapes
+/// change what is drawn of equal voxels, so it names the rules of a world with shapes.
+std::string etag_of(const WorldId& world, const Version& version, std::uint32_t tile_rules) {
+  const std::string rules = tile_rules == kTileRules ? "" : "-" + std::to_string(tile_rules);
   return "\"" + std::to_string(kMapStyle) + "-" + to_hex(ByteView(world).first(8)) + "-" +
-         std::to_string(version.epoch) + "-" + std::to_string(version.seq) + "\"";
+         std::to_string(version.epoch) + "-" + std::to_string(version.seq) + rules + "\"";
 }
 
 /// Returns true if a header If-None-Match names the tag. A tag in quotes occurs in no other one.
@@ -161,7 +164,7 @@ std::optional<MapAnswer> MapService::serve(const TilePictureRequest& request,
   if (!moment) return moment.error();
   const Version version = MapDrawer::version(**moment, request.place);
   MapAnswer out;
-  out.etag = etag_of((*moment)->meta().world_id, version);
+  out.etag = etag_of((*moment)->meta().world_id, version, world_.tile_rules());
   if (is_matched(if_none_match, out.etag)) {
     out.status = 304;
     return out;

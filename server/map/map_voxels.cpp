@@ -59,7 +59,7 @@ StoreResult<MapVoxels::Voxels> MapVoxels::chunk(const MapMoment& moment, const C
 
 StoreResult<MapVoxels::Voxels> MapVoxels::stored(const ChunkKey& key, const Version& version) {
   if (auto begun = reads_.next(); !begun) return failure(begun.error());
-  auto row = reader_.load_tile(key);
+  auto row = reader_.load_tile(key, tile_rules_);
   if (!row) {
     // A damaged tile is made of its chunks again.
     if (row.error().kind == StoreError::Kind::corrupt) return Voxels();

@@ -7,6 +7,7 @@
 // Thread: one, as its reader.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -26,10 +27,12 @@ class MapVoxels {
   using Voxels = std::shared_ptr<const RunChunk>;
 
   /// The arguments must outlive the object.
-  MapVoxels(const Generator& generator, const VisibilityTable& visibility, WorldReader& reader,
-            MapCaches& caches, ShouldContinue should_continue)
+  /// `tile_rules` is the number of the rules that `visibility` is of.
+  MapVoxels(const Generator& generator, const VisibilityTable& visibility, std::uint32_t tile_rules,
+            WorldReader& reader, MapCaches& caches, ShouldContinue should_continue)
       : generator_(generator),
         visibility_(visibility),
+        tile_rules_(tile_rules),
         reader_(reader),
         reads_(reader),
         caches_(caches),
@@ -47,6 +50,7 @@ class MapVoxels {
 
   const Generator& generator_;
   const VisibilityTable& visibility_;
+  const std::uint32_t tile_rules_;
   WorldReader& reader_;
   ReadSpan reads_;
   MapCaches& caches_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -143,6 +144,12 @@ StoreResult<void> MapWorld::read_new_edits(TimeUs utc_us, const WorldAt::Progres
 StoreResult<void> MapWorld::read_materials() {
   auto table = world_->reader->materials();
   if (!table) return failure(table.error());
+  const std::uint32_t rules = tile_rules_of(tile_shapes_number(*table));
+  if (std::exchange(world_->tile_rules, rules) != rules) {
+    // Materials got shapes: the same voxels look different.
+    caches_.clear();
+    world_->changes.begin(world_->present->at());
+  }
   world_->visibility = VisibilityTable(half_filled_visibilities(*table));
   world_->map_materials = map_materials(*table);
   world_->materials = *std::move(table);
@@ -187,15 +194,15 @@ StoreResult<MapMoment*> MapWorld::past(Sequence at, const WorldAt::Progress& pro
 StoreResult<std::shared_ptr<const std::string>> MapWorld::draw(
     const MapMoment& moment, const MapPlace& place,
     const MapVoxels::ShouldContinue& should_continue) {
-  MapVoxels voxels(*world_->generator, world_->visibility, *world_->reader, caches_,
-                   should_continue);
+  MapVoxels voxels(*world_->generator, world_->visibility, world_->tile_rules, *world_->reader,
+                   caches_, should_continue);
   return MapDrawer(*world_->generator, world_->map_materials, voxels, caches_).draw(moment, place);
 }
 
 StoreResult<ColumnTop> MapWorld::top(const MapMoment& moment, std::int32_t x, std::int32_t z,
                                      const MapVoxels::ShouldContinue& should_continue) {
-  MapVoxels voxels(*world_->generator, world_->visibility, *world_->reader, caches_,
-                   should_continue);
+  MapVoxels voxels(*world_->generator, world_->visibility, world_->tile_rules, *world_->reader,
+                   caches_, should_continue);
   const std::int32_t edge = moment.meta().chunk_edge;
   const ColumnKey key{0, floor_div(x, edge), floor_div(z, edge)};
   const auto tops =

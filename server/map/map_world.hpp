@@ -58,6 +58,8 @@ class MapWorld {
   const std::optional<StoreError>& loss() const { return world_->reader->loss(); }
   const RecentChanges& changes() const { return world_->changes; }
   const MaterialTable& materials() const { return world_->materials; }
+  /// Returns tile_rules_of() the materials: with it, a version determines what is drawn.
+  std::uint32_t tile_rules() const { return world_->tile_rules; }
   /// Returns the name of an author, such as "ana", or "#3" if it is not known.
   std::string name_of(AuthorId author) const;
 
@@ -74,6 +76,7 @@ class MapWorld {
     MaterialTable materials;
     MapMaterials map_materials;
     VisibilityTable visibility{{}};
+    std::uint32_t tile_rules = 0;  // of the materials
     MapRights rights;
     std::map<AuthorId, std::string> names;
     RecentChanges changes;
@@ -87,6 +90,8 @@ class MapWorld {
   /// Brings the present up to the end of the log. Opens the world anew if it is far behind.
   StoreResult<void> read_new_edits(TimeUs utc_us, const WorldAt::Progress& progress);
   StoreResult<void> open_present(Sequence at, const WorldAt::Progress& progress);
+  /// Reads the materials. If others have a shape than before, empties the caches and forgets the
+  /// recent changes, so that browsers ask for all tiles again.
   StoreResult<void> read_materials();
   StoreResult<void> read_names();
 

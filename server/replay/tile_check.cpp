@@ -11,6 +11,7 @@
 #include "common/mesh/visibility.hpp"
 #include "common/tiles/tile_visibility.hpp"
 #include "server/history/chunk_source.hpp"
+#include "server/tiles/material_visibility.hpp"
 #include "server/tiles/tile_source.hpp"
 
 namespace runstone {
@@ -58,7 +59,10 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
   };
   // The keys are read first: a tile that has its listed version after its chunks were read has had
   // it all the time, so no newer snapshot was saved below it meanwhile.
-  const auto keys = store.tile_keys();
+  const auto materials = store.materials();
+  if (!materials) return fail_with(materials.error());
+  const TileVisibility visibility = tile_visibility_of(*materials);
+  const auto keys = store.tile_keys(visibility.rules);
   if (!keys) return fail_with(keys.error());
   const auto damaged = store.rows_of_no_tile();
   if (!damaged) return fail_with(damaged.error());
@@ -67,8 +71,6 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
     differs(row);
   }
   if (keys->empty()) return report;
-  const auto materials = store.materials();
-  if (!materials) return fail_with(materials.error());
   TileLedger unsaved;
   if (const auto found = find_unsaved(store, unsaved); !found) return fail_with(found.error());
 
@@ -76,8 +78,6 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
   TileLedger ground;
   TileSource source(chunks, generator, store.meta().chunk_edge, ground, differs,
                     {kCacheBytes, false, false});
-  const TileVisibility visibility(VisibilityTable(half_filled_visibilities(*materials)),
-                                  VisibilityTable(cube_visibilities(*materials)));
   std::uint64_t done = 0;
   for (const auto& [key, version] : *keys) {
     if (progress) progress(done++, keys->size());
@@ -85,7 +85,7 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
       ++report.not_compared;
       continue;
     }
-    const Row stored = store.load_tile(key);
+    const Row stored = store.load_tile(key, visibility.rules);
     if (!stored) {
       if (stored.error().kind != StoreError::Kind::corrupt) return fail_with(stored.error());
       ++report.compared;
@@ -95,7 +95,7 @@ StoreResult<TileReport> check_tiles(const std::string& place, WorldReader& store
     // The stored chunks contain every edit that they should: the others were left out.
     const auto made = source.make({key, kSequenceMax, {}}, visibility);
     if (!made) return fail_with(made.error());
-    const Row after = store.load_tile(key);
+    const Row after = store.load_tile(key, visibility.rules);
     if (!after) return fail_with(after.error());
     if (!after->has_value() || (*after)->version != version) {
       ++report.not_compared;

@@ -3,7 +3,6 @@
 #include <asio/ip/address.hpp>
 
 #include "common/os/host_port.hpp"
-#include "common/tiles/tile_rules.hpp"
 #include "protocol/default_port.hpp"
 #include "server/admin/reserved_names.hpp"
 #include "server/admin/server_address.hpp"
@@ -61,7 +60,6 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
   world.tile_levels_max = static_cast<std::uint8_t>(config.tile_levels_max);
   if (world.tile_levels_max == 0) world.features &= ~kFeatureTiles;
-  world.tile_rules = kTileRules;
   world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
   world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
   world.edit_volume_max = config.edit_volume_max;

@@ -171,11 +171,12 @@ Sequence ServerEnvironment::newest_tile_edit(const ChunkKey& tile) const {
 }
 
 bool ServerEnvironment::is_tile_current(const CachedChunk& copy) const {
-  return tiles_.is_current(copy);
+  return tiles_.is_current(copy, world_->order().tile_rules());
 }
 
 void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {
-  if (log_ != nullptr) tiles_.save(std::move(tiles), log_->writer());
+  if (log_ != nullptr)
+    tiles_.save(std::move(tiles), world_->order().tile_rules(), log_->writer());
 }
 
 void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {

@@ -4,6 +4,7 @@
 #include <asio/post.hpp>
 
 #include "server/runtime/logging.hpp"
+#include "server/tiles/material_visibility.hpp"
 
 namespace runstone {
 
@@ -37,17 +38,15 @@ Sequence TileMaking::newest_edit(const ChunkKey& tile) {
   return ledger_.newest_edit(tile);
 }
 
-bool TileMaking::is_current(const CachedChunk& copy) {
+bool TileMaking::is_current(const CachedChunk& copy, std::uint32_t rules) {
   flush_edits();
-  return source_.is_current(copy.key, copy.version, copy.digest);
+  return source_.is_current(copy.key, copy.version, copy.digest, rules);
 }
 
 void TileMaking::make(TileRequest request, const MaterialTable& materials, Sequence materials_seq,
                       Then then) {
   if (!visibility_ || materials_seq_ != materials_seq) {
-    visibility_ =
-        std::make_shared<const TileVisibility>(VisibilityTable(half_filled_visibilities(materials)),
-                                               VisibilityTable(cube_visibilities(materials)));
+    visibility_ = std::make_shared<const TileVisibility>(tile_visibility_of(materials));
     materials_seq_ = materials_seq;
   }
   flush_edits();
@@ -69,7 +68,8 @@ void TileMaking::make(TileRequest request, const MaterialTable& materials, Seque
   });
 }
 
-void TileMaking::save(Tiles tiles, LogWriter& writer) {
+void TileMaking::save(Tiles tiles, std::uint32_t rules, LogWriter& writer) {
+  if (std::exchange(unsaved_rules_, rules) != rules) unsaved_.clear();
   const std::size_t room = kUnsavedMax - std::min(kUnsavedMax, unsaved_.size());
   tiles.resize(std::min(tiles.size(), room));
   std::move(tiles.begin(), tiles.end(), std::back_inserter(unsaved_));
@@ -86,13 +86,14 @@ void TileMaking::save_next(LogWriter& writer) {
   const auto end = unsaved_.begin() + static_cast<std::ptrdiff_t>(count);
   Tiles tiles(std::move_iterator(unsaved_.begin()), std::move_iterator(end));
   unsaved_.erase(unsaved_.begin(), end);
-  is_saving_ = writer.save_tiles(std::move(tiles), [this, &writer](const StoreResult<void>& saved) {
+  const auto then = [this, &writer](const StoreResult<void>& saved) {
     if (!saved) logger("store").warn("tiles are not saved: {}", saved.error().message());
     strand_.post([this, &writer] {
       is_saving_ = false;
       save_next(writer);
     });
-  });
+  };
+  is_saving_ = writer.save_tiles(std::move(tiles), unsaved_rules_, then);
 }
 
 void TileMaking::stop() {

@@ -48,10 +48,11 @@ class TileMaking {
   /// Returns the newest edit below a tile, or 0. It may wait for the other threads for a moment.
   Sequence newest_edit(const ChunkKey& tile);
   /// Returns true if the client's copy is the tile as it is now; see TileSource::is_current().
-  bool is_current(const CachedChunk& copy);
-  /// Writes tiles when the earlier ones are written. Drops tiles if too many wait. The writer must
-  /// not call back after the strand has ended.
-  void save(Tiles tiles, LogWriter& writer);
+  bool is_current(const CachedChunk& copy, std::uint32_t rules);
+  /// Writes tiles, which were made by `rules`, when the earlier ones are written. Drops tiles if too
+  /// many wait, and those of other rules that wait. The writer must not call back after the strand
+  /// has ended.
+  void save(Tiles tiles, std::uint32_t rules, LogWriter& writer);
 
   /// Ends the threads. Waits for the tiles that are being made, and drops the requests that wait.
   /// Thread: any but those of the strand.
@@ -75,6 +76,7 @@ class TileMaking {
   std::shared_ptr<const TileVisibility> visibility_;
   Sequence materials_seq_ = 0;  // that of visibility_
   Tiles unsaved_;
+  std::uint32_t unsaved_rules_ = 0;  // of unsaved_
   bool is_saving_ = false;
   const std::unique_ptr<asio::thread_pool> threads_ = low_priority_threads(kThreads);
   // Past tiles have a thread of their own, because they take long.

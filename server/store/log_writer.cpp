@@ -74,16 +74,16 @@ void LogWriter::queue(Batch batch) {
 }
 
 bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint) {
-  return queue(Job{std::move(chunks), checkpoint, 0, std::nullopt, {}, false});
+  return queue(Job{std::move(chunks), checkpoint, 0, std::nullopt, {}, std::nullopt});
 }
 
 bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe,
                               JobDone done) {
-  return queue(Job{std::move(chunks), std::nullopt, 0, keyframe, std::move(done), false});
+  return queue(Job{std::move(chunks), std::nullopt, 0, keyframe, std::move(done), std::nullopt});
 }
 
-bool LogWriter::save_tiles(SnapshotChunks tiles, JobDone done) {
-  return queue(Job{std::move(tiles), std::nullopt, 0, std::nullopt, std::move(done), true});
+bool LogWriter::save_tiles(SnapshotChunks tiles, std::uint32_t rules, JobDone done) {
+  return queue(Job{std::move(tiles), std::nullopt, 0, std::nullopt, std::move(done), rules});
 }
 
 bool LogWriter::save_build_file(std::uint64_t content, std::shared_ptr<const Bytes> file,
@@ -267,8 +267,8 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
   const ChunkSpan slice(job.chunks.data() + job.written, count);
   const bool last = job.written + count == job.chunks.size();
   if (job.done) {
-    const auto saved = job.is_of_tiles
-                           ? world_.save_tiles(slice)
+    const auto saved = job.tile_rules
+                           ? world_.save_tiles(slice, *job.tile_rules)
                            : world_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
     job.written = saved ? job.written + count : job.chunks.size();  // an error ends the job
     if (saved && last && job.keyframe) {

@@ -120,7 +120,7 @@ class LogWriter {
   bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, JobDone done);
   /// Queues a job that calls WorldSink::save_tiles() for each slice of tiles. `done` and the result
   /// are as for save_keyframe().
-  bool save_tiles(SnapshotChunks tiles, JobDone done);
+  bool save_tiles(SnapshotChunks tiles, std::uint32_t rules, JobDone done);
   /// Queues a job that calls WorldSink::save_build_part() for each part of the file of a build. `done`
   /// is as for save_keyframe(). The file must not change. Returns false also if another file is being
   /// written.
@@ -154,7 +154,7 @@ class LogWriter {
     std::size_t written = 0;           // chunks or parts of the file that are on disk
     std::optional<Keyframe> keyframe;  // only in a job for a keyframe
     JobDone done;                      // in a job for a keyframe or for tiles
-    bool is_of_tiles = false;
+    std::optional<std::uint32_t> tile_rules;  // only in a job for tiles
     std::shared_ptr<const Bytes> file = nullptr;  // only in a job for the file of a build
     std::uint64_t content = 0;
     bool removes_file = false;  // only in a job that removes the file of a build

@@ -26,7 +26,7 @@ StoreResult<void> fill_new_world(sql::Database& database, const WorldMeta& meta)
   rows["checkpoint"] = std::int64_t{0};
   rows["author_max"] = std::int64_t{0};
   rows["log_last"] = std::int64_t{0};
-  rows["tile_rules"] = std::int64_t{kTileRules};
+  rows["tile_rules"] = std::int64_t{tile_rules_of(tile_shapes_number(meta.materials))};
   if (meta.materials.has_shapes()) rows[kShapesKey] = std::int64_t{1};
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;

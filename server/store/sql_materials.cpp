@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
 #include "server/store/world_schema.hpp"
@@ -73,11 +74,18 @@ StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
       are_for_old_rows = are_for_old_rows || !first_new || row.material < *first_new;
   }
   if (!has_shapes) return {};
-  // Tiles of voxels that became shapes are no longer right. The next opening of the world removes
-  // the tiles of other rules, and 0 is the number of none.
-  if (are_for_old_rows) {
-    if (auto put = meta_table_.put("tile_rules", std::int64_t{0}); !put) return put;
+  auto table = materials(kSequenceMax);
+  if (!table) return failed(table.error());
+  for (const EditRecord& record : records) {
+    if (!changes_materials(record.edit)) continue;
+    if (auto fits = append_materials(record, *table); !fits) return fits;
   }
+  // No stored tile has a voxel of a material that is new with these records.
+  if (are_for_old_rows) {
+    if (auto cleared = tiles_->clear(); !cleared) return cleared;
+  }
+  const std::uint32_t rules = tile_rules_of(tile_shapes_number(*table));
+  if (auto put = meta_table_.put("tile_rules", std::int64_t{rules}); !put) return put;
   if (auto put = meta_table_.put(kShapesKey, std::int64_t{1}); !put) return put;
   return raise_format(kWorldFormatOfShapes);
 }

@@ -194,6 +194,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   for (const PlayerRow& player : players)
     next.author_max = std::max(next.author_max, player.author);
   Watermarks marks;
+  if (auto marked = mark_shapes(records); !marked) return marked;
   if (auto inserted = log_.insert(records); !inserted) return inserted;
   for (const EditRecord& record : records) {
     auto added = segments_.add(record.version.seq, record.op.author, bounding_box(record.edit));
@@ -204,7 +205,6 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   }
   if (auto added = add_eras(records); !added) return added;
   if (auto applied = apply_library(records, is_history); !applied) return applied;
-  if (auto marked = mark_shapes(records); !marked) return marked;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
   const auto author_max = meta_table_.counter("author_max");
@@ -294,10 +294,13 @@ StoreResult<void> SqlStore::save_base(ChunkSpan chunks) {
   });
 }
 
-StoreResult<void> SqlStore::save_tiles(ChunkSpan tiles) {
+StoreResult<void> SqlStore::save_tiles(ChunkSpan tiles, std::uint32_t rules) {
   return write([&]() -> StoreResult<void> {
     const auto range = log_range();
     if (!range) return failed(range.error());
+    const auto present = meta_table_.counter("tile_rules");
+    if (!present) return failed(present.error());
+    if (*present != rules) return {};
     for (const auto& [key, tile] : tiles) {
       // An edit that a crash takes away must not stay in a tile.
       if (tile->version > range->last.version)
@@ -318,14 +321,14 @@ StoreResult<void> SqlStore::end_reads() {
   return {};
 }
 
-StoreResult<std::optional<Chunk>> SqlStore::load_tile(const ChunkKey& key) {
+StoreResult<std::optional<Chunk>> SqlStore::load_tile(const ChunkKey& key, std::uint32_t rules) {
   if (!tiles_) return std::optional<Chunk>();
-  return tiles_->load(key, meta_.chunk_edge, row_check_);
+  return tiles_->load(key, rules, meta_.chunk_edge, row_check_);
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqlStore::tile_keys() {
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqlStore::tile_keys(std::uint32_t rules) {
   if (!tiles_) return std::vector<std::pair<ChunkKey, Version>>();
-  return tiles_->keys();
+  return tiles_->keys(rules);
 }
 
 StoreResult<std::vector<std::string>> SqlStore::rows_of_no_tile() {

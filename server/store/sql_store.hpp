@@ -61,8 +61,8 @@ class SqlStore final : public Store {
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key, Sequence last) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
   StoreResult<Sequence> checkpoint() override;
-  StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key) override;
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys() override;
+  StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key, std::uint32_t rules) override;
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys(std::uint32_t rules) override;
   StoreResult<std::vector<std::string>> rows_of_no_tile() override;
 
   // LibraryReader
@@ -107,7 +107,7 @@ class SqlStore final : public Store {
   StoreResult<void> save_build_part(std::uint64_t content, std::uint32_t part,
                                     ByteView data) override;
   StoreResult<void> remove_build_file(std::uint64_t content) override;
-  StoreResult<void> save_tiles(ChunkSpan tiles) override;
+  StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) override;
 
   // ImportSink
   StoreResult<void> save_base(ChunkSpan chunks) override;
@@ -143,8 +143,8 @@ class SqlStore final : public Store {
   sql::Database& database() { return backend_->database(); }
   /// Converts a world of an older format, in one transaction.
   StoreResult<void> convert();
-  /// Deletes the tiles that were made by other rules (kTileRules). A reader does not see them.
-  StoreResult<void> leave_tiles_of_other_rules();
+  /// Returns the rules of tiles of the materials that are written.
+  StoreResult<std::uint32_t> present_tile_rules();
   /// Deletes all tiles and records the present rules, in the caller's transaction.
   StoreResult<void> delete_tiles();
   /// Adds what format 3 has and format 2 lacks: the players own their names, and of several players
@@ -190,7 +190,9 @@ class SqlStore final : public Store {
   StoreResult<MaterialTable> keep_materials(Sequence last);
   /// Appends the rows of a record. Fails (corrupt) if they do not continue the table.
   StoreResult<void> append_materials(const EditRecord& record, MaterialTable& table) const;
-  /// Marks the world as one with shapes if a record gives some.
+  /// Marks the world as one with shapes if a record gives some, and records the rules of tiles that
+  /// follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
+  /// records are inserted.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
   /// Fails (bad_request) if new materials or shapes among the records do not continue the material
   /// table.
@@ -273,7 +275,7 @@ class SqlStore final : public Store {
   std::optional<RowCounts> counts_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
-  // nullopt: a world without the table, or with tiles of other rules, that is open for reading only
+  // nullopt: a world without the table that is open for reading only
   std::optional<TileTable> tiles_;
   std::optional<BuildTable> library_;  // nullopt: the world has no library, or it is not open yet
   StoreAccess access_;

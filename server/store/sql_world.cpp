@@ -147,12 +147,16 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
       if (!raised) return failed(raised.error());
     }
   }
-  const auto rules = rows->find("tile_rules");
-  const bool are_tiles_current =
-      rules != rows->end() && rules->second == MetaValue{std::int64_t{kTileRules}};
-  // A world that lacks edits stays as it is, until its losses are accepted.
-  if (!are_tiles_current && !store->loss_) {
-    if (const auto left = store->leave_tiles_of_other_rules(); !left) return failed(left.error());
+  // A world that lacks edits stays as it is, until its losses are accepted. A reader does not see
+  // tiles of other rules.
+  if (access != StoreAccess::read_only && !store->loss_) {
+    const auto present = store->present_tile_rules();
+    if (!present) return failed(present.error());
+    const auto rules = rows->find("tile_rules");
+    if (rules == rows->end() || rules->second != MetaValue{std::int64_t{*present}}) {
+      const auto deleted = store->transact([&] { return store->delete_tiles(); });
+      if (!deleted) return failed(deleted.error());
+    }
   }
   store->backend_->keep_on_close(store->loss_.has_value());
   store->is_whole_ = !store->loss_;
@@ -173,18 +177,22 @@ StoreResult<void> SqlStore::convert() {
   });
 }
 
-StoreResult<void> SqlStore::leave_tiles_of_other_rules() {
-  if (access_ == StoreAccess::read_only) {
-    tiles_.reset();
-    return {};
-  }
-  return transact([&] { return delete_tiles(); });
+StoreResult<std::uint32_t> SqlStore::present_tile_rules() {
+  const auto rows = meta_table_.read_all();
+  if (!rows) return failed(rows.error());
+  if (!rows->contains(kShapesKey)) return kTileRules;
+  const auto table = materials(kSequenceMax);
+  if (!table) return failed(table.error());
+  return tile_rules_of(tile_shapes_number(*table));
 }
 
 StoreResult<void> SqlStore::delete_tiles() {
   if (auto cleared = tiles_->clear(); !cleared) return cleared;
   if (auto marked = raise_format(kWorldFormat); !marked) return marked;
-  return meta_table_.put("tile_rules", std::int64_t{kTileRules});
+  // Damage that keeps the materials from being read must not keep a repair from ending. 0 is the
+  // number of no rules: the next opening tries again.
+  const auto rules = present_tile_rules();
+  return meta_table_.put("tile_rules", std::int64_t{rules ? *rules : 0});
 }
 
 StoreResult<void> SqlStore::read_state() {

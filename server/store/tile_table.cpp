@@ -20,15 +20,23 @@ std::string has_key() {
          kFits + " AND z" + kFits + ")";
 }
 
+/// True if the tiles were made by the rules that the parameter names. One statement reads row and
+/// rules at one moment: another program may replace both meanwhile.
+std::string has_rules(const sql::Database& database, const std::string& parameter) {
+  const char* const value =
+      database.dialect() == sql::Dialect::sqlite ? "value" : "integer_value";
+  return parameter + " = (SELECT " + value + " FROM meta WHERE key = 'tile_rules')";
+}
+
 }  // namespace
 
 StoreResult<TileTable> TileTable::open(sql::Database& database) {
   const std::string where = " WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
-  auto load =
-      database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM tile" + where);
+  auto load = database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM tile" +
+                               where + " AND " + has_rules(database, "?5"));
   if (!load) return failed(load.error());
   auto keys = database.prepare("SELECT lod, x, y, z, epoch, seq FROM tile WHERE " + has_key() +
-                               " ORDER BY lod, x, y, z");
+                               " AND " + has_rules(database, "?1") + " ORDER BY lod, x, y, z");
   if (!keys) return failed(keys.error());
   auto no_tile = database.prepare(
       "SELECT 'lod=' || lod || ' x=' || x || ' y=' || y || ' z=' || z FROM tile WHERE NOT " +
@@ -50,10 +58,11 @@ Unexpected<StoreError> TileTable::tile_failure(StoreError::Kind kind, const Chun
   return {{kind, file_, std::string(kTable) + " chunk=" + text_of(key), std::move(what)}};
 }
 
-StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint16_t chunk_edge,
-                                                  RowCheck check) {
+StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint32_t rules,
+                                                  std::uint16_t chunk_edge, RowCheck check) {
   const sql::ResetAtEnd reset_at_end(s_.load);
   bind_key(s_.load, key);
+  s_.load.bind(5, std::int64_t{rules});
   const auto found = s_.load.step();
   if (!found) return failed(found.error());
   if (!*found) return std::optional<Chunk>();
@@ -65,8 +74,9 @@ StoreResult<std::optional<Chunk>> TileTable::load(const ChunkKey& key, std::uint
   return std::optional<Chunk>(*std::move(tile));
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> TileTable::keys() {
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> TileTable::keys(std::uint32_t rules) {
   const sql::ResetAtEnd reset_at_end(s_.keys);
+  s_.keys.bind(1, std::int64_t{rules});
   std::vector<std::pair<ChunkKey, Version>> keys;
   for (;;) {
     const auto more = s_.keys.step();

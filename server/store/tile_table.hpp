@@ -23,13 +23,13 @@ class TileTable {
  public:
   static StoreResult<TileTable> open(sql::Database& database);
 
-  /// Returns a tile, verified, or nullopt if there is none. The error (corrupt) names file, table
-  /// and tile.
-  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge,
-                                         RowCheck check);
+  /// Returns a tile, verified, or nullopt if there is none, or if row `tile_rules` of `meta` is not
+  /// `rules` at the moment of the read. The error (corrupt) names file, table and tile.
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint32_t rules,
+                                         std::uint16_t chunk_edge, RowCheck check);
   /// Returns keys and versions of all tiles, ascending by key, without the rows that
-  /// rows_of_no_tile() reports.
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys();
+  /// rows_of_no_tile() reports, or none if `tile_rules` is not `rules`.
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys(std::uint32_t rules);
   /// Returns a line for each row whose level is not 1 to kTileLevelMax, or whose place does not fit
   /// a key.
   StoreResult<std::vector<std::string>> rows_of_no_tile();

@@ -2,6 +2,7 @@
 // builds. Each
 // call is one transaction. It fails (locked) and writes nothing if another program owns the world.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/keyframe.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
@@ -70,9 +72,10 @@ class WorldSink {
   virtual StoreResult<void> remove_build_file(std::uint64_t /*content*/) { return {}; }
   /// Inserts or replaces tiles. Requires that each was made of chunks of this world, after it was
   /// opened for writing, and contains all edits below it up to its version. A tile is left out if a
-  /// snapshot below it was saved meanwhile that is newer. Fails (bad_request) if a tile is ahead of
-  /// the log.
-  virtual StoreResult<void> save_tiles(ChunkSpan tiles) = 0;
+  /// snapshot below it was saved meanwhile that is newer. All are left out if `rules`, by which they
+  /// were made, are not those of the materials that are written (tile_rules_of()). Fails
+  /// (bad_request) if a tile is ahead of the log.
+  virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules = kTileRules) = 0;
 };
 
 }  // namespace runstone

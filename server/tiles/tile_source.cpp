@@ -29,7 +29,8 @@ class TileSource::Making {
     // It is read first: a tile that is read or made later contains at least these edits.
     const Sequence newest = source_.ledger_.newest_edit(key);
     if (is_later(newest)) return past_tile(key);
-    if (auto cached = source_.cache_.find(key); cached && newest <= cached->through) {
+    auto cached = source_.cache_.find(key);
+    if (cached && cached->rules == visibility_.rules && newest <= cached->through) {
       cached->is_known = true;
       // The ledger knows all edits up to the head, and none of them is newer.
       cached->through = std::max(cached->through, request_.head);
@@ -84,7 +85,7 @@ class TileSource::Making {
     ++steps_;
     StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
     const auto read =
-        source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key); });
+        source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key, visibility_.rules); });
     if (!read) return failure(read.error());
     if (!row) {
       if (row.error().kind != StoreError::Kind::corrupt) return failure(row.error());
@@ -93,6 +94,7 @@ class TileSource::Making {
     }
     if (!row->has_value() || newest > (*row)->version.seq) return out;
     out = MadeTile{key, std::make_shared<const Chunk>(**std::move(row)), 0, false, true};
+    out->rules = visibility_.rules;
     out->voxel_digest = out->tile->digest;
     out->through = std::max(out->tile->version.seq, request_.head);
     return out;
@@ -136,7 +138,9 @@ class TileSource::Making {
   /// Makes a tile below which edits are later than the moment, unless an earlier turn made it.
   StoreResult<MadeTile> past_tile(const ChunkKey& key) {
     std::map<ChunkKey, MadeTile>& known = *request_.past_made;
-    if (const auto found = known.find(key); found != known.end()) return found->second;
+    if (const auto found = known.find(key);
+        found != known.end() && found->second.rules == visibility_.rules)
+      return found->second;
     auto built = build(key);
     if (!built) return built;
     built->is_past = true;
@@ -147,7 +151,7 @@ class TileSource::Making {
     }
     if (key == request_.key) return built;
     for (unsigned i = 0; key.lod > 1 && i < kTileChildren; ++i) known.erase(tile_child(key, i));
-    known.emplace(key, *built);
+    known.insert_or_assign(key, *built);
     on_the_way_.push_back(*built);
     return built;
   }
@@ -200,6 +204,7 @@ class TileSource::Making {
     MadeTile made{key, std::make_shared<const Chunk>(std::move(tile)), request_.head,
                   is_approximate};
     made.is_damaged = is_damaged;
+    made.rules = visibility_.rules;
     made.voxel_digest = digest;
     return made;
   }
@@ -256,10 +261,11 @@ void TileSource::add_veiled(MadeTile& made, const TileVisibility& visibility) {
 }
 
 bool TileSource::is_current(const ChunkKey& key, const Version& version,
-                            std::uint64_t claim_digest) {
+                            std::uint64_t claim_digest, std::uint32_t rules) {
   if (claim_digest == 0) return false;  // of an incomplete tile
   const Sequence newest = ledger_.newest_edit(key);
-  if (const auto made = cache_.find(key); made && newest <= made->through) {
+  if (const auto made = cache_.find(key);
+      made && made->rules == rules && newest <= made->through) {
     return made->is_complete() && made->tile->version == version &&
            (!made->veiled || made->veiled->digest.lane[0] == claim_digest);
   }

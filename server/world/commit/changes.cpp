@@ -15,10 +15,10 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
   return {{std::move(what), row}};
 }
 
-/// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it was
-/// not.
 constexpr const char* kNoRoomInLog = "the log has no room now (log_queue_records)";
 
+/// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it was
+/// not.
 std::string why_not_ordered(const ServerEditsResult& result) {
   switch (result.state) {
     case ServerEditsResult::State::closed:
@@ -51,6 +51,14 @@ bool Changes::has_power(const RightsActor& actor) const {
          rights.has(Right::administer);
 }
 
+/// Returns the limit that rejects so many records for now, or "".
+const char* Changes::why_full(DiskNeed need, std::size_t records) const {
+  const bool has_room =
+      need == DiskNeed::space ? order_.log_has_room(records) : order_.log_has_queue_room();
+  if (!has_room) return order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
+  return order_.is_memory_full() ? kMemoryIsFull : "";
+}
+
 ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                        const Clocks& now) {
   return order(offers, payer, DiskNeed::space, now);
@@ -70,14 +78,8 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player || offer.is_of_large_action);
-    if (need == DiskNeed::space ? !order_.log_has_room() : !order_.log_has_queue_room()) {
-      out.reason = order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
-      break;
-    }
-    if (order_.is_memory_full()) {
-      out.reason = kMemoryIsFull;
-      break;
-    }
+    out.reason = why_full(need, 1);
+    if (*out.reason != '\0') break;
     if (paying) {
       const std::uint64_t price = edit_price(offer.edit, config_.chunk_edge, paying->budget);
       if (const auto unpaid = quotas_.charge_edit(*paying, price, now.steady_us)) {
@@ -150,15 +152,20 @@ std::optional<std::string> Changes::accept_kept_jump(const std::optional<std::st
          *why;
 }
 
-ServerEditsResult Changes::order_all(const std::vector<EditOffer>& offers, const Clocks& now) {
+ServerEditsResult Changes::order_materials(const std::vector<EditOffer>& offers,
+                                           const Clocks& now) {
+  using State = ServerEditsResult::State;
   commits_.commit_all(LargeEdits::paced, now);
-  if (order_.accepts_edits() && !order_.log_has_room(offers.size())) {
-    ServerEditsResult out;
-    out.state = ServerEditsResult::State::busy;
-    out.reason = order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
-    return out;
+  if (!order_.accepts_edits()) return {State::closed};
+  const char* const reason = why_full(DiskNeed::space, offers.size());
+  if (*reason != '\0') return {State::busy, 0, reason};
+  for (const EditOffer& offer : offers) {
+    const auto queued = order_.authority().enqueue(offer);
+    RUNSTONE_ASSERT(queued.has_value());
   }
-  return order_edits(offers, 0, now);
+  // One commit takes all of them (edit_work()), and the log writer writes it in one transaction.
+  commits_.commit_all(LargeEdits::paced, now);
+  return {State::ordered, offers.size()};
 }
 
 void Changes::offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
@@ -192,7 +199,7 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   std::vector<EditOffer> offers = {
       {op, Cause::materials, now.steady_us, materials_edit(std::move(added)), 0}};
   offer_shapes(given, now, offers);
-  const ServerEditsResult ordered = order_all(offers, now);
+  const ServerEditsResult ordered = order_materials(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return refusal(why_not_ordered(ordered));
   return AddedAt{order_.newest_materials(), first};
 }
@@ -205,7 +212,7 @@ Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
     return failure(std::string(fits.error().what));
   std::vector<EditOffer> offers;
   offer_shapes(rows, now, offers);
-  const ServerEditsResult ordered = order_all(offers, now);
+  const ServerEditsResult ordered = order_materials(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
   return order_.newest_materials();
 }

@@ -94,15 +94,17 @@ class Changes {
  private:
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);
+  /// Orders materials and shapes of the console, but none of them if the log lacks room for all. They
+  /// are one commit, so a crash does not leave materials without their shapes either.
+  ServerEditsResult order_materials(const std::vector<EditOffer>& offers, const Clocks& now);
   /// Appends the offers that give shapes. Requires rows that ascend by material.
-  /// Orders edits of the console, but none of them if the log lacks room for all.
-  ServerEditsResult order_all(const std::vector<EditOffer>& offers, const Clocks& now);
   void offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
                     std::vector<EditOffer>& offers);
   enum class DiskNeed {
     space,  // nothing is ordered while the disk is full
     none,   // what is ordered while the disk is full waits in memory
   };
+  const char* why_full(DiskNeed need, std::size_t records) const;
   ServerEditsResult order(const std::vector<EditOffer>& offers, AuthorId payer, DiskNeed need,
                           const Clocks& now);
   std::optional<Payer> payer_of(AuthorId author) const;

@@ -2,6 +2,7 @@
 // they send back.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/runs/chunk.hpp"
+#include "common/tiles/tile_rules.hpp"
 
 namespace runstone {
 
@@ -30,6 +32,8 @@ struct MadeTile {
   bool is_damaged = false;
   /// It shows an earlier moment (TileRequest::at), and differs from the present one.
   bool is_past = false;
+  /// TileVisibility::rules by which it was made.
+  std::uint32_t rules = kTileRules;
   /// The digest of the voxels of `tile`. Chunk::digest of an incomplete tile is zero instead, so
   /// that no client claims it.
   Digest voxel_digest{};

@@ -46,7 +46,6 @@ struct WorldConfig {
   std::set<PublicKey> operators;              // they have every right, whatever the log says
   std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint8_t tile_levels_max = 0;           // of levels of detail that views may have; 0: none
-  std::uint32_t tile_rules = 0;               // see SessionAccepted
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
   double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
   double speed_max = 0;                   // voxels a second of a player, for the reach; 0: no limit

@@ -38,6 +38,20 @@ void want_differing(const WorldEnvironment& environment, TileInterest& tiles, co
     want_differing(environment, tiles, tile_child(key, i), move, left);
 }
 
+/// Makes the past tiles wanted again that a session has, below a tile and this one. Appends them to
+/// `left`.
+void want_past_again(const WorldEnvironment& environment, TileInterest& tiles, const ChunkKey& key,
+                     Sequence at, std::vector<ChunkKey>& left) {
+  if (environment.newest_tile_edit(key) <= at) return;
+  if (client_has(tiles.status(key))) {
+    tiles.want_again(key);
+    left.push_back(key);
+  }
+  if (key.lod == 1) return;
+  for (unsigned i = 0; i < kTileChildren; ++i)
+    want_past_again(environment, tiles, tile_child(key, i), at, left);
+}
+
 /// Returns true if the session still waits for the tile of this request. A tile of which it
 /// requested the past state is a past tile as long as it sees that moment.
 bool is_needed(const Viewer& viewer, const TileRequest& request) {
@@ -80,6 +94,15 @@ void PastTiles::move_in_time(Viewer& viewer, const Clocks& now) {
   board_.leave(viewer.id(), left);
 }
 
+void PastTiles::want_all_again(Viewer& viewer, const Clocks& now) {
+  if (!viewer.sees_past() || !viewer.tiles.interest) return;
+  board_.mark_outdated(now);
+  std::vector<ChunkKey> left;
+  for (const ChunkKey& root : viewer.tiles.interest->roots())
+    want_past_again(base_.environment, *viewer.tiles.interest, root, viewer.past.view->seq, left);
+  board_.leave(viewer.id(), left);
+}
+
 bool PastTiles::is_past(const Viewer& viewer, const ChunkKey& key) const {
   return viewer.sees_past() && base_.environment.newest_tile_edit(key) > viewer.past.view->seq;
 }
@@ -102,8 +125,10 @@ Viewer* PastTiles::made(SessionId session, const TileRequest& request,
                         const std::vector<MadeTile>& made, const Clocks& now) {
   Viewer* const viewer = end_turn(session, made, now);
   if (viewer == nullptr || !is_needed(*viewer, request)) return viewer;
-  if (made.empty() || viewer->chunks.begins) {
-    // The tile of a moment follows the message that begins it.
+  const bool has_rules = !made.empty() && made.back().rules == base_.order.tile_rules();
+  if (!has_rules || viewer->chunks.begins) {
+    // The tile of a moment follows the message that begins it, and one of earlier rules is made
+    // again.
     if (made.empty()) viewer->tiles.past_retry_us = now.steady_us + kTileRetryUs;
     viewer->tiles.interest->want_again(request.key);
   } else {

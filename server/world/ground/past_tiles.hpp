@@ -35,6 +35,10 @@ class PastTiles {
   /// look-up for each tile of the view's highest level, and for the children of each tile that
   /// differs.
   void move_in_time(Viewer& viewer, const Clocks& now);
+  /// Makes the past tiles wanted again that the session has. Call it when the rules of tiles have
+  /// changed. Cost: a look-up for each tile of the view's highest level, and for the children of each
+  /// past tile.
+  void want_all_again(Viewer& viewer, const Clocks& now);
   /// Returns true if the session sees the past and the tile of that moment differs from the present
   /// one. Requires TileBoard::mark_outdated().
   bool is_past(const Viewer& viewer, const ChunkKey& key) const;

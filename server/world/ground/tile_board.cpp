@@ -66,6 +66,12 @@ void TileBoard::mark_outdated(const Clocks& now) {
   edited_.clear();
 }
 
+void TileBoard::make_all_again(const Clocks& now) {
+  receivers_.for_each([&](const ChunkKey& key, const TileReceivers& receivers) {
+    make_again(key, receivers, now);
+  });
+}
+
 void TileBoard::edited(std::span<const ChunkKey> chunks, const Clocks& now) {
   if (base_.config.tile_levels_max == 0) return;
   if (chunks.size() == 1 && !edited_.empty() && edited_.back() == chunks.front()) return;

@@ -23,7 +23,7 @@ inline constexpr TimeUs kTileRemakeUs = 1'000'000;
 /// A state of a tile. Two tiles with equal states have the same voxels and the same version.
 struct TileState {
   Version version;
-  Digest digest;             // of the voxels
+  Digest digest;             // of the voxels that clients get
   bool is_complete = false;  // MadeTile::is_complete()
   friend bool operator==(const TileState&, const TileState&) = default;
 };
@@ -63,6 +63,8 @@ class TileBoard {
   /// that reads the state of tiles, or the newest edit below one, must call it first. Cost:
   /// O(edited chunks * levels).
   void mark_outdated(const Clocks& now);
+  /// Makes all tiles outdated that sessions have. Cost: O(tiles).
+  void make_all_again(const Clocks& now);
 
  private:
   void make_again(const ChunkKey& key, const TileReceivers& receivers, const Clocks& now);

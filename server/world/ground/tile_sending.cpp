@@ -23,6 +23,7 @@ void TileSending::save(const std::vector<MadeTile>& made) {
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& one : made) {
     if (!one.is_worth_storing() || one.tile->voxels.is_uniform()) continue;
+    if (one.rules != base_.order.tile_rules()) continue;
     if (base_.environment.newest_tile_edit(one.key) > one.through) continue;
     // The store refuses it. It is saved when it is made once more.
     if (one.tile->version.seq > base_.order.durable()) continue;

@@ -13,8 +13,11 @@ namespace {
 /// So many wanted tiles of a session are looked at if past ones have to wait.
 constexpr std::size_t kWantedLookedAtMax = 64;
 
+/// The digest is that of the voxels that clients get: other rules may change the veil alone.
 TileState state_of(const MadeTile& made) {
-  return {made.tile->version, made.voxel_digest, made.is_complete()};
+  const bool is_complete = made.is_complete();
+  return {made.tile->version, is_complete ? made.for_clients()->digest : made.voxel_digest,
+          is_complete};
 }
 
 }  // namespace
@@ -100,10 +103,17 @@ std::size_t Tiles::set_view(Viewer& viewer, const View& view, std::span<const Vi
   return moved.steps;
 }
 
+void Tiles::follow_rules(const Clocks& now) {
+  if (std::exchange(rules_, base_.order.tile_rules()) == base_.order.tile_rules()) return;
+  board_.make_all_again(now);
+  for (Viewer* const viewer : base_.open()) past_.want_all_again(*viewer, now);
+}
+
 void Tiles::request(Viewer& viewer, const Clocks& now) {
   if (!viewer.tiles.interest || base_.order.is_stopping() || chunk_sending_.is_stalled(viewer, now))
     return;
   if (viewer.chunks.begins) return;  // the tiles of a moment follow the message that begins it
+  follow_rules(now);
   board_.mark_outdated(now);
   TileInterest& tiles = *viewer.tiles.interest;
   std::size_t claims_left = kTileClaimsPerCall;
@@ -118,7 +128,8 @@ void Tiles::request(Viewer& viewer, const Clocks& now) {
         base_.deliveries.insert(viewer.id());  // the others have a task of their own
         break;
       }
-      if (base_.environment.is_tile_current(*claim)) {
+      // A copy that may be of other rules is compared with the tile.
+      if (viewer.session.tile_rules == rules_ && base_.environment.is_tile_current(*claim)) {
         tiles.set_waiting(*key);
         sending_.send_same(viewer, *key, claim->version.seq);
         continue;
@@ -137,6 +148,7 @@ void Tiles::request(Viewer& viewer, const Clocks& now) {
 
 void Tiles::start(const Clocks& now) {
   if (base_.order.is_stopping()) return;
+  follow_rules(now);
   board_.mark_outdated(now);
   while (const auto key = board_.queue().next(now.steady_us, kTilesInFlightMax)) {
     // A session may leave before its tile is made. Its player pays nevertheless.
@@ -155,6 +167,8 @@ void Tiles::made(const ChunkKey& key, const std::vector<MadeTile>& made, const C
     board_.queue().failed(key, now.steady_us + kTileRetryUs);
     return board_.drop_if_unused(key);
   }
+  // Materials got shapes meanwhile.
+  if (made.back().rules != base_.order.tile_rules()) return stopped(key, made, now);
   const std::vector<SessionId> waiting = board_.queue().finished(key);
   const MadeTile& tile = made.back();
   charge(key, made, now);

@@ -5,6 +5,7 @@
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -31,7 +32,8 @@ class Tiles {
         chunk_sending_(sending),
         board_(base),
         sending_(base, sending, board_),
-        past_(base, loads, board_, sending_) {}
+        past_(base, loads, board_, sending_),
+        rules_(base.order.tile_rules()) {}
 
   /// Reports that a commit touched these chunks (TileBoard::edited()).
   void edited(std::span<const ChunkKey> chunks, const Clocks& now) { board_.edited(chunks, now); }
@@ -60,7 +62,7 @@ class Tiles {
 
   // Answers of the workers.
   /// Sends a tile that workers made, the last one of `made`, to the sessions that wait for it or
-  /// have it at an earlier state. Saves those that are worth it. `made` is empty if the tile could
+  /// have it at an earlier state. A tile of earlier rules is made again instead. Saves those that are worth it. `made` is empty if the tile could
   /// not be made.
   void made(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
   /// Saves tiles that were made on the way to a tile. The tile is requested again when others had
@@ -74,6 +76,9 @@ class Tiles {
  private:
   void charge(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
   void resend_changed(const ChunkKey& key, const MadeTile& made, const Clocks& now);
+  /// If the rules of tiles have changed, because materials got shapes, makes all tiles outdated that
+  /// sessions have.
+  void follow_rules(const Clocks& now);
 
   GroundBase& base_;
   Loads& loads_;
@@ -81,6 +86,7 @@ class Tiles {
   TileBoard board_;
   TileSending sending_;
   PastTiles past_;
+  std::uint32_t rules_;  // Order::tile_rules() at the last follow_rules()
   std::map<ChunkKey, Payer> payers_;  // of the tiles that workers make because a session waits
 };
 

@@ -34,6 +34,8 @@ std::size_t memory_of(const EditOffer& offer) {
 }  // namespace
 
 std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
+  // No commit message has them, because no session sees them as edits.
+  if (changes_materials(edit)) return kEditWork;
   const auto* paste = std::get_if<Paste>(&edit.shape);
   const std::size_t descriptor = paste == nullptr
                                      ? descriptor_bytes_max(kind_of(edit))

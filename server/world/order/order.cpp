@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/core/assert.hpp"
+#include "common/tiles/tile_rules.hpp"
 
 namespace runstone {
 namespace {
@@ -29,6 +30,7 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       authority_(limits_of(config), start.log),
       checkpointer_(config.snapshots, start.checkpoint),
       materials_(config.materials),
+      tile_rules_(tile_rules_of(tile_shapes_number(materials_))),
       library_(config.library, start.library),
       feed_(environment, config.may_be_followed),
       durable_(start.log.last) {
@@ -80,11 +82,12 @@ bool Order::apply_materials(const std::vector<EditRecord>& records) {
     materials_seq_ = record.version.seq;
     has_changed = true;
   }
-  if (has_changed) authority_.set_material_count(materials_.size());
+  if (has_changed) {
+    authority_.set_material_count(materials_.size());
+    tile_rules_ = tile_rules_of(tile_shapes_number(materials_));
+  }
   return has_changed;
 }
-
-bool Order::has_shapes() const { return materials_.has_shapes(); }
 
 void Order::append(OrderedBatch& batch) {
   std::vector<PlayerRow> players;

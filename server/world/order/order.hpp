@@ -4,6 +4,7 @@
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <span>
@@ -82,8 +83,10 @@ class Order {
   bool apply_materials(const std::vector<EditRecord>& records);
   /// Returns the materials that got their shape in this run, in the order of the log.
   std::span<const Material> shaped() const { return shaped_; }
-  /// Returns true if a material is no cube. Cost: O(materials).
-  bool has_shapes() const;
+  /// Returns true if a material is no cube.
+  bool has_shapes() const { return materials_.has_shapes(); }
+  /// Returns the rules by which tiles of the materials in force are made (tile_rules_of()).
+  std::uint32_t tile_rules() const { return tile_rules_; }
   /// Returns the record that added materials or gave shapes last in this run, or 0.
   Sequence newest_materials() const { return materials_seq_; }
   /// Returns the builds of the world. The caller applies records to it as to the materials.
@@ -179,6 +182,7 @@ class Order {
   Checkpointer checkpointer_;
   LargeEditPace large_edits_;
   MaterialTable materials_;
+  std::uint32_t tile_rules_ = 0;  // of materials_
   Sequence materials_seq_ = 0;
   std::vector<Material> shaped_;  // at most one entry a row
   Library library_;
