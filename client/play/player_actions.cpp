@@ -89,7 +89,7 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
       if (!box.clipboard().build) return KeyAnswer(failure("nothing was copied"));
       return choose_tool(tool, "paste");
     case Action::clear_selection:
-      return words(tool.propose(box.fill(kEmpty), now_us), "cleared");
+      return words(tool.propose(box.fill(replica, kEmpty), now_us), "cleared");
     case Action::rotate:
       return turn_words(box, box.rotate(1), "the clipboard is turned");
     case Action::mirror:

@@ -9,6 +9,7 @@
 #include "client/tools/build_words.hpp"
 #include "client/tools/placed_material.hpp"
 #include "client/tools/turned_materials.hpp"
+#include "client/tools/voxel_joins.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/key_text.hpp"
 
@@ -224,20 +225,37 @@ ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::propose_joined(const EditDescriptor& edit) {
+  start_edits(joined_action(edit, host_.tool_box().materials(),
+                            [this](VoxelPos at) { return host_.shown_at(at); }));
+  return propose_edits();
+}
+
+ScriptRunner::Progress ScriptRunner::propose_named(const EditDescriptor& edit) {
+  const MaterialTable& table = host_.tool_box().materials();
+  const bool has_states =
+      table.knows(edit.material) && table[edit.material].name.ends_with(']');
+  if (!has_states) return propose_joined(edit);
+  start_edits(ToolAction(std::vector{edit}));
+  return propose_edits();
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::Set& c) {
+  if (started_) return propose_edits();
   const auto at = resolve_voxel(c.at);
   const auto material = resolve_material(c.material);
   if (!at || !material) return Progress::stop;
-  return propose({SetVoxel{*at}, {}, *material});
+  return propose_named({SetVoxel{*at}, {}, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
+  if (started_) return propose_edits();
   const auto a = resolve_voxel(c.from);
   const auto b = resolve_voxel(c.to);
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!a || !b || !material || !mask) return Progress::stop;
-  return propose({FillBox{box_between(*a, *b)}, *mask, *material});
+  return propose_named({FillBox{box_between(*a, *b)}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
@@ -297,15 +315,17 @@ ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
+  if (started_) return propose_edits();
   const auto hit = host_.pick();
   if (!hit) {
     fail("nothing to dig within reach");
     return Progress::done;
   }
-  return propose({SetVoxel{hit->voxel}, {}, kEmpty});
+  return propose_joined({SetVoxel{hit->voxel}, {}, kEmpty});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
+  if (started_) return propose_edits();
   const auto material = resolve_material(c.material);
   if (!material) return Progress::stop;
   const auto hit = host_.pick();
@@ -317,7 +337,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
   Aim aim = host_.aim();
   aim.hit = hit;
   const Material placed = placed_material(*material, click_of(aim), host_.tool_box().materials());
-  return propose({SetVoxel{*at}, {}, placed});
+  return propose_joined({SetVoxel{*at}, {}, placed});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {

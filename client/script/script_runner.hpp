@@ -115,6 +115,10 @@ class ScriptRunner {
   Progress give_up(const std::string& what);
   Progress build(const ToolAction& action);
   Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
+  /// Proposes an edit with the joins of its voxels (joined_action()).
+  Progress propose_joined(const EditDescriptor& edit);
+  /// Does the same, unless the script names the states of the material: then it means them.
+  Progress propose_named(const EditDescriptor& edit);
   /// Starts a command with its edits. If they are refused, the command fails, and the script goes on.
   void start_edits(ToolEdits made);
   /// Proposes the edits of start_edits() that are left, or waits for the end of a large action.

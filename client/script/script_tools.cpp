@@ -33,8 +33,13 @@ ScriptRunner::Progress ScriptRunner::propose_edits() {
   if (is_building_ || host_.needs_build(made_)) return build(made_);
   const std::vector<EditDescriptor>& edits = made_.edits;
   for (; state_.count < edits.size(); ++state_.count) {
-    const Progress progress =
-        propose(edits[state_.count], part_of_action(state_.count, edits.size()));
+    const EditDescriptor& edit = edits[state_.count];
+    if (made_.has_followers && state_.count > 0) {
+      // It waits for no budget: a neighbour that cannot follow at once does not.
+      static_cast<void>(host_.propose(edit, now_us_, now_us_, ActionPart::next));
+      continue;
+    }
+    const Progress progress = propose(edit, part_of_action(state_.count, edits.size()));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;

@@ -13,6 +13,17 @@
 namespace runstone {
 namespace {
 
+/// Returns an edit with the joins of its voxels (joined_action()).
+ToolAction joined(const ToolInput& input, const EditDescriptor& edit) {
+  ShownVoxels shown(input.replica);
+  ToolAction out =
+      joined_action(edit, input.materials, [&](VoxelPos at) { return shown.at(at); });
+  // On the other side of a symmetry other voxels would join.
+  if (input.has_copies) out.edits.resize(1);
+  out.has_followers = out.edits.size() > 1;
+  return out;
+}
+
 /// Sets or removes one voxel. It lies as the click means, and joins its neighbours.
 class VoxelTool final : public Tool {
  public:
@@ -26,13 +37,7 @@ ToolEdits VoxelTool::plan(const ToolInput& input) const {
   // A place that is typed was not clicked.
   if (hit && hit->face && moved(hit->voxel, *hit->face, 1) == input.target)
     material = placed_material(material, click_of(input.aim), input.materials);
-  ShownVoxels shown(input.replica);
-  ToolAction out(joined_edits(input.target, material, input.materials,
-                              [&](VoxelPos at) { return shown.at(at); }));
-  // On the other side of a symmetry another voxel would join.
-  if (input.has_copies) out.edits.resize(1);
-  out.has_followers = out.edits.size() > 1;
-  return out;
+  return joined(input, {SetVoxel{input.target}, {}, material});
 }
 
 /// Fills or clears the box between two corners.
@@ -46,8 +51,7 @@ class BoxTool final : public Tool {
 
 ToolEdits BoxTool::plan(const ToolInput& input) const {
   const VoxelPos first = input.points.empty() ? input.target : input.points.front();
-  return std::vector{
-      EditDescriptor{FillBox{box_between(first, input.target)}, mask(), material_of(input)}};
+  return joined(input, {FillBox{box_between(first, input.target)}, mask(), material_of(input)});
 }
 
 /// Fills or clears a sphere. Its radius is the parameter; with radius 0 the first click chooses the

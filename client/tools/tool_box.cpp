@@ -12,7 +12,9 @@
 #include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
 #include "client/tools/placed_material.hpp"
+#include "client/tools/shown_voxels.hpp"
 #include "client/tools/turned_materials.hpp"
+#include "client/tools/voxel_joins.hpp"
 #include "common/builds/build_builder.hpp"
 #include "common/builds/build_transforms.hpp"
 #include "common/core/assert.hpp"
@@ -329,19 +331,24 @@ void ToolBox::hold_clipboard(BuildPtr build, EmptyCells empty) {
 
 ToolEdits ToolBox::cut(const Replica& replica, bool is_solid) {
   if (const auto copied = copy(replica, is_solid); !copied) return failure(copied.error());
-  return fill(kEmpty);
+  return fill(replica, kEmpty);
 }
 
-ToolEdits ToolBox::fill(Material material) const {
-  const auto box = selected();
-  if (!box) return failure(box.error());
-  return std::vector{EditDescriptor{FillBox{*box}, {}, material}};
+ToolEdits ToolBox::fill(const Replica& replica, Material material) const {
+  return filled(replica, {}, material);
 }
 
-ToolEdits ToolBox::replace(Material from, Material to) const {
+ToolEdits ToolBox::replace(const Replica& replica, Material from, Material to) const {
+  return filled(replica, {MaskKind::only_material, from}, to);
+}
+
+ToolEdits ToolBox::filled(const Replica& replica, const Mask& mask, Material material) const {
+  if (!replica.opened()) return failure("no world is open");
   const auto box = selected();
   if (!box) return failure(box.error());
-  return std::vector{EditDescriptor{FillBox{*box}, {MaskKind::only_material, from}, to}};
+  ShownVoxels shown(replica);
+  return joined_box({FillBox{*box}, mask, material}, materials_,
+                    [&](VoxelPos at) { return shown.at(at); });
 }
 
 ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32_t times) const {

@@ -73,10 +73,11 @@ class ToolBox {
   Result<void, std::string> copy(const Replica& replica, bool is_solid);
   /// Copies the selected voxels and returns the edit that clears them.
   ToolEdits cut(const Replica& replica, bool is_solid);
-  /// Returns the edit that fills the selection, or clears it with kEmpty.
-  ToolEdits fill(Material material) const;
-  /// Returns the edit that replaces a material in the selection.
-  ToolEdits replace(Material from, Material to) const;
+  /// Returns the edit that fills the selection, or clears it with kEmpty. Fences and the like in a
+  /// thin selection join (joined_box()).
+  ToolEdits fill(const Replica& replica, Material material) const;
+  /// Returns the edit that replaces a material in the selection, with joins as fill().
+  ToolEdits replace(const Replica& replica, Material from, Material to) const;
   /// Returns the paste that repeats the selected voxels `times` times in a direction.
   ToolEdits stack(const Replica& replica, Direction direction, std::int32_t times) const;
   /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move
@@ -137,6 +138,7 @@ class ToolBox {
                  std::span<const VoxelPos> points, VoxelPos target);
   ToolEdits plan_typed(const Replica& replica, Material held);
   Result<VoxelBox, std::string> selected() const;
+  ToolEdits filled(const Replica& replica, const Mask& mask, Material material) const;
   Result<void, std::string> turn(const Orientation& orientation);
   /// Sets the clipboard, whose rows are set already.
   void hold_clipboard(BuildPtr build, EmptyCells empty);

@@ -40,11 +40,11 @@ struct Carrier {
       case Kind::cut:
         return box.cut(replica, c.is_solid);
       case Kind::clear:
-        return box.fill(kEmpty);
+        return box.fill(replica, kEmpty);
       case Kind::fill:
-        return box.fill(c.material);
+        return box.fill(replica, c.material);
       case Kind::replace:
-        return box.replace(c.material, c.other);
+        return box.replace(replica, c.material, c.other);
       case Kind::stack:
         return box.stack(replica, c.direction, c.count);
       case Kind::move:

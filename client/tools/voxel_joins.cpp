@@ -1,11 +1,15 @@
 #include "client/tools/voxel_joins.hpp"
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "client/tools/aim.hpp"
+#include "client/tools/cell_list.hpp"
 #include "common/formats/material_family.hpp"
 #include "common/shapes/shape_faces.hpp"
 
@@ -94,6 +98,123 @@ Material member_with(Material material, const MaterialStates& states, const Mate
   return nearest_member(table, states).value_or(material);
 }
 
+/// Returns the member that a voxel becomes after voxels beside it have changed. `set_to` returns what
+/// a voxel was set to, or nullopt if it was not set: the side towards that one stays.
+Material rejoined(VoxelPos at, Material material, const MaterialTable& table,
+                  const VoxelReader& set_to) {
+  const JoinKind kind = join_kind_of(material, table);
+  if (kind == JoinKind::none) return material;
+  MaterialStates states = states_of_material(table[material].name);
+  for (const auto& [direction, side] : kJoinSides) {
+    if (const auto now = set_to(moved(at, direction, 1)))
+      set_side(states, kind, side, joins(material, now, direction, table));
+  }
+  if (kind == JoinKind::wall) set_post(states);
+  return member_with(material, states, table);
+}
+
+bool is_thin(const VoxelBox& box) {
+  const std::array<std::int64_t, 3> sides = {std::int64_t{box.max.x} - box.min.x,
+                                             std::int64_t{box.max.y} - box.min.y,
+                                             std::int64_t{box.max.z} - box.min.z};
+  std::uint64_t volume = 1;
+  for (const std::int64_t side : sides) {
+    if (side < 1 || side > std::int64_t{kSideMax}) return false;
+    volume *= static_cast<std::uint64_t>(side);
+  }
+  return (sides[0] == 1 || sides[2] == 1) && volume <= kJoinedBoxVoxelsMax;
+}
+
+/// The fill of a thin box, and what it does to the voxels of the box and beside it.
+class BoxJoins {
+ public:
+  BoxJoins(const EditDescriptor& fill, const MaterialTable& table, const VoxelReader& voxels)
+      : fill_(fill),
+        box_(std::get<FillBox>(fill.shape).box),
+        table_(table),
+        voxels_(voxels),
+        joins_(join_kind_of(fill.material, table) != JoinKind::none) {}
+
+  ToolAction action() {
+    for (std::int32_t z = box_.min.z; z < box_.max.z; ++z) {
+      for (std::int32_t y = box_.min.y; y < box_.max.y; ++y) {
+        for (std::int32_t x = box_.min.x; x < box_.max.x; ++x) visit({x, y, z});
+      }
+    }
+    ToolAction out(std::vector{filled()});
+    for (auto& [before, cells] : followers_) {
+      const Mask mask{MaskKind::only_material, before};
+      if (cells.size() == 1) {
+        out.edits.push_back({SetVoxel{cells.front().at}, mask, cells.front().material});
+      } else if (auto paste = paste_of(std::move(cells), mask)) {
+        out.edits.push_back(std::move(paste->edits.front()));
+      }
+    }
+    out.has_followers = out.edits.size() > 1;
+    return out;
+  }
+
+ private:
+  /// Returns what the fill sets a voxel to, or nullopt if it does not set it.
+  std::optional<Material> set_to(VoxelPos at) const {
+    if (!box_.contains(at)) return std::nullopt;
+    const auto before = voxels_(at);
+    if (before && !fill_.mask.admits(*before)) return std::nullopt;
+    return fill_.material;
+  }
+  std::optional<Material> after(VoxelPos at) const {
+    const auto set = set_to(at);
+    return set ? set : voxels_(at);
+  }
+
+  void visit(VoxelPos at) {
+    if (!set_to(at)) return;
+    if (joins_) cells_.push_back({at, joined(at)});
+    for (const auto& [direction, side] : kJoinSides) {
+      const VoxelPos beside = moved(at, direction, 1);
+      if (set_to(beside)) continue;
+      const auto before = voxels_(beside);
+      if (!before || *before == kEmpty || !visited_.insert(beside).second) continue;
+      const Material now =
+          rejoined(beside, *before, table_, [this](VoxelPos place) { return set_to(place); });
+      if (now != *before) followers_[*before].push_back({beside, now});
+    }
+  }
+
+  /// Equal neighbours give equal members.
+  Material joined(VoxelPos at) {
+    std::array<std::optional<Material>, 4> beside;
+    for (std::size_t i = 0; i < beside.size(); ++i)
+      beside[i] = after(moved(at, kJoinSides[i].first, 1));
+    const auto [member, is_new] = members_.try_emplace(beside, kEmpty);
+    if (is_new) {
+      member->second = joined_material(at, fill_.material, table_,
+                                       [this](VoxelPos place) { return after(place); });
+    }
+    return member->second;
+  }
+
+  EditDescriptor filled() {
+    const bool is_plain = std::all_of(cells_.begin(), cells_.end(), [this](const Cell& cell) {
+      return cell.material == fill_.material;
+    });
+    if (is_plain) return fill_;
+    // The voxels that the mask does not admit now may change before the edit is ordered.
+    auto paste = paste_of(std::move(cells_), fill_.mask);
+    return paste ? std::move(paste->edits.front()) : fill_;
+  }
+
+  const EditDescriptor& fill_;
+  const VoxelBox box_;
+  const MaterialTable& table_;
+  const VoxelReader& voxels_;
+  const bool joins_;  // the material of the fill
+  std::vector<Cell> cells_;
+  std::map<std::array<std::optional<Material>, 4>, Material> members_;
+  std::set<VoxelPos> visited_;
+  std::map<Material, std::vector<Cell>> followers_;  // by what they are now
+};
+
 }  // namespace
 
 Material joined_material(VoxelPos at, Material material, const MaterialTable& table,
@@ -117,18 +238,31 @@ std::vector<EditDescriptor> joined_edits(VoxelPos at, Material material, const M
     const VoxelPos place = moved(at, direction, 1);
     const auto neighbour = voxels(place);
     if (!neighbour) continue;
-    const JoinKind kind = join_kind_of(*neighbour, table);
-    if (kind == JoinKind::none) continue;
-    const Direction back = opposite(direction);
-    MaterialStates states = states_of_material(table[*neighbour].name);
-    for (const auto& [other, name] : kJoinSides) {
-      if (other == back) set_side(states, kind, name, joins(*neighbour, placed, back, table));
-    }
-    if (kind == JoinKind::wall) set_post(states);
-    const Material now = member_with(*neighbour, states, table);
+    const Material now =
+        rejoined(place, *neighbour, table, [&](VoxelPos beside) -> std::optional<Material> {
+          if (beside != at) return std::nullopt;
+          return placed;
+        });
     if (now != *neighbour)
       out.push_back({SetVoxel{place}, {MaskKind::only_material, *neighbour}, now});
   }
+  return out;
+}
+
+ToolAction joined_box(const EditDescriptor& fill, const MaterialTable& table,
+                      const VoxelReader& voxels) {
+  if (!is_thin(std::get<FillBox>(fill.shape).box)) return ToolAction(std::vector{fill});
+  return BoxJoins(fill, table, voxels).action();
+}
+
+ToolAction joined_action(const EditDescriptor& edit, const MaterialTable& table,
+                         const VoxelReader& voxels) {
+  if (std::holds_alternative<FillBox>(edit.shape)) return joined_box(edit, table, voxels);
+  const auto* const voxel = std::get_if<SetVoxel>(&edit.shape);
+  if (voxel == nullptr) return ToolAction(std::vector{edit});
+  ToolAction out(joined_edits(voxel->at, edit.material, table, voxels));
+  out.edits.front().mask = edit.mask;
+  out.has_followers = out.edits.size() > 1;
   return out;
 }
 

@@ -1,10 +1,12 @@
 // Voxel joins: fences, panes and walls that join their neighbours. The states are chosen when a
 // voxel is placed or removed, as edits, and never by drawing: so all clients see one world. Pure.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "client/tools/tool_action.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
@@ -35,5 +37,20 @@ Material joined_material(VoxelPos at, Material material, const MaterialTable& ta
 /// joined_material().
 std::vector<EditDescriptor> joined_edits(VoxelPos at, Material material, const MaterialTable& table,
                                          const VoxelReader& voxels);
+
+/// A box with more voxels is filled as it is.
+inline constexpr std::uint64_t kJoinedBoxVoxelsMax = 4'096;
+
+/// Returns what fills a box that is one voxel thick along x or z: the edit, in which each voxel is
+/// the member that joins its neighbours, and behind it the edits of neighbours that join and change
+/// (ToolAction::has_followers), as those of joined_edits(). Voxels that the edit's mask does not
+/// admit are neighbours, too. Returns the edit alone if it fills another box, one with a side of more
+/// than kSideMax, or one with more than kJoinedBoxVoxelsMax voxels. Requires a FillBox. Cost:
+/// O(voxels), and that of joined_material() for each combination of neighbours.
+ToolAction joined_box(const EditDescriptor& fill, const MaterialTable& table,
+                      const VoxelReader& voxels);
+/// Returns joined_box() of a box, joined_edits() of a voxel, and any other edit alone.
+ToolAction joined_action(const EditDescriptor& edit, const MaterialTable& table,
+                         const VoxelReader& voxels);
 
 }  // namespace runstone

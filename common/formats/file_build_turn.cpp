@@ -79,6 +79,13 @@ bool turn_node(const Lie& lie, BuildMaterial& material) {
   return true;
 }
 
+/// Returns true if a node of Luanti looks the same when it is turned: no rule says what its param2
+/// means, so it keeps it.
+bool stays_node(const Lie& lie, const BuildMaterial& material) {
+  const std::string node = material.row.name.substr(0, material.row.name.find('['));
+  return lie.name(node + "[param2=0]").has_value();
+}
+
 /// Turns a material of no other program.
 bool turn_named(const Lie& lie, BuildMaterial& material) {
   const bool has_states = states_in_name(material.row.name) == material.states;
@@ -98,10 +105,13 @@ std::optional<BuildMaterial> turned_build_material(const BuildMaterial& material
   const std::string& name = material.row.name;
   BuildMaterial out = material;
   const bool is_node = turned_node_name(name, {Axis::x, Axis::y, Axis::z}, 0).has_value();
-  const auto block = is_node ? std::nullopt : block_of_minecraft_material(name);
-  const bool is_turned = is_node ? turn_node(lie, out)
-                         : block ? turn_block(*block, lie, out)
-                                 : turn_named(lie, out);
+  const bool is_other_node = !is_node && is_luanti_node(name, material.states);
+  const auto block =
+      is_node || is_other_node ? std::nullopt : block_of_minecraft_material(name);
+  const bool is_turned = is_node         ? turn_node(lie, out)
+                         : is_other_node ? stays_node(lie, out)
+                         : block         ? turn_block(*block, lie, out)
+                                         : turn_named(lie, out);
   if (!is_turned) return std::nullopt;
   if (!material.row.shape.is_cube()) {
     const bool is_of_name = material.row.shape == shape_of_material_name(name);

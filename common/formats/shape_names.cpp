@@ -52,7 +52,7 @@ constexpr NodeShapeRule kNodeShapes[] = {
           shape_box(7, 6, 12, 9, 13, 14)),
     boxed("default:torch_ceiling *:torch_ceiling", NodeTurn::none, shape_box(7, 6, 7, 9, 16, 9)),
     boxed("default:torch *:torch", NodeTurn::none, shape_box(7, 0, 7, 9, 10, 9)),
-    boxed("default:ladder* *:ladder_wood *:ladder_steel", NodeTurn::wall,
+    boxed("default:ladder* *:ladder_wood *:ladder_steel mcl_core:ladder", NodeTurn::wall,
           shape_box(0, 0, 15, 16, 16, 16)),
     boxed("default:sign_wall* signs:sign_wall*", NodeTurn::wall, shape_box(1, 4, 15, 15, 12, 16)),
     boxed("default:fence_rail_*", NodeTurn::none, shape_box(0, 3, 7, 16, 5, 9),
@@ -212,6 +212,10 @@ std::optional<Shape> shape_of_material_name(std::string_view name) {
   }
   const auto block = block_of_minecraft_material(name);
   return block ? shape_of_minecraft_block(*block) : std::nullopt;
+}
+
+bool is_luanti_node(std::string_view name, std::string_view states) {
+  return name.starts_with("mcl_") || has_param2(name) || !ShapeStates(states).get("param2").empty();
 }
 
 std::string node_material_name(std::string_view node, std::string_view states) {

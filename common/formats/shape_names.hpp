@@ -19,10 +19,15 @@ namespace runstone {
 ///     param2 is a facedir or a direction to a wall, as the kind of node has it. A node without a
 ///     param2 has the param2 0. Fences and walls, which Luanti joins to their neighbours, are
 ///     posts; panes that are not flat are crosses. A node that only a rule of Minecraft knows, such
-///     as "mcl_core:ladder[param2=3]", has the shape of its name, whatever its param2.
+///     as "mcl_chests:chest[param2=3]", has the shape of its name, whatever its param2.
 /// Names without a namespace have no shape: a table gives them one by its own keys. Cost: O(rules +
 /// bytes).
 std::optional<Shape> shape_of_material_name(std::string_view name);
+
+/// Returns true if a name, with the states in it and beside it, is that of a node of Luanti, although
+/// a rule of Minecraft may know its words: it has a param2, or it is of the games MineClone2 and
+/// VoxeLibre. Such a node has no states of Minecraft. Other nodes may return false.
+bool is_luanti_node(std::string_view name, std::string_view states = {});
 
 /// Returns the name of the material for a node of Luanti with states, such as "param2=3". They are
 /// in brackets behind the name of the node if they say how its shape lies, and are left out

@@ -253,7 +253,8 @@ std::optional<std::string> turned_material_name(std::string_view name, std::arra
     return node;
   }
   const NameTurn turn(along, flips);
-  if (const auto block = block_of_minecraft_material(name)) {
+  const auto block = is_luanti_node(name) ? std::nullopt : block_of_minecraft_material(name);
+  if (block) {
     const auto out = turned_block(*block, turn);
     if (!out) return std::nullopt;
     std::string text = minecraft_material_name(*out);

@@ -18,8 +18,8 @@ namespace runstone {
 ///     facing, axis, rotation, north to down, shape, hinge, half, type and others. If both blocks
 ///     have a shape, that of the result looks like the turned shape.
 ///   - Nodes of Luanti that have a shape change their param2. There is no such state for a node
-///     that only a rule of Minecraft knows ("mcl_core:ladder[param2=3]"), unless its shape stays
-///     the same.
+///     that only a rule of Minecraft knows ("mcl_chests:chest[param2=3]"), unless its shape stays
+///     the same. It never gets states of Minecraft (is_luanti_node()).
 ///   - Any other name changes the same states in its brackets. States that are not written stay so.
 /// A name without such states is returned unchanged. Returns nullopt if there is no such state,
 /// such as a torch upside down. The result is a name of 1 .. 64 bytes, but no table need have it.

@@ -207,7 +207,7 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
 TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one action",
                  "[client_app]") {
   box.select(VoxelBox{{0, 0, 0}, {30, 30, 30}});  // 27,000 voxels; an edit has 1,000
-  REQUIRE(tool.propose(box.fill(1), kNow).has_value());
+  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
   CHECK(tool.is_building());
   CHECK(session.replica().local_edits().all().empty());
   REQUIRE_FALSE(tool.step_build(kNow).has_value());
@@ -216,7 +216,7 @@ TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one 
   CHECK(edits.begin()->second.action == edits.begin()->first);
   CHECK(edits.begin()->second.is_optional);
   CHECK(tool.build_text().starts_with("fill: 0 percent"));
-  CHECK(tool.propose(box.fill(2), kNow).error() ==
+  CHECK(tool.propose(box.fill(session.replica(), 2), kNow).error() ==
         "a fill is under way: wait for it, or stop it first");
   REQUIRE(tool.stop_building());
   const ClientSequence first = edits.begin()->first;
@@ -234,7 +234,7 @@ TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one 
 TEST_CASE_METHOD(Fixture, "a clear of any size begins where the selection was copied",
                  "[client_app]") {
   box.select(VoxelBox{{0, 0, 0}, {8, 8, 8}});
-  REQUIRE(tool.propose(box.fill(kEmpty), kNow).has_value());
+  REQUIRE(tool.propose(box.fill(session.replica(), kEmpty), kNow).has_value());
   CHECK_FALSE(tool.is_building());  // one edit suffices
   CHECK(session.replica().local_edits().all().size() == 1);
 }

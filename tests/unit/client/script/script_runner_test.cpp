@@ -95,6 +95,48 @@ TEST_CASE_METHOD(ScriptBench, "place lays a material as the look means", "[bots]
   CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{4, 6, 6}}, {}, 7});
 }
 
+TEST_CASE_METHOD(ScriptBench, "fences that a script sets, fills, places or digs join", "[bots]") {
+  MaterialTable table;
+  for (const char* name : {"minecraft:stone", "minecraft:oak_fence", "minecraft:oak_fence[east=true]",
+                           "minecraft:oak_fence[west=true]", "minecraft:oak_fence[south=true]",
+                           "minecraft:oak_fence[east=true,west=true]"}) {
+    MaterialInfo info;
+    info.name = name;
+    info.shape = shape_of_material_name(name).value_or(Shape{});
+    REQUIRE(table.add(std::move(info)));
+  }
+  static_cast<void>(host.tools.set_materials(table));  // "sand" is a fence, "stone" joins its south
+  host.voxels[{0, 0, 0}] = 2;
+  run("set 1 0 0 sand");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{1, 0, 0}}, {}, 4});
+  CHECK(host.edits[0].part == ActionPart::first);
+  CHECK(host.edits[1].edit ==
+        EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 2}, 3});
+  CHECK(host.edits[1].part == ActionPart::next);
+  // A member that is named with its states is meant as it is.
+  host.edits.clear();
+  run("set 1 0 0 stone");
+  REQUIRE(host.edits.size() == 1);
+  CHECK(host.edits[0].edit.material == 5);
+  host.edits.clear();
+  run("box 1 0 0 3 0 0 sand");
+  REQUIRE(host.edits.size() == 2);
+  const auto& row = std::get<runstone::Paste>(host.edits[0].edit.shape);
+  CHECK(row.clipboard->at({0, 0, 0}) == Material{6});
+  CHECK(row.clipboard->at({2, 0, 0}) == Material{4});
+  host.edits.clear();
+  host.voxels[{0, 0, 0}] = 3;
+  host.voxels[{1, 0, 0}] = 4;
+  host.hit = RayHit{{1, 0, 0}, 4, Direction::pos_y, 2};
+  host.takes = false;  // the neighbour that is refused is no failure of its own
+  run("dig");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[1].edit ==
+        EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 3}, 2});
+  CHECK(runner->failures().size() == 1);
+}
+
 TEST_CASE_METHOD(ScriptBench, "a solid copy leaves the voxels alone where it is empty", "[bots]") {
   run("copy a 0 0 0 1 0 0 solid\npaste a 1 2 3\n");
   REQUIRE(host.edits.size() == 1);

@@ -198,7 +198,7 @@ TEST_CASE_METHOD(FlatBench, "a selection is copied, cut, pasted, turned, stacked
   CHECK(at({9, 0, 10}) == kEmpty);
   CHECK(at({9, 0, 12}) == 2);
   CHECK(box.selection() == VoxelBox{{9, 0, 12}, {12, 1, 13}});
-  const auto filled = box.fill(1);
+  const auto filled = box.fill(replica, 1);
   REQUIRE(filled);
   predict(*filled);
   CHECK(at({10, 0, 12}) == 1);

@@ -66,6 +66,51 @@ struct JoinBench {
     }
     return made.size();
   }
+  /// Fills or clears a box, and returns the number of edits.
+  std::size_t fill(const VoxelBox& box, std::string_view name, Mask mask = {}) {
+    const Material material = name.empty() ? kEmpty : id_in(table, name);
+    const ToolAction made =
+        joined_box({FillBox{box}, mask, material}, table,
+                   [&](VoxelPos pos) -> std::optional<Material> { return at(pos); });
+    CHECK(made.has_followers == (made.edits.size() > 1));
+    for (const EditDescriptor& edit : made.edits) {
+      REQUIRE(validate(edit));
+      const auto set = [&](VoxelPos pos, Material now) {
+        if (edit.mask.admits(at(pos))) voxels[pos] = now;
+      };
+      if (const auto* one = std::get_if<SetVoxel>(&edit.shape)) {
+        set(one->at, edit.material);
+      } else if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+        for_each_touched(*paste, set);
+      } else {
+        for_each_voxel(std::get<FillBox>(edit.shape).box,
+                       [&](VoxelPos pos) { set(pos, edit.material); });
+      }
+    }
+    return made.edits.size();
+  }
+  Material at(VoxelPos pos) const {
+    const auto found = voxels.find(pos);
+    return found == voxels.end() ? kEmpty : found->second;
+  }
+  template <class Visit>
+  static void for_each_voxel(const VoxelBox& box, const Visit& visit) {
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
+        for (std::int32_t x = box.min.x; x < box.max.x; ++x) visit(VoxelPos{x, y, z});
+      }
+    }
+  }
+  template <class Set>
+  static void for_each_touched(const Paste& paste, const Set& set) {
+    const auto& sides = paste.clipboard->sides();
+    for_each_voxel({{0, 0, 0}, {sides.x, sides.y, sides.z}}, [&](VoxelPos in) {
+      const auto cell = paste.clipboard->at({static_cast<std::uint8_t>(in.x),
+                                             static_cast<std::uint8_t>(in.y),
+                                             static_cast<std::uint8_t>(in.z)});
+      if (cell) set({paste.at.x + in.x, paste.at.y + in.y, paste.at.z + in.z}, *cell);
+    });
+  }
   std::string name(VoxelPos at) const {
     const std::string& full = table[voxels.at(at)].name;
     return full.substr(full.find(':') + 1);
@@ -155,6 +200,93 @@ TEST_CASE_METHOD(JoinBench, "only members of the table are set", "[tools][hands]
   CHECK(name(kEastVoxel) == "nether_brick_fence[west=true]");
   is_known = false;
   CHECK(place({9, 0, 9}, "minecraft:oak_fence") == 1);
+}
+
+TEST_CASE_METHOD(JoinBench, "a fence that fills a line joins, and its neighbours join it",
+                 "[tools][hands]") {
+  set(kWestVoxel, "stone");
+  set({5, 0, 0}, "minecraft:oak_fence[south=true]");
+  set({2, 0, -1}, "minecraft:oak_fence");
+  CHECK(fill({{0, 0, 0}, {5, 2, 1}}, "minecraft:oak_fence[north=true]") == 3);
+  CHECK(name(kHereVoxel) == "oak_fence[east=true,west=true]");
+  CHECK(name(kEastVoxel) == "oak_fence[east=true,west=true]");
+  CHECK(name({2, 0, 0}) == "oak_fence[east=true,north=true,west=true]");
+  CHECK(name({5, 0, 0}) == "oak_fence[south=true,west=true]");
+  CHECK(name({2, 0, -1}) == "oak_fence[south=true]");
+  // The upper row has other neighbours.
+  CHECK(name({0, 1, 0}) == "oak_fence[east=true]");
+  CHECK(name({4, 1, 0}) == "oak_fence[west=true]");
+  // The row is cleared, and what lies beside it parts.
+  CHECK(fill({{1, 0, 0}, {5, 1, 1}}, "") == 4);
+  CHECK(name(kHereVoxel) == "oak_fence[west=true]");
+  CHECK(name({2, 0, -1}) == "oak_fence");
+  CHECK(name({5, 0, 0}) == "oak_fence[south=true]");
+}
+
+TEST_CASE_METHOD(JoinBench, "a fill joins what its mask leaves alone", "[tools][hands]") {
+  set({0, 0, 1}, "stone");
+  set({0, 0, 2}, "minecraft:oak_fence");
+  fill({{0, 0, 0}, {1, 1, 4}}, "minecraft:oak_fence", {MaskKind::only_empty, kEmpty});
+  CHECK(voxels.at({0, 0, 1}) == id_in(table, "stone"));
+  CHECK(name(kHereVoxel) == "oak_fence[south=true]");
+  CHECK(name({0, 0, 2}) == "oak_fence[south=true]");  // towards the stone it stays as it was
+  CHECK(name({0, 0, 3}) == "oak_fence[north=true]");
+}
+
+TEST_CASE_METHOD(JoinBench, "a straight filled wall has posts at its ends alone",
+                 "[tools][hands]") {
+  CHECK(fill({{-1, 0, 0}, {2, 1, 1}}, "minecraft:cobblestone_wall") == 1);
+  CHECK(name(kWestVoxel) == "cobblestone_wall[east=low]");
+  CHECK(name(kHereVoxel) == "cobblestone_wall[east=low,up=false,west=low]");
+  CHECK(name(kEastVoxel) == "cobblestone_wall[west=low]");
+}
+
+TEST_CASE_METHOD(JoinBench, "boxes that are thick or large are filled as they are",
+                 "[tools][hands]") {
+  set({-1, 0, 0}, "minecraft:oak_fence");
+  for (const VoxelBox& box :
+       {VoxelBox{{0, 0, 0}, {2, 1, 2}}, VoxelBox{{0, 0, 0}, {129, 1, 1}},
+        VoxelBox{{0, 0, 0}, {1, 65, 64}}, VoxelBox{{0, 0, 0}, {0, 1, 1}}}) {
+    const EditDescriptor whole{FillBox{box}, {}, id_in(table, "minecraft:oak_fence")};
+    const auto reads = [&](VoxelPos pos) -> std::optional<Material> { return at(pos); };
+    CHECK(joined_box(whole, table, reads) == ToolAction(std::vector{whole}));
+  }
+  // A line of another material changes its neighbours alone.
+  CHECK(fill({{0, 0, 0}, {1, 1, 3}}, "stone") == 2);
+  CHECK(name({-1, 0, 0}) == "oak_fence[east=true]");
+  CHECK(at({0, 0, 2}) == id_in(table, "stone"));
+}
+
+TEST_CASE("the box tool and a filled selection join fences", "[tools][hands]") {
+  ToolBench bench;
+  bench.show_flat();
+  const MaterialTable table = joins_table();
+  static_cast<void>(bench.box.set_materials(table));
+  const Material fence = id_in(table, "minecraft:oak_fence");
+  REQUIRE(bench.box.choose("box"));
+  const auto press = [&](VoxelPos at) {
+    const auto made = bench.box.press(
+        bench.replica, bench.aim_at(at, Direction::pos_y, fence), ToolButton::place);
+    REQUIRE(made);
+    bench.predict(*made);
+  };
+  press({3, -1, 3});
+  press({6, -1, 3});
+  CHECK(bench.at({3, 0, 3}) == id_in(table, "minecraft:oak_fence[east=true]"));
+  CHECK(bench.at({5, 0, 3}) == id_in(table, "minecraft:oak_fence[east=true,west=true]"));
+  bench.box.select(VoxelBox{{6, 0, 4}, {7, 1, 8}});
+  const auto filled = bench.box.fill(bench.replica, fence);
+  REQUIRE(filled);
+  bench.predict(*filled);
+  CHECK(bench.at({6, 0, 3}) == id_in(table, "minecraft:oak_fence[south=true,west=true]"));
+  CHECK(bench.at({6, 0, 7}) == id_in(table, "minecraft:oak_fence[north=true]"));
+  const auto replaced = bench.box.replace(bench.replica, fence, id_in(table, "stone"));
+  REQUIRE(replaced);
+  CHECK(replaced->edits.size() == 1);  // no voxel is a fence that joins nothing
+  const auto cut = bench.box.cut(bench.replica, false);
+  REQUIRE(cut);
+  bench.predict(*cut);
+  CHECK(bench.at({6, 0, 3}) == id_in(table, "minecraft:oak_fence[west=true]"));
 }
 
 TEST_CASE("the voxel tool joins fences, as edits that follow the first one", "[tools][hands]") {

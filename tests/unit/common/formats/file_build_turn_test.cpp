@@ -114,6 +114,20 @@ TEST_CASE("a turned node keeps its other states", "[formats][turn]") {
   CHECK(left(node("stairs:stair_wood[a=b,param2=3]", "")) == "stairs:stair_wood[a=b]|");
 }
 
+TEST_CASE("a node with a param2 gets no states of Minecraft", "[formats][turn]") {
+  const auto node = [](const std::string& name, const std::string& states) {
+    BuildMaterial out = file_material(name, states, {9, 9, 9, 255});
+    out.row.shape = shape_of_material_name(name).value_or(Shape{});
+    return out;
+  };
+  CHECK(left(node("mcl_core:ladder[param2=5]", "param2=5")) ==
+        "mcl_core:ladder[param2=3]|param2=3");
+  CHECK(left(node("mod:ladder", "param2=3")) == "none");
+  CHECK(left(node("mod:fir_door", "param2=3")) == "none");
+  CHECK(left(node("mod:chest", "param2=3")) == "mod:chest|param2=3");
+  CHECK(left(node("mod:fir_wood", "param2=3")) == "mod:fir_wood|param2=3");
+}
+
 TEST_CASE("a shape of its own is turned with its material", "[formats][turn]") {
   BuildMaterial bench = file_material("bench", "", {9, 9, 9, 255});
   bench.row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 4}}, {{0, 8, 0}, {4, 16, 4}}}};

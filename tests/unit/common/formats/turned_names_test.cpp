@@ -101,9 +101,20 @@ TEST_CASE("nodes of Luanti get another param2", "[formats][shapes]") {
   }
 }
 
+TEST_CASE("ladders of VoxeLibre hang on the wall that their param2 says", "[formats][shapes]") {
+  // From the south to the west, and on to the north.
+  CHECK(quarter("mcl_core:ladder[param2=4]") == "mcl_core:ladder[param2=3]");
+  CHECK(quarter("mcl_core:ladder[param2=3]") == "mcl_core:ladder[param2=5]");
+  CHECK(mirrored_x("mcl_core:ladder[param2=3]") == "mcl_core:ladder[param2=2]");
+  CHECK(upside_down_name("mcl_core:ladder") == "mcl_core:ladder[param2=1]");
+}
+
 TEST_CASE("a node whose param2 says nothing of its shape has no name for another lie",
           "[formats][shapes]") {
-  CHECK(quarter("mcl_core:ladder[param2=3]") == "none");
+  CHECK(quarter("mod:ladder[param2=3]") == "none");
+  CHECK(quarter("mcl_doors:iron_door") == "none");  // not [facing=east]
+  CHECK(quarter("mcl_chests:chest") == "mcl_chests:chest");
+  CHECK(quarter("mod:ladder") == "mod:ladder[facing=east]");  // a block of a mod of Minecraft
   CHECK(quarter("mcl_fences:oak_fence[param2=3]") == "mcl_fences:oak_fence[param2=3]");
   CHECK(quarter("default:chest[param2=3]") == "default:chest[param2=3]");
 }
