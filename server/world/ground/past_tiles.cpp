@@ -95,7 +95,7 @@ void PastTiles::move_in_time(Viewer& viewer, const Clocks& now) {
 }
 
 void PastTiles::want_all_again(Viewer& viewer, const Clocks& now) {
-  if (!viewer.sees_past() || !viewer.tiles.interest) return;
+  if (!viewer.tiles.interest) return;
   board_.mark_outdated(now);
   std::vector<ChunkKey> left;
   for (const ChunkKey& root : viewer.tiles.interest->roots())

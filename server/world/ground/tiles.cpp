@@ -106,7 +106,11 @@ std::size_t Tiles::set_view(Viewer& viewer, const View& view, std::span<const Vi
 void Tiles::follow_rules(const Clocks& now) {
   if (std::exchange(rules_, base_.order.tile_rules()) == base_.order.tile_rules()) return;
   board_.make_all_again(now);
-  for (Viewer* const viewer : base_.open()) past_.want_all_again(*viewer, now);
+  for (Viewer* const viewer : base_.open()) {
+    if (!viewer->sees_past()) continue;
+    past_.want_all_again(*viewer, now);
+    base_.deliveries.insert(viewer->id());
+  }
 }
 
 void Tiles::request(Viewer& viewer, const Clocks& now) {

@@ -123,3 +123,31 @@ TEST_CASE_METHOD(TileBench, "tiles are claimed after chunks on the next connecti
   replica.adopt(kTile, kept[0].second, 6);
   CHECK(replica.take_claims().size() == 1);
 }
+
+TEST_CASE_METHOD(TileBench, "tiles that come after materials got shapes are not kept or claimed",
+                 "[replica][shapes]") {
+  SessionParameters with_tiles = parameters();
+  with_tiles.tile_rules = 1;
+  static_cast<void>(replica.open(with_tiles));
+  SplitMix64 rng{6};
+  const auto tile = [&] {
+    Chunk made{some_tile(rng), {}, {}};
+    made.digest = digest_of(made.voxels);
+    return made;
+  };
+  const ChunkKey other{1, {1, 0, 0}}, third{1, {0, 0, 1}};
+  replica.receive(chunks_of(ChunkSnapshot{kTile, tile()}, 2), kNow);
+  replica.end_tile_rules();
+  replica.receive(chunks_of(ChunkSnapshot{other, tile()}, 2), kNow);
+  CHECK(replica.take_missing_tiles().empty());  // a cache has none of these rules
+  replica.adopt(third, std::make_shared<const Chunk>(tile()), 5);
+  CHECK(replica.far_tiles().count() == 2);
+  const auto kept = replica.take_for_cache(9);
+  REQUIRE(kept.size() == 1);
+  CHECK(kept[0].first == kTile);
+  // The world has the number of before again: its newest edits were lost.
+  static_cast<void>(replica.open(with_tiles));
+  const auto claims = replica.take_claims();
+  CHECK(std::ranges::none_of(claims, [&](const auto& claim) { return claim.key == other; }));
+  CHECK(replica.far_tiles().count() == 2);
+}

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/formats/shape_names.hpp"
+
 using namespace runstone;
 using runstone::test::FakeScriptHost;
 using runstone::test::ScriptBench;

@@ -103,7 +103,7 @@ struct JoinBench {
   }
   template <class Set>
   static void for_each_touched(const Paste& paste, const Set& set) {
-    const auto& sides = paste.clipboard->sides();
+    const Extent sides = paste.clipboard->extent();
     for_each_voxel({{0, 0, 0}, {sides.x, sides.y, sides.z}}, [&](VoxelPos in) {
       const auto cell = paste.clipboard->at({static_cast<std::uint8_t>(in.x),
                                              static_cast<std::uint8_t>(in.y),

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/edits/descriptor/given_shapes.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/map/map_world.hpp"
 #include "server/store/store.hpp"
 #include "tests/support/core/temp_folder.hpp"
@@ -151,4 +153,43 @@ TEST_CASE("requests that draw nothing are answered before tiles, and do not star
   CHECK(tile > 2);
   CHECK(tile < order.rfind('r'));  // it did not wait for all of them
   CHECK(order.ends_with("tt"));
+}
+
+TEST_CASE("the map is drawn again when materials get shapes", "[map][shapes]") {
+  const TempFolder folder;
+  const auto store = *create_world(folder / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  EditRecord record;
+  record.version = {store->epoch(), 1};
+  record.op = {1, 5, 1};
+  record.time_us = 1'700'000'000'000'000;
+  record.edit = {FillBox{{{0, 0, 0}, {40, 3, 40}}}, {}, 2};
+  const PlayerRow player = sample_player(1);
+  REQUIRE(store->append({&player, 1}, std::vector{record}).has_value());
+
+  MapCaches caches(1 << 20);
+  MapWorld world(folder / "w", caches);
+  const auto goes_on = [] { return true; };
+  constexpr TimeUs kLater = 1'000'000;
+  REQUIRE(world.refresh(kLater, kLater).has_value());
+  std::vector<std::string> before;
+  for (const std::uint8_t zoom : {0, 1, 2})
+    before.push_back(**world.draw(world.present(), {zoom, 0, 0}, goes_on));
+  CHECK(world.tile_rules() == kTileRules);
+  CHECK(world.changes().after(1).is_complete);
+
+  const GivenShape plant{2, {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}}};
+  record.version.seq = 2;
+  record.op = {0, 6, 1};
+  record.cause = Cause::materials;
+  record.edit = shapes_edit({{plant}});
+  REQUIRE(store->append({}, std::vector{record}).has_value());
+  REQUIRE(world.refresh(2 * kLater, 2 * kLater).has_value());
+  CHECK(world.tile_rules() == tile_rules_of(tile_shapes_number(world.materials())));
+  CHECK(world.tile_rules() != kTileRules);
+  CHECK_FALSE(world.changes().after(1).is_complete);  // browsers ask for all tiles again
+  for (const std::uint8_t zoom : {0, 1, 2}) {
+    CAPTURE(static_cast<int>(zoom));
+    CHECK(**world.draw(world.present(), {zoom, 0, 0}, goes_on) != before[zoom]);
+  }
 }

@@ -38,7 +38,7 @@ class FillingSink final : public WorldSink {
                                   const std::optional<Keyframe>& /*keyframe*/) override {
     return is_full ? no_room() : StoreResult<void>{};
   }
-  StoreResult<void> save_tiles(ChunkSpan /*tiles*/) override {
+  StoreResult<void> save_tiles(ChunkSpan /*tiles*/, std::uint32_t /*rules*/) override {
     return is_full ? no_room() : StoreResult<void>{};
   }
 

@@ -2,7 +2,10 @@
 // format.
 #include <catch2/catch.hpp>
 
+#include "common/sqlite/sqlite_file.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/copy_stored_world.hpp"
+#include "server/store/meta_table.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "server/store/world_schema.hpp"
 #include "tests/support/sql/raw_sql.hpp"
@@ -91,36 +94,79 @@ TEST_CASE("records of shapes that do not fit the table are refused", "[store][ma
   CHECK(store->append({}, std::vector{record_of_shapes(1, {{1, kSlab}})}).has_value());
 }
 
-TEST_CASE("shapes of materials that were there before end the tiles that were made before",
+TEST_CASE("shapes end the stored tiles unless their materials are new", "[store][materials][shapes]") {
+  TempPlace place;
+  const auto tiles = [] {
+    SplitMix64 rng(3);
+    std::vector<std::pair<ChunkKey, ChunkPtr>> out;
+    Chunk tile{random_chunk(rng, Extent::cube(kSampleEdge), AxisOrder::zxy, 4, ChunkShape::boxes),
+               {}, {}};
+    tile.digest = digest_of(tile.voxels);
+    out.emplace_back(ChunkKey{1, {0, 0, 0}}, std::make_shared<const Chunk>(std::move(tile)));
+    return out;
+  }();
+  const ChunkKey key = tiles[0].first;
+  auto store = *create_world(place / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  REQUIRE(store->save_tiles(tiles).has_value());
+  const auto rules = [&] { return tile_rules_of(tile_shapes_number(*store->materials())); };
+  const auto next = static_cast<Material>(store->meta().materials.size());
+
+  EditRecord added = record_of_shapes(1, {});
+  added.edit = materials_edit({next, {{"ramp", {9, 9, 9, 255}}}});
+  REQUIRE(store->append({}, std::vector{added, record_of_shapes(2, {{next, kSlab}})}).has_value());
+  const std::uint32_t with_ramp = rules();
+  CHECK(with_ramp != kTileRules);
+  CHECK_FALSE(store->load_tile(key)->has_value());
+  CHECK(store->load_tile(key, with_ramp)->has_value());
+  CHECK(store->tile_keys(with_ramp)->size() == 1);
+
+  const auto reader = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(reader->load_tile(key, with_ramp)->has_value());
+  REQUIRE(store->append({}, std::vector{record_of_shapes(3, {{1, kPlant}})}).has_value());
+  const std::uint32_t with_plant = rules();
+  CHECK(with_plant != with_ramp);
+  for (const std::uint32_t number : {kTileRules, with_ramp, with_plant}) {
+    CAPTURE(number);
+    CHECK_FALSE(store->load_tile(key, number)->has_value());
+    CHECK_FALSE(reader->load_tile(key, number)->has_value());  // it was opened before
+  }
+  // Tiles that were made before the record are not saved behind it.
+  REQUIRE(store->save_tiles(tiles, with_ramp).has_value());
+  CHECK(store->tile_keys(with_plant)->empty());
+  REQUIRE(store->save_tiles(tiles, with_plant).has_value());
+  CHECK(reader->load_tile(key, with_plant)->has_value());
+
+  // They stay over a start and a compaction.
+  store.reset();
+  store = *open_world(place / "w", StoreAccess::read_write);
+  CHECK(rules() == with_plant);
+  CHECK(store->load_tile(key, with_plant)->has_value());
+}
+
+TEST_CASE("a start deletes tiles of rules that are not those of the materials",
           "[store][materials][shapes][sqlite]") {
   TempPlace place;
   if (place.is_postgres()) return;
-  const std::string world = place / "w", file = world + "/world.sqlite";
+  make_shaped_world(place / "w");
+  const std::string file = place / "w" + "/world.sqlite";
   const auto rules = [&] {
     return raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'");
   };
-  Material next = 0;
-  {
-    auto store = *create_world(world, sample_meta());
-    REQUIRE(store->raise_epoch().has_value());
-    next = static_cast<Material>(store->meta().materials.size());
-    EditRecord added = record_of_shapes(1, {});
-    added.edit = materials_edit({next, {{"ramp", {9, 9, 9, 255}}}});
-    REQUIRE(
-        store->append({}, std::vector{added, record_of_shapes(2, {{next, kSlab}})}).has_value());
+  const std::string present = rules();
+  CHECK(present != std::to_string(kTileRules));
+  for (const std::int64_t other : {std::int64_t{0}, std::int64_t{kTileRules}}) {
+    {
+      auto database = *sql::open_sqlite(file, sql::SqliteMode::write);
+      auto meta = *MetaTable::open(database);
+      REQUIRE(meta.put("tile_rules", other).has_value());
+    }
+    CHECK(rules() == std::to_string(other));
+    static_cast<void>(*open_world(place / "w", StoreAccess::read_only));
+    CHECK(rules() == std::to_string(other));
+    static_cast<void>(*open_world(place / "w", StoreAccess::read_write));
+    CHECK(rules() == present);
   }
-  const std::string today = rules();
-  CHECK(today != "0");
-  {
-    auto store = *open_world(world, StoreAccess::read_write);
-    REQUIRE(store->raise_epoch().has_value());
-    EditRecord given = record_of_shapes(3, {{1, kPlant}});
-    given.version.epoch = 2;
-    REQUIRE(store->append({}, std::vector{given}).has_value());
-  }
-  CHECK(rules() == "0");
-  static_cast<void>(*open_world(world, StoreAccess::read_write));
-  CHECK(rules() == today);
 }
 
 TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",

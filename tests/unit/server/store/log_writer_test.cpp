@@ -67,7 +67,7 @@ class FakeSink final : public WorldSink {
       return failure(StoreError{StoreError::Kind::full, "w", "keyframe", "disk full"});
     return commit({{}, {}, chunks.size(), {}, keyframe});
   }
-  StoreResult<void> save_tiles(ChunkSpan tiles) override {
+  StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t /*rules*/) override {
     return commit({{}, {}, tiles.size(), {}});
   }
   StoreResult<void> save_build_part(std::uint64_t content, std::uint32_t part,

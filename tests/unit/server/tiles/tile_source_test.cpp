@@ -105,6 +105,34 @@ TEST_CASE("a tile that was made lately is used until an edit below it is newer",
   CHECK(world.make({1, {0, 0, 0}}).back().tile->version == Version{1, 3});
 }
 
+TEST_CASE("tiles of other rules are neither used nor current", "[tiles][shapes]") {
+  TileWorld world({"empty", 1, 0, ""});
+  world.edit({{0, 0, 0}});
+  world.save_all();
+  const ChunkKey key{2, {0, 0, 0}};
+  const auto first = world.make(key);
+  world.save_tiles(first);
+  const Version version = first.back().tile->version;
+  const std::uint64_t digest = first.back().for_clients()->digest.lane[0];
+  CHECK(world.source->is_current(key, version, digest, kTileRules));
+
+  TileVisibility other(*world.visibility);
+  other.rules = tile_rules_of(7);
+  const auto made = *world.source->make(world.request(key), other);
+  CHECK_FALSE(made.back().is_known);
+  CHECK(made.back().rules == other.rules);
+  CHECK(*made.back().tile == *first.back().tile);  // the materials are cubes still
+  CHECK(world.source->make(world.request(key), other)->back().is_known);
+  // The tile of the other rules is in memory: its digest does not count.
+  CHECK(world.source->is_current(key, version, digest + 1, kTileRules));
+  CHECK_FALSE(world.source->is_current(key, version, digest + 1, other.rules));
+  // The store has the number of its own rules.
+  REQUIRE(world.store->save_tiles({}, other.rules).has_value());
+  CHECK(world.store->load_tile(key).value().has_value());
+  CHECK_FALSE(world.store->load_tile(key, other.rules).value().has_value());
+  CHECK(world.store->tile_keys(other.rules)->empty());
+}
+
 TEST_CASE("a source that reads no stored tiles makes all of chunks", "[tiles]") {
   TileWorld world({"empty", 1, 0, ""});
   world.edit({{0, 0, 0}});

@@ -395,5 +395,50 @@ TEST_CASE("the next owner does not keep the full disk of the one before", "[worl
   CHECK(bench.database.last() == 1);
 }
 
+TEST_CASE("shapes go on over a takeover, also those that the owner did not write",
+          "[world][servers][shapes]") {
+  const Shape slab{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  const Shape plant{ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  ClusterBench bench(2);
+  for (std::size_t server = 0; server < 3; ++server)
+    bench.join(server, 1, static_cast<std::uint8_t>(server + 1));
+  const auto give = [&](std::size_t server, Material material, const Shape& shape) {
+    REQUIRE(bench.world(server).changes().give_shapes({{material, shape}}, bench.now()).has_value());
+    bench.run();
+  };
+  give(0, 1, slab);
+  bench.durable_max = 1;
+  give(0, 3, plant);
+  CHECK(bench.database.last() == 1);
+  for (const std::size_t server : {1U, 2U}) {
+    CHECK(bench.world(server).order().materials() == bench.world(0).order().materials());
+    CHECK(bench.world(server).order().tile_rules() == bench.world(0).order().tile_rules());
+    CHECK(bench.sent<ShapesGiven>(server, 1).size() == 2);
+  }
+  const MaterialTable before = bench.world(0).order().materials();
+  bench.lose_owner();
+  bench.durable_max = 100;
+  REQUIRE(bench.take_over(1));
+  CHECK(bench.database.last() == 2);
+  REQUIRE(given_shapes_of(bench.database.records[1].edit) != nullptr);
+  CHECK(*given_shapes_of(bench.database.records[1].edit) == GivenShapes{{{3, plant}}});
+  CHECK(bench.world(1).order().materials() == before);
+  bench.connect(2);
+  for (int i = 0; i < 3; ++i) bench.tick();
+  CHECK_FALSE(bench.world(2).cluster().has_forked());
+
+  // The new owner gives each material a shape once, as the owner before would.
+  CHECK_FALSE(bench.world(1).changes().give_shapes({{3, slab}}, bench.now()).has_value());
+  give(1, 2, slab);
+  CHECK(bench.world(2).order().materials() == bench.world(1).order().materials());
+  CHECK(bench.world(2).order().tile_rules() == bench.world(1).order().tile_rules());
+  for (const std::size_t server : {1U, 2U}) {
+    CHECK(bench.is_open(server, 1));
+    CHECK(bench.sent<ShapesGiven>(server, 1).size() == 3);
+    bench.join(server, 9, static_cast<std::uint8_t>(server + 5));
+    CHECK(bench.sent<Welcome>(server, 9).at(0).materials == bench.world(1).order().materials());
+  }
+}
+
 }  // namespace
 }  // namespace runstone::test

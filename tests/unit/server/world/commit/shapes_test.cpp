@@ -161,4 +161,40 @@ TEST_CASE("shapes that do not fit the table are refused, all of them or none",
   CHECK(refusal({{2, kSlab}}).find("try again later") != std::string::npos);
 }
 
+TEST_CASE("new materials and all of their shapes are one commit, or none of them is ordered",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  // More shapes than one record has.
+  std::vector<MaterialRow> rows;
+  for (std::size_t i = 0; i < kAddedMaterialsMax; ++i) {
+    rows.push_back(row_with(("m" + std::to_string(i)).c_str(), kSlab));
+    auto& boxes = rows.back().shape.boxes;
+    boxes.clear();
+    for (std::uint8_t n = 0; n < 16; ++n) {
+      const auto height = static_cast<std::uint8_t>(1 + (i >> (n % 8) & 1) + n % 3);
+      boxes.push_back({{n, 0, static_cast<std::uint8_t>(n / 2)},
+                       {static_cast<std::uint8_t>(n + 1), height, 16}});
+    }
+    boxes[0].max = {1, static_cast<std::uint8_t>(1 + i % 16),
+                    static_cast<std::uint8_t>(1 + i / 16 % 16)};
+    boxes[1].min[2] = static_cast<std::uint8_t>(i / 256);
+  }
+  const std::size_t table = bench.server.order().materials().size();
+  bench.environment.log_records_max = 1;
+  const auto refused = bench.server.changes().add_materials(rows, bench.now());
+  REQUIRE_FALSE(refused.has_value());
+  INFO(refused.error().what);
+  CHECK(refused.error().what.find("log_queue_records") != std::string::npos);
+  CHECK(bench.environment.records.empty());
+  CHECK(bench.server.order().materials().size() == table);
+
+  bench.environment.log_records_max = 1'000;
+  const auto commits = bench.server.counters().commits;
+  REQUIRE(bench.server.changes().add_materials(rows, bench.now()).has_value());
+  CHECK(bench.environment.records.size() >= 3);
+  CHECK(bench.server.counters().commits == commits + 1);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    CHECK(bench.server.order().materials()[static_cast<Material>(table + i)].shape == rows[i].shape);
+}
+
 }  // namespace runstone::test

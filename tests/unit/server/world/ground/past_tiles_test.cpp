@@ -1,6 +1,7 @@
 #include "server/world/ground/past_tiles.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "server/world/ground/tiles.hpp"
 #include "tests/unit/server/world/ground/tile_bench.hpp"
@@ -109,6 +110,37 @@ TEST_CASE("each move in time brings the tiles that differ, and the return the li
   CHECK(bench.environment.past_tile_requests.empty());
   bench.answer_tiles();
   for (const ChunkKey& key : kAboveEdit) CHECK(bench.shown(key) == Sequence{2});
+}
+
+TEST_CASE("past tiles are made again when materials get shapes, those under way too",
+          "[tiles][travel][shapes]") {
+  PastBench bench;
+  const auto give = [&](Material material) {
+    const GivenShape slab{material, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}};
+    REQUIRE(bench.server.changes().give_shapes({slab}, bench.now()).has_value());
+  };
+  bench.go_to(0);
+  CHECK(bench.answer_past() == kAboveEdit);
+  bench.environment.snapshots.clear();
+  give(1);
+  bench.tick();
+  auto again = bench.answer_past();
+  std::ranges::sort(again, std::greater<>());
+  CHECK(again == kAboveEdit);
+  for (const ChunkKey& key : kAboveEdit) CHECK(bench.shown(key) == Sequence{0});
+
+  bench.go_to(1);
+  std::vector<std::pair<PastRequest, MadeTile>> old;
+  for (const PastRequest& one : bench.take_past()) old.emplace_back(one, bench.past(one.second));
+  REQUIRE_FALSE(old.empty());
+  bench.environment.snapshots.clear();
+  give(2);
+  for (const auto& [one, tile] : old)
+    bench.server.ground().tiles().past_made(one.first, one.second, {tile}, bench.now());
+  CHECK(bench.environment.snapshots.empty());
+  bench.tick();
+  bench.answer_past();
+  for (const ChunkKey& key : kAboveEdit) CHECK(bench.shown(key) == Sequence{1});
 }
 
 TEST_CASE("a session may move to the moment that it sees while its tiles are made",

@@ -41,7 +41,9 @@ struct TileBench : WorldBench {
     const bool has_ground = key.at.y == 0;
     Chunk tile = has_ground ? dotted_chunk(kEdge) : empty_chunk(kEdge);
     tile.version = {};
-    return {key, std::make_shared<const Chunk>(std::move(tile)), through, false, false};
+    MadeTile out{key, std::make_shared<const Chunk>(std::move(tile)), through, false, false};
+    out.rules = server.order().tile_rules();
+    return out;
   }
   /// The tile has the newest version of its fresh chunks.
   void answer(const TileRequest& request) {
