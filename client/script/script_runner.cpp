@@ -233,8 +233,7 @@ ScriptRunner::Progress ScriptRunner::propose_joined(const EditDescriptor& edit) 
 
 ScriptRunner::Progress ScriptRunner::propose_named(const EditDescriptor& edit) {
   const MaterialTable& table = host_.tool_box().materials();
-  const bool has_states =
-      table.knows(edit.material) && table[edit.material].name.ends_with(']');
+  const bool has_states = table.knows(edit.material) && table[edit.material].name.ends_with(']');
   if (!has_states) return propose_joined(edit);
   start_edits(ToolAction(std::vector{edit}));
   return propose_edits();

@@ -106,8 +106,7 @@ std::optional<BuildMaterial> turned_build_material(const BuildMaterial& material
   BuildMaterial out = material;
   const bool is_node = turned_node_name(name, {Axis::x, Axis::y, Axis::z}, 0).has_value();
   const bool is_other_node = !is_node && is_luanti_node(name, material.states);
-  const auto block =
-      is_node || is_other_node ? std::nullopt : block_of_minecraft_material(name);
+  const auto block = is_node || is_other_node ? std::nullopt : block_of_minecraft_material(name);
   const bool is_turned = is_node         ? turn_node(lie, out)
                          : is_other_node ? stays_node(lie, out)
                          : block         ? turn_block(*block, lie, out)

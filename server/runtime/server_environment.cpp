@@ -175,8 +175,7 @@ bool ServerEnvironment::is_tile_current(const CachedChunk& copy) const {
 }
 
 void ServerEnvironment::save_tiles(std::vector<std::pair<ChunkKey, ChunkPtr>> tiles) {
-  if (log_ != nullptr)
-    tiles_.save(std::move(tiles), world_->order().tile_rules(), log_->writer());
+  if (log_ != nullptr) tiles_.save(std::move(tiles), world_->order().tile_rules(), log_->writer());
 }
 
 void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {

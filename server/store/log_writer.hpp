@@ -151,10 +151,10 @@ class LogWriter {
   struct Job {
     SnapshotChunks chunks;
     std::optional<Sequence> checkpoint;
-    std::size_t written = 0;           // chunks or parts of the file that are on disk
-    std::optional<Keyframe> keyframe;  // only in a job for a keyframe
-    JobDone done;                      // in a job for a keyframe or for tiles
-    std::optional<std::uint32_t> tile_rules;  // only in a job for tiles
+    std::size_t written = 0;                      // chunks or parts of the file that are on disk
+    std::optional<Keyframe> keyframe;             // only in a job for a keyframe
+    JobDone done;                                 // in a job for a keyframe or for tiles
+    std::optional<std::uint32_t> tile_rules;      // only in a job for tiles
     std::shared_ptr<const Bytes> file = nullptr;  // only in a job for the file of a build
     std::uint64_t content = 0;
     bool removes_file = false;  // only in a job that removes the file of a build

@@ -23,8 +23,7 @@ std::string has_key() {
 /// True if the tiles were made by the rules that the parameter names. One statement reads row and
 /// rules at one moment: another program may replace both meanwhile.
 std::string has_rules(const sql::Database& database, const std::string& parameter) {
-  const char* const value =
-      database.dialect() == sql::Dialect::sqlite ? "value" : "integer_value";
+  const char* const value = database.dialect() == sql::Dialect::sqlite ? "value" : "integer_value";
   return parameter + " = (SELECT " + value + " FROM meta WHERE key = 'tile_rules')";
 }
 

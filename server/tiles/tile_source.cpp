@@ -84,8 +84,8 @@ class TileSource::Making {
     if (!source_.options_.reads_stored_tiles) return out;
     ++steps_;
     StoreResult<std::optional<Chunk>> row = std::optional<Chunk>();
-    const auto read =
-        source_.chunks_.with_reader([&](WorldReader& reader) { row = reader.load_tile(key, visibility_.rules); });
+    const auto read = source_.chunks_.with_reader(
+        [&](WorldReader& reader) { row = reader.load_tile(key, visibility_.rules); });
     if (!read) return failure(read.error());
     if (!row) {
       if (row.error().kind != StoreError::Kind::corrupt) return failure(row.error());
@@ -260,12 +260,11 @@ void TileSource::add_veiled(MadeTile& made, const TileVisibility& visibility) {
   if (!made.is_past) cache_.put(made);
 }
 
-bool TileSource::is_current(const ChunkKey& key, const Version& version,
-                            std::uint64_t claim_digest, std::uint32_t rules) {
+bool TileSource::is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest,
+                            std::uint32_t rules) {
   if (claim_digest == 0) return false;  // of an incomplete tile
   const Sequence newest = ledger_.newest_edit(key);
-  if (const auto made = cache_.find(key);
-      made && made->rules == rules && newest <= made->through) {
+  if (const auto made = cache_.find(key); made && made->rules == rules && newest <= made->through) {
     return made->is_complete() && made->tile->version == version &&
            (!made->veiled || made->veiled->digest.lane[0] == claim_digest);
   }

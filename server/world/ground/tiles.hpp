@@ -86,7 +86,7 @@ class Tiles {
   TileBoard board_;
   TileSending sending_;
   PastTiles past_;
-  std::uint32_t rules_;  // Order::tile_rules() at the last follow_rules()
+  std::uint32_t rules_;               // Order::tile_rules() at the last follow_rules()
   std::map<ChunkKey, Payer> payers_;  // of the tiles that workers make because a session waits
 };
 

@@ -239,8 +239,8 @@ void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clo
 /// Returns false if the session is closed.
 bool Joining::send_accepted(Session& session, ClientSequence resolved) {
   session.tile_rules = session.has(kFeatureTiles) ? world_.order.tile_rules() : 0;
-  if (!world_.sessions.send_or_close(
-          session, SessionAccepted{session.author, resolved, session.tile_rules}))
+  if (!world_.sessions.send_or_close(session,
+                                     SessionAccepted{session.author, resolved, session.tile_rules}))
     return false;
   if (session.is_relayed) return true;
   world_.receipts.send_epoch(session);      // if it began since Welcome

@@ -32,7 +32,7 @@ struct Session {
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
-  AuthorId author = 0;  // valid when open
+  AuthorId author = 0;           // valid when open
   std::uint32_t tile_rules = 0;  // SessionAccepted::tile_rules
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;

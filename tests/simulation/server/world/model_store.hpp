@@ -138,10 +138,12 @@ class ModelStore final : public Store {
   StoreResult<std::vector<StoredChunk>> base_chunks() override {
     return no<std::vector<StoredChunk>>();
   }
-  StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& /*key*/, std::uint32_t /*rules*/) override {
+  StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& /*key*/,
+                                              std::uint32_t /*rules*/) override {
     return no<std::optional<Chunk>>();
   }
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys(std::uint32_t /*rules*/) override {
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys(
+      std::uint32_t /*rules*/) override {
     return no<std::vector<std::pair<ChunkKey, Version>>>();
   }
   StoreResult<std::vector<std::string>> rows_of_no_tile() override {
@@ -166,7 +168,9 @@ class ModelStore final : public Store {
                                   const std::optional<Keyframe>& /*keyframe*/) override {
     return no<void>();
   }
-  StoreResult<void> save_tiles(ChunkSpan /*tiles*/, std::uint32_t /*rules*/) override { return no<void>(); }
+  StoreResult<void> save_tiles(ChunkSpan /*tiles*/, std::uint32_t /*rules*/) override {
+    return no<void>();
+  }
   StoreResult<void> save_base(ChunkSpan /*chunks*/) override { return no<void>(); }
   StoreResult<void> compact(Sequence /*keyframe*/) override { return no<void>(); }
   StoreResult<void> shrink() override { return no<void>(); }

@@ -99,9 +99,10 @@ TEST_CASE_METHOD(ScriptBench, "place lays a material as the look means", "[bots]
 
 TEST_CASE_METHOD(ScriptBench, "fences that a script sets, fills, places or digs join", "[bots]") {
   MaterialTable table;
-  for (const char* name : {"minecraft:stone", "minecraft:oak_fence", "minecraft:oak_fence[east=true]",
-                           "minecraft:oak_fence[west=true]", "minecraft:oak_fence[south=true]",
-                           "minecraft:oak_fence[east=true,west=true]"}) {
+  for (const char* name :
+       {"minecraft:stone", "minecraft:oak_fence", "minecraft:oak_fence[east=true]",
+        "minecraft:oak_fence[west=true]", "minecraft:oak_fence[south=true]",
+        "minecraft:oak_fence[east=true,west=true]"}) {
     MaterialInfo info;
     info.name = name;
     info.shape = shape_of_material_name(name).value_or(Shape{});
@@ -113,8 +114,7 @@ TEST_CASE_METHOD(ScriptBench, "fences that a script sets, fills, places or digs 
   REQUIRE(host.edits.size() == 2);
   CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{1, 0, 0}}, {}, 4});
   CHECK(host.edits[0].part == ActionPart::first);
-  CHECK(host.edits[1].edit ==
-        EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 2}, 3});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 2}, 3});
   CHECK(host.edits[1].part == ActionPart::next);
   // A member that is named with its states is meant as it is.
   host.edits.clear();
@@ -134,8 +134,7 @@ TEST_CASE_METHOD(ScriptBench, "fences that a script sets, fills, places or digs 
   host.takes = false;  // the neighbour that is refused is no failure of its own
   run("dig");
   REQUIRE(host.edits.size() == 2);
-  CHECK(host.edits[1].edit ==
-        EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 3}, 2});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 3}, 2});
   CHECK(runner->failures().size() == 1);
 }
 

@@ -105,9 +105,9 @@ struct JoinBench {
   static void for_each_touched(const Paste& paste, const Set& set) {
     const Extent sides = paste.clipboard->extent();
     for_each_voxel({{0, 0, 0}, {sides.x, sides.y, sides.z}}, [&](VoxelPos in) {
-      const auto cell = paste.clipboard->at({static_cast<std::uint8_t>(in.x),
-                                             static_cast<std::uint8_t>(in.y),
-                                             static_cast<std::uint8_t>(in.z)});
+      const auto cell =
+          paste.clipboard->at({static_cast<std::uint8_t>(in.x), static_cast<std::uint8_t>(in.y),
+                               static_cast<std::uint8_t>(in.z)});
       if (cell) set({paste.at.x + in.x, paste.at.y + in.y, paste.at.z + in.z}, *cell);
     });
   }
@@ -244,9 +244,8 @@ TEST_CASE_METHOD(JoinBench, "a straight filled wall has posts at its ends alone"
 TEST_CASE_METHOD(JoinBench, "boxes that are thick or large are filled as they are",
                  "[tools][hands]") {
   set({-1, 0, 0}, "minecraft:oak_fence");
-  for (const VoxelBox& box :
-       {VoxelBox{{0, 0, 0}, {2, 1, 2}}, VoxelBox{{0, 0, 0}, {129, 1, 1}},
-        VoxelBox{{0, 0, 0}, {1, 65, 64}}, VoxelBox{{0, 0, 0}, {0, 1, 1}}}) {
+  for (const VoxelBox& box : {VoxelBox{{0, 0, 0}, {2, 1, 2}}, VoxelBox{{0, 0, 0}, {129, 1, 1}},
+                              VoxelBox{{0, 0, 0}, {1, 65, 64}}, VoxelBox{{0, 0, 0}, {0, 1, 1}}}) {
     const EditDescriptor whole{FillBox{box}, {}, id_in(table, "minecraft:oak_fence")};
     const auto reads = [&](VoxelPos pos) -> std::optional<Material> { return at(pos); };
     CHECK(joined_box(whole, table, reads) == ToolAction(std::vector{whole}));
@@ -265,8 +264,8 @@ TEST_CASE("the box tool and a filled selection join fences", "[tools][hands]") {
   const Material fence = id_in(table, "minecraft:oak_fence");
   REQUIRE(bench.box.choose("box"));
   const auto press = [&](VoxelPos at) {
-    const auto made = bench.box.press(
-        bench.replica, bench.aim_at(at, Direction::pos_y, fence), ToolButton::place);
+    const auto made = bench.box.press(bench.replica, bench.aim_at(at, Direction::pos_y, fence),
+                                      ToolButton::place);
     REQUIRE(made);
     bench.predict(*made);
   };

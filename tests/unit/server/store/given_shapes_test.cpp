@@ -94,13 +94,14 @@ TEST_CASE("records of shapes that do not fit the table are refused", "[store][ma
   CHECK(store->append({}, std::vector{record_of_shapes(1, {{1, kSlab}})}).has_value());
 }
 
-TEST_CASE("shapes end the stored tiles unless their materials are new", "[store][materials][shapes]") {
+TEST_CASE("shapes end the stored tiles unless their materials are new",
+          "[store][materials][shapes]") {
   TempPlace place;
   const auto tiles = [] {
     SplitMix64 rng(3);
     std::vector<std::pair<ChunkKey, ChunkPtr>> out;
-    Chunk tile{random_chunk(rng, Extent::cube(kSampleEdge), AxisOrder::zxy, 4, ChunkShape::boxes),
-               {}, {}};
+    Chunk tile{
+        random_chunk(rng, Extent::cube(kSampleEdge), AxisOrder::zxy, 4, ChunkShape::boxes), {}, {}};
     tile.digest = digest_of(tile.voxels);
     out.emplace_back(ChunkKey{1, {0, 0, 0}}, std::make_shared<const Chunk>(std::move(tile)));
     return out;

@@ -403,7 +403,8 @@ TEST_CASE("shapes go on over a takeover, also those that the owner did not write
   for (std::size_t server = 0; server < 3; ++server)
     bench.join(server, 1, static_cast<std::uint8_t>(server + 1));
   const auto give = [&](std::size_t server, Material material, const Shape& shape) {
-    REQUIRE(bench.world(server).changes().give_shapes({{material, shape}}, bench.now()).has_value());
+    REQUIRE(
+        bench.world(server).changes().give_shapes({{material, shape}}, bench.now()).has_value());
     bench.run();
   };
   give(0, 1, slab);

@@ -194,7 +194,8 @@ TEST_CASE("new materials and all of their shapes are one commit, or none of them
   CHECK(bench.environment.records.size() >= 3);
   CHECK(bench.server.counters().commits == commits + 1);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    CHECK(bench.server.order().materials()[static_cast<Material>(table + i)].shape == rows[i].shape);
+    CHECK(bench.server.order().materials()[static_cast<Material>(table + i)].shape ==
+          rows[i].shape);
 }
 
 }  // namespace runstone::test
