@@ -61,6 +61,14 @@ void LogWriter::change_names(std::vector<NameChange> names) {
   queue(std::move(batch));
 }
 
+void LogWriter::save_state(SavedState state) {
+  if (!has_queue_room(1)) return;
+  Batch batch;
+  batch.room = 1;
+  batch.state = std::move(state);
+  queue(std::move(batch));
+}
+
 void LogWriter::queue(Batch batch) {
   {
     const std::lock_guard guard(mutex_);
@@ -176,6 +184,7 @@ LogWriter::Batch LogWriter::take_group() {
     std::move(next.names.begin(), next.names.end(), std::back_inserter(group.names));
     std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
     std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
+    if (next.state) group.state = std::move(next.state);
     group.room += next.room;
     group.bytes += next.bytes;
     batches_.pop_front();
@@ -240,6 +249,9 @@ StoreResult<void> LogWriter::write(Batch& group) {
   }
   if (!group.players.empty() || !group.records.empty()) {
     if (auto appended = world_.append(group.players, group.records); !appended) return appended;
+  }
+  if (group.state) {
+    if (auto saved = world_.save_state(*group.state); !saved) return saved;
   }
   const Batch written = std::exchange(group, {});
   {

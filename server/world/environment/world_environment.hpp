@@ -18,6 +18,7 @@
 #include "protocol/codec/session_encodings.hpp"
 #include "server/world/environment/chat_entry.hpp"
 #include "server/world/environment/player_rows.hpp"
+#include "server/world/environment/saved_state.hpp"
 #include "server/world/environment/tile_request.hpp"
 
 namespace runstone {
@@ -149,6 +150,9 @@ class WorldEnvironment {
   /// Queues changes of names for the log writer, ahead of all records that are queued later.
   /// Requires log_has_room(1). Answer: WorldServer::names_durable().
   virtual void log_names(std::vector<NameChange> changes) = 0;
+  /// Queues what is kept besides the log. The newest state that is queued replaces those before it.
+  /// If the log takes nothing, or has no room, the state is not written; a later one brings it.
+  virtual void save_state(SavedState /*state*/) {}
   /// Queues a line for the log of the chat. If that queue is full, the line is not logged.
   virtual void log_chat(const ChatEntry& /*entry*/) {}
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most

@@ -30,6 +30,7 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       checkpointer_(config.snapshots, start.checkpoint),
       materials_(config.materials),
       library_(config.library, start.library),
+      clock_(start.saved.clock),
       feed_(environment, config.may_be_followed),
       durable_(start.log.last) {
   for (const auto& [key, version] : start.snapshots) chunks().set_saved(key, version);
@@ -82,6 +83,17 @@ bool Order::apply_materials(const std::vector<EditRecord>& records) {
   }
   if (has_changed) authority_.set_material_count(materials_.size());
   return has_changed;
+}
+
+bool Order::apply_clock(const std::vector<EditRecord>& records, const Clocks& now) {
+  bool is_set = false;
+  for (const EditRecord& record : records) {
+    const WorldTime* time = world_time_of(record.edit);
+    if (time == nullptr) continue;
+    clock_.set(*time, record.version.seq, now.steady_us);
+    is_set = true;
+  }
+  return is_set;
 }
 
 bool Order::has_shapes() const { return materials_.has_shapes(); }
