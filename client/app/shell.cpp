@@ -16,6 +16,7 @@
 #include "client/net/key_file.hpp"
 #include "client/session/join_check.hpp"
 #include "client/settings/recent_servers.hpp"
+#include "client/settings/world_kits.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/codec/server_link.hpp"
@@ -63,6 +64,7 @@ Shell::Shell(ClientOptions options, LoadedSettings loaded, std::string settings_
   if (options_.has_server) {
     next_ = Destination{options_, to_string(options_.server), {}};
     next_->options.servers_file = default_servers_file();
+    next_->options.kits_file = default_kits_file();
   } else if (!options_.local_world.empty()) {
     join_local(options_.local_world, options_.local_creation);
   }
@@ -201,6 +203,7 @@ void Shell::join_address(const JoinAddress& chosen) {
   to.options.ticket = link->ticket;
   to.options.password.clear();
   to.options.servers_file = default_servers_file();
+  to.options.kits_file = default_kits_file();
   next_ = std::move(to);
 }
 

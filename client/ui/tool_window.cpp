@@ -153,6 +153,7 @@ void ToolWindow::build(const HudState& state, double scale, std::vector<ToolComm
   build_places(state, out);
   build_symmetry(state, out);
   build_selection(state, scale, out);
+  if (ImGui::CollapsingHeader("Time of day")) time_ = build_time_slider(state);
   ImGui::PopItemWidth();
   ImGui::End();
 }
