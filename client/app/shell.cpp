@@ -56,6 +56,7 @@ Shell::Shell(ClientOptions options, LoadedSettings loaded, std::string settings_
       display_(display),
       menu_(std::make_unique<Menu>(settings_)) {
   options_.asks_at_terminal = false;
+  if (options_.script.empty()) options_.kits_file = default_kits_file();
   static_cast<void>(key_map_of(settings_, loaded.warnings));
   if (!loaded.warnings.empty()) {
     title_.failure.headline = "Some settings are not used";
@@ -64,7 +65,6 @@ Shell::Shell(ClientOptions options, LoadedSettings loaded, std::string settings_
   if (options_.has_server) {
     next_ = Destination{options_, to_string(options_.server), {}};
     next_->options.servers_file = default_servers_file();
-    next_->options.kits_file = default_kits_file();
   } else if (!options_.local_world.empty()) {
     join_local(options_.local_world, options_.local_creation);
   }
@@ -203,7 +203,6 @@ void Shell::join_address(const JoinAddress& chosen) {
   to.options.ticket = link->ticket;
   to.options.password.clear();
   to.options.servers_file = default_servers_file();
-  to.options.kits_file = default_kits_file();
   next_ = std::move(to);
 }
 
