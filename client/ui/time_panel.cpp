@@ -15,7 +15,7 @@ std::optional<SetTime> build_time_slider(const HudState& state) {
   // The text of the slider is the time, in place of the number.
   const std::string text = day_time_text(static_cast<std::uint32_t>(minute) * 60'000);
   if (ImGui::SliderInt("for you alone", &minute, 0, kMinutes - 1, text.c_str(),
-                       ImGuiSliderFlags_AlwaysClamp))
+                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput))
     out = SetTime{minute / double{kMinutes}};
   ImGui::BeginDisabled(!state.has_own_time);
   if (ImGui::Button("The world's time")) out = SetTime{};

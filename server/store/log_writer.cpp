@@ -62,7 +62,7 @@ void LogWriter::change_names(std::vector<NameChange> names) {
 }
 
 void LogWriter::save_state(SavedState state) {
-  if (!has_queue_room(1)) return;
+  if (!has_room(1)) return;
   Batch batch;
   batch.room = 1;
   batch.state = std::move(state);
@@ -247,11 +247,12 @@ StoreResult<void> LogWriter::write(Batch& group) {
     const std::size_t count = std::exchange(group.names, {}).size();
     if (callbacks_.on_names_written) callbacks_.on_names_written(count);
   }
-  if (!group.players.empty() || !group.records.empty()) {
-    if (auto appended = world_.append(group.players, group.records); !appended) return appended;
-  }
   if (group.state) {
     if (auto saved = world_.save_state(*group.state); !saved) return saved;
+    group.state.reset();
+  }
+  if (!group.players.empty() || !group.records.empty()) {
+    if (auto appended = world_.append(group.players, group.records); !appended) return appended;
   }
   const Batch written = std::exchange(group, {});
   {

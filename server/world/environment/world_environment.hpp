@@ -150,9 +150,6 @@ class WorldEnvironment {
   /// Queues changes of names for the log writer, ahead of all records that are queued later.
   /// Requires log_has_room(1). Answer: WorldServer::names_durable().
   virtual void log_names(std::vector<NameChange> changes) = 0;
-  /// Queues what is kept besides the log. The newest state that is queued replaces those before it.
-  /// If the log takes nothing, or has no room, the state is not written; a later one brings it.
-  virtual void save_state(SavedState /*state*/) {}
   /// Queues a line for the log of the chat. If that queue is full, the line is not logged.
   virtual void log_chat(const ChatEntry& /*entry*/) {}
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most
@@ -236,6 +233,9 @@ class WorldEnvironment {
   virtual void player_left(const PlayerVisit& /*visit*/) {}
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
   virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
+  /// Queues what is kept besides the log. The newest state that is queued replaces those before it.
+  /// If the log takes nothing, or has no room, the state is not written; a later one brings it.
+  virtual void save_state(SavedState /*state*/) {}
 };
 
 }  // namespace runstone

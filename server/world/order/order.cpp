@@ -30,9 +30,9 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       checkpointer_(config.snapshots, start.checkpoint),
       materials_(config.materials),
       library_(config.library, start.library),
-      clock_(start.saved.clock),
       feed_(environment, config.may_be_followed),
-      durable_(start.log.last) {
+      durable_(start.log.last),
+      clock_(start.saved.clock) {
   for (const auto& [key, version] : start.snapshots) chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players_.restore(player);
   players_.begin_above(start.author_max);

@@ -188,7 +188,6 @@ class Order {
   Sequence materials_seq_ = 0;
   std::vector<Material> shaped_;  // at most one entry a row
   Library library_;
-  WorldClock clock_;
   Players players_;
   NameClaims names_;
   std::vector<AuthorId> gone_authors_;
@@ -199,6 +198,7 @@ class Order {
   std::optional<TimeUs> stop_due_us_;
   ClientInstance own_instance_ = 0;  // of the server's own edits of this run
   ClientSequence own_seq_ = 0;       // of the last one
+  WorldClock clock_;
 };
 
 }  // namespace runstone
