@@ -118,7 +118,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--time", raw.time, "time of day of the picture, HH or HH:MM, instead of the world's")
+  app.add_option("--time", raw.time,
+                 "time of day of the picture, HH or HH:MM, instead of the world's")
       ->check([](const std::string& text) {
         return parse_day_time(text) ? "" : "expected a time from 0:00 to 23:59";
       });

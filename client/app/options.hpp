@@ -48,7 +48,7 @@ struct ClientOptions {
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
   std::optional<double> time_of_day;  // as FrameLook::time_of_day; nullopt: that of the world
-  std::optional<Quality> quality;  // nullopt: automatic
+  std::optional<Quality> quality;     // nullopt: automatic
   std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;

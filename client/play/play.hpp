@@ -211,9 +211,9 @@ class Play {
   std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened
   std::function<std::optional<WorldKit>(const WorldId&)> kit_of_;
-  WorldKit kept_kit_;                // of world_, as the program has it
-  std::optional<double> own_time_;   // of day, instead of the world's
-  TimeUs input_us_;                  // when input was last handled
+  WorldKit kept_kit_;               // of world_, as the program has it
+  std::optional<double> own_time_;  // of day, instead of the world's
+  TimeUs input_us_;                 // when input was last handled
 };
 
 }  // namespace runstone

@@ -29,8 +29,7 @@ WalkInput over_ground(const WindowInput& input, double yaw) {
 
 }  // namespace
 
-void Player::enter(const WorldId& world, const WorldPos& spawn,
-                   const std::optional<Pose>& place) {
+void Player::enter(const WorldId& world, const WorldPos& spawn, const std::optional<Pose>& place) {
   spawn_ = spawn;
   if (world_ == world) return;
   world_ = world;

@@ -73,8 +73,9 @@ Result<void, std::string> save_kit(const std::string& file, const std::string& w
   std::erase_if(rows, [&](const KitRow& row) { return row.world == world; });
   rows.insert(rows.begin(), {world, line});
   if (rows.size() > kWorldKitsMax) rows.resize(kWorldKitsMax);
-  std::string out = "# The hotbars and tools of runstone-client by world, newest first: the tool, the\n"
-                    "# chosen slot from 0, and the numbers of the materials.\n";
+  std::string out =
+      "# The hotbars and tools of runstone-client by world, newest first: the tool, the\n"
+      "# chosen slot from 0, and the numbers of the materials.\n";
   for (const KitRow& row : rows)
     out += fmt::format("\n[[world]]\nid = {}\nkit = {}\n", toml_string(row.world),
                        toml_string(row.line));

@@ -18,7 +18,8 @@ inline constexpr std::uint32_t kTimeRateMax = 10'000;
 
 struct WorldTime {
   std::uint32_t day_ms = 0;  // milliseconds since midnight, below kDayMs
-  std::uint32_t rate = 0;    // seconds of the world in a second, 0 .. kTimeRateMax; 0: it stands still
+  std::uint32_t rate =
+      0;  // seconds of the world in a second, 0 .. kTimeRateMax; 0: it stands still
   friend bool operator==(const WorldTime&, const WorldTime&) = default;
 };
 

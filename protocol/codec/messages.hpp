@@ -476,8 +476,7 @@ using Message = std::variant<
     ChatLines, KeyRequest, SealedKey, KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest,
     LogMarks, RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
     RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest, Builds,
-    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven,
-    WorldTime>;
+    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven, WorldTime>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

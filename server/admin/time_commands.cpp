@@ -79,8 +79,7 @@ constexpr std::array<CommandRow, 3> kTimeRows = {{
     {"time rate", kKeepersOfTime,
      "time rate N               seconds of the world in a second, 0 to 10000; 0 stands still",
      parsed_by<parse_rate, change_time>()},
-    {"time HH:MM", kKeepersOfTime,
-     "time HH:MM                set the time of day of the world",
+    {"time HH:MM", kKeepersOfTime, "time HH:MM                set the time of day of the world",
      parsed_by<parse_day, change_time>()},
 }};
 

@@ -27,10 +27,10 @@ struct WorldServer::Rooms {
         people({config, environment, counters, sessions, order, receipts, rights, quotas, ground,
                 changes},
                start, random),
-        cluster({config, environment, counters, sessions, order, receipts, commits,
-                 people.joining(), people.edits(), people.presence(), people.chat(),
-                 people.visits(), people.places()},
-                random),
+        cluster(
+            {config, environment, counters, sessions, order, receipts, commits, people.joining(),
+             people.edits(), people.presence(), people.chat(), people.visits(), people.places()},
+            random),
         build_reads(config, environment, sessions, order, rights),
         build_uploads({environment, sessions, order, rights, changes, cluster}),
         saved(start.saved) {}

@@ -226,8 +226,7 @@ Paste read_paste(ByteReader& r) {
 
 WorldTime read_world_time(ByteReader& r) {
   WorldTime time;
-  time.day_ms =
-      static_cast<std::uint32_t>(r.varint_max(kDayMs - 1, "time is not one of a day"));
+  time.day_ms = static_cast<std::uint32_t>(r.varint_max(kDayMs - 1, "time is not one of a day"));
   time.rate = static_cast<std::uint32_t>(r.varint_max(kTimeRateMax, "rate of time is too high"));
   return time;
 }
@@ -297,10 +296,9 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
-      EditKind::fill_stroke, EditKind::paste,    EditKind::rights,
-      EditKind::materials,   EditKind::library,  EditKind::shapes,
-      EditKind::clock};
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
+      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
+      EditKind::shapes,    EditKind::clock};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -391,8 +389,9 @@ Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
       in[0] <= static_cast<std::uint8_t>(EditKind::clock))
-    return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials, shapes, the library or the clock is no edit of voxels");
+    return fail(
+        ErrorCode::unknown_kind,
+        "a change of rights, materials, shapes, the library or the clock is no edit of voxels");
   return decode_descriptor(in);
 }
 

@@ -83,8 +83,7 @@ void Followers::on_relay_close(SessionId link, const RelayClose& close) {
   if (Session* const session = sessions_.find(found->second)) sessions_.leave(*session);
 }
 
-void Followers::on_follow_request(SessionId link, const FollowRequest& request,
-                                  const Clocks& now) {
+void Followers::on_follow_request(SessionId link, const FollowRequest& request, const Clocks& now) {
   if (!environment_.owns_world())
     return close(link, GoodbyeReason::closing, "another server may own the world");
   Follower& follower = all_.at(link);

@@ -24,8 +24,8 @@ class PlayerPlaces {
   std::vector<PlayerPlace> all() const;
 
  private:
-  std::map<PublicKey, std::uint64_t> numbers_;      // of the entry in places_
-  std::map<std::uint64_t, PlayerPlace> places_;     // ascending by when they were noted
+  std::map<PublicKey, std::uint64_t> numbers_;   // of the entry in places_
+  std::map<std::uint64_t, PlayerPlace> places_;  // ascending by when they were noted
   std::uint64_t newest_ = 0;
 };
 

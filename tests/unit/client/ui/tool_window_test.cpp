@@ -199,7 +199,8 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
   CHECK(copied->is_solid);
 }
 
-TEST_CASE_METHOD(ToolWindowBench, "a slider sets the time of day, and a button gives the world's back",
+TEST_CASE_METHOD(ToolWindowBench,
+                 "a slider sets the time of day, and a button gives the world's back",
                  "[client_ui]") {
   state.time_of_day = 0.25;
   state.has_own_time = true;

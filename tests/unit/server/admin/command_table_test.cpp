@@ -176,7 +176,8 @@ CommandRule rule(const std::string& line) { return command_of(line).row->rule; }
 }  // namespace
 
 TEST_CASE("each command needs its right", "[admin][rights]") {
-  for (const char* line : {"help", "players", "materials", "roles", "protected", "why ana see", "time"})
+  for (const char* line :
+       {"help", "players", "materials", "roles", "protected", "why ana see", "time"})
     CHECK(rule(line).any_of == RightSet());
   for (const char* line : {"undo", "redo"}) CHECK(rule(line).any_of == RightSet{Right::undo});
   for (const char* line :

@@ -10,9 +10,14 @@ namespace {
 
 struct TimeBench : CommandBench {
   TimeBench()
-      : services{bench.server, service, *this, placing, folder.path(), {}, [](const PublicKey&) {
-                   return false;
-                 }} {}
+      : services{bench.server,
+                 service,
+                 *this,
+                 placing,
+                 folder.path(),
+                 {},
+                 [](const PublicKey&) {
+                   return false; }} {}
   CommandAnswer give(const std::string& line, const CommandCaller& caller = {}) {
     answers.clear();
     give_command({services, caller, bench.now(), reply()}, line);

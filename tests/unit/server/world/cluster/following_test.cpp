@@ -46,8 +46,9 @@ TEST_CASE("a follower that connects late reads what it lacks, and holds the rest
   bench.check_same_chunks(0, late);
 }
 
-TEST_CASE("servers of a world have one time of day, also one that comes late and one that takes over",
-          "[world][servers][world_time]") {
+TEST_CASE(
+    "servers of a world have one time of day, also one that comes late and one that takes over",
+    "[world][servers][world_time]") {
   constexpr WorldTime kDawn{21'600'000, 30};
   ClusterBench bench(1);
   const auto time_at = [&](std::size_t server) {

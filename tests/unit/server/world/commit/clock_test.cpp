@@ -70,8 +70,7 @@ TEST_CASE("the clock is saved ahead while it runs, and as it is at a stop", "[wo
   bench.time_us += 5'000'000;
   bench.server.begin_stop(bench.now());
   REQUIRE(bench.environment.states.size() == 2);
-  CHECK(bench.environment.states[1].clock ==
-        SavedClock{1, later(kDusk, bench.time_us - set_us)});
+  CHECK(bench.environment.states[1].clock == SavedClock{1, later(kDusk, bench.time_us - set_us)});
 }
 
 TEST_CASE("a world that starts again goes on with the saved time", "[world][world_time]") {

@@ -12,7 +12,8 @@ TEST_CASE("a clock that nobody has set has no time", "[world][world_time]") {
   CHECK(clock.saved_at(2'000'000) == std::nullopt);
 }
 
-TEST_CASE("a clock runs from the record that set it, with the steady clock", "[world][world_time]") {
+TEST_CASE("a clock runs from the record that set it, with the steady clock",
+          "[world][world_time]") {
   WorldClock clock(std::nullopt);
   clock.set({3'600'000, 60}, 7, 5'000'000);
   CHECK(clock.record() == 7);

@@ -59,8 +59,7 @@ TEST_CASE("a player who comes back soon has not left", "[world][visits]") {
   bench.server.disconnected(3);
   bench.wait(kVisitPauseUs + 3'000'000);
   bench.join_with(4, 2, kReads);
-  CHECK(bench.visits(1) ==
-        Lines{"player2 has joined", "player2 has left", "player2 has joined"});
+  CHECK(bench.visits(1) == Lines{"player2 has joined", "player2 has left", "player2 has joined"});
 }
 
 TEST_CASE("a crowd that comes at once makes few lines", "[world][visits]") {
