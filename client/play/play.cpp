@@ -15,8 +15,8 @@ namespace {
 
 /// A longer time between two turns moves the player as if it were this long, in seconds.
 constexpr double kSecondsMax = 0.1;
-/// The sun moves in steps of this share of a day, a tenth of a degree: each step draws a frame and all
-/// shadows again.
+/// The sun moves in steps of this share of a day, a tenth of a degree: each step draws a frame and
+/// all shadows again.
 constexpr double kTimeStep = 1.0 / 3600;
 
 }  // namespace

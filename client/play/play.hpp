@@ -126,10 +126,11 @@ class Play {
   /// Returns a frame to order, without the interface. Requires pipeline().is_frame_due().
   FrameOrder frame(const FrameChoice& choice, TimeUs now_us);
 
-  /// Shows this time of day instead of the world's, or the world's again with nullopt. Others do not
-  /// see it.
+  /// Shows this time of day instead of the world's, or the world's again with nullopt. Others do
+  /// not see it.
   void set_own_time(std::optional<double> share);
-  /// Returns the kit of the world if it has changed since the last call, or since the world was opened.
+  /// Returns the kit of the world if it has changed since the last call, or since the world was
+  /// opened.
   std::optional<KeptKit> take_kit();
   /// Returns the notices for the player since the last call.
   std::vector<PlayerNotice> take_notices() { return std::exchange(notices_, {}); }

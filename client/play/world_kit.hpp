@@ -1,5 +1,5 @@
-// WorldKit: what a player holds in a world: the slots of the hotbar, the chosen one, and the tool. The
-// client remembers it for each world. Pure.
+// WorldKit: what a player holds in a world: the slots of the hotbar, the chosen one, and the tool.
+// The client remembers it for each world. Pure.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -24,7 +24,8 @@ inline constexpr std::size_t kKitBytesMax = 128;
 
 /// Returns the kit as one line: the tool, the chosen slot, and the material of each slot.
 std::string to_text(const WorldKit& kit);
-/// Returns the kit of a text, or nullopt if it is none: words are missing, left over or out of range.
+/// Returns the kit of a text, or nullopt if it is none: words are missing, left over or out of
+/// range.
 std::optional<WorldKit> parse_kit(std::string_view text);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// World kits: the lines in which the client keeps hotbar and tool of the worlds that a player joined,
-// newest first, in a TOML file. The functions wait for the disk.
+// World kits: the lines in which the client keeps hotbar and tool of the worlds that a player
+// joined, newest first, in a TOML file. The functions wait for the disk.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -12,8 +12,8 @@ namespace runstone {
 /// The number of worlds that are kept: those that were played last.
 inline constexpr std::size_t kWorldKitsMax = 64;
 
-/// Returns $XDG_STATE_HOME/runstone/worlds.toml, otherwise the one in ~/.local/state, or an empty text
-/// if neither variable is an absolute path.
+/// Returns $XDG_STATE_HOME/runstone/worlds.toml, otherwise the one in ~/.local/state, or an empty
+/// text if neither variable is an absolute path.
 std::string default_kits_file();
 /// Returns the line of a world (its id in hex), or nullopt if the file has none or cannot be read.
 std::optional<std::string> load_kit(const std::string& file, const std::string& world);

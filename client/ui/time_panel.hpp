@@ -11,8 +11,8 @@ struct SetTime {
   std::optional<double> share;  // of the day, as FrameLook::time_of_day
 };
 
-/// Adds a slider for the time of day, and a button that shows the world's again, to the window that is
-/// being made with ImGui. Returns what the user did.
+/// Adds a slider for the time of day, and a button that shows the world's again, to the window that
+/// is being made with ImGui. Returns what the user did.
 std::optional<SetTime> build_time_slider(const HudState& state);
 
 }  // namespace runstone

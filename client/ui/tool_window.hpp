@@ -1,6 +1,6 @@
 // ToolWindow: the building tools with their numbers, the effect of the next click, places by
-// numbers, the symmetry, the selection and the clipboard, and the time of day. It changes nothing itself: it returns
-// commands. One thread.
+// numbers, the symmetry, the selection and the clipboard, and the time of day. It changes nothing
+// itself: it returns commands. One thread.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -54,8 +54,8 @@ enum class Cause : std::uint8_t {
   clock = 9       // the clock of the world is set, by a player or by the console (author 0)
 };
 inline constexpr std::uint8_t kCauseMax = 9;
-/// Returns true if the edits with this cause change voxels. The others change rights, materials, the
-/// library of builds or the clock.
+/// Returns true if the edits with this cause change voxels. The others change rights, materials,
+/// the library of builds or the clock.
 constexpr bool changes_voxels(Cause cause) {
   return cause != Cause::rights && cause != Cause::materials && cause != Cause::library &&
          cause != Cause::clock;

@@ -110,8 +110,8 @@ class LogWriter {
   /// stopped drops them. They take room for one record, and are written before all records that are
   /// queued later.
   void change_names(std::vector<NameChange> names);
-  /// Queues what is kept besides the log. It takes room for one record, and of several in one commit the
-  /// newest is written, before the records. Does nothing without has_room().
+  /// Queues what is kept besides the log. It takes room for one record, and of several in one
+  /// commit the newest is written, before the records. Does nothing without has_room().
   void save_state(SavedState state);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.

@@ -57,7 +57,8 @@ inline constexpr const char* kLogErasKey = "log_eras";
 /// The key of a row, always 1, that only a world has in which a material has or had a shape.
 inline constexpr const char* kShapesKey = "shapes";
 
-/// The keys of the rows that saved_state() reads. Only a world whose clock was set has the first one.
+/// The keys of the rows that saved_state() reads. Only a world whose clock was set has the first
+/// one.
 inline constexpr const char* kClockKey = "world_clock";
 inline constexpr const char* kPlacesKey = "player_places";
 
@@ -89,7 +90,8 @@ class MetaTable {
   StoreResult<std::optional<Epoch>> open_epoch();
   StoreResult<void> put_open_epoch(std::optional<Epoch> epoch);
 
-  /// Returns the rows `world_clock` and `player_places`. Fails (corrupt) if one has an impossible value.
+  /// Returns the rows `world_clock` and `player_places`. Fails (corrupt) if one has an impossible
+  /// value.
   StoreResult<SavedState> saved_state();
   StoreResult<void> put_clock(const SavedClock& clock);
   StoreResult<void> put_places(const std::vector<PlayerPlace>& places);

@@ -2,8 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
-// have no voxels: they change who may do what, add materials or give them shapes, change the library
-// of builds, or set the clock of the world. They stand in the same order as the others.
+// have no voxels: they change who may do what, add materials or give them shapes, change the
+// library of builds, or set the clock of the world. They stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>

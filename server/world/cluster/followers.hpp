@@ -69,7 +69,8 @@ class Followers {
   std::optional<std::string> library_refusal() const;
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const;
-  /// Returns why the clock of the world may not be set, as a sentence without its period, or nullopt.
+  /// Returns why the clock of the world may not be set, as a sentence without its period, or
+  /// nullopt.
   std::optional<std::string> clock_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);

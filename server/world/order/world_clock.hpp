@@ -1,6 +1,6 @@
-// WorldClock: the time of day of the world. A record of the log sets it (ClockEdit). From then on it
-// runs with the steady clock, so that a wall clock that is wrong, late or set back does not move it.
-// It stands still while no server runs the world: the store keeps how far it has come
+// WorldClock: the time of day of the world. A record of the log sets it (ClockEdit). From then on
+// it runs with the steady clock, so that a wall clock that is wrong, late or set back does not move
+// it. It stands still while no server runs the world: the store keeps how far it has come
 // (SavedState::clock). Pure: times of the steady clock are arguments. Thread: one.
 #pragma once
 #include <optional>

@@ -127,7 +127,8 @@ void ChatRoom::tell_of_visit(const PublicKey& player, const std::string& text, c
       readers.push_back(session->id);
   }
   if (readers.empty()) return;
-  const ChatLine line{ChatLineKind::visit, 0, "", cut_utf8(text, kChatBytesMax), time_of_line(now)};
+  const ChatLine line{ChatLineKind::visit, 0, "", std::string(cut_utf8(text, kChatBytesMax)),
+                      time_of_line(now)};
   sessions_.send_to_all(readers, encode_message(ChatLines{{line}}));
 }
 

@@ -238,7 +238,8 @@ void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clo
 }
 
 /// Sends session accepted and, unless another server does it, what the player has to know at first.
-/// `place`: where the player begins, if that is not the spawn. Returns false if the session is closed.
+/// `place`: where the player begins, if that is not the spawn. Returns false if the session is
+/// closed.
 bool Joining::send_accepted(Session& session, ClientSequence resolved,
                             const std::optional<Pose>& place, const Clocks& now) {
   const std::uint32_t tile_rules = session.has(kFeatureTiles) ? world_.config.tile_rules : 0;

@@ -50,8 +50,8 @@ class Joining {
   /// Returns true for another server of the world. Requires that the features are in force.
   bool is_server(const Session& session) const;
   /// Closes the session of another server that cannot read the log (wrong_protocol): it lacks the
-  /// feature time corrections and the time of this world was corrected, or another feature of records
-  /// that this world has. Returns true if it closed the session.
+  /// feature time corrections and the time of this world was corrected, or another feature of
+  /// records that this world has. Returns true if it closed the session.
   bool close_if_old_server(Session& session);
   /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
   /// the session: closing (another server may own the world), server_full, name_refused or

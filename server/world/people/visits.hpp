@@ -1,7 +1,7 @@
-// Visits: the lines of the chat that say who has joined and who has left. A player is here as long as
-// at least one session of the key is open.
-//   - A player who comes back within kVisitPauseUs has not left: there is no line. So the line about
-//     one who leaves comes that much later.
+// Visits: the lines of the chat that say who has joined and who has left. A player is here as long
+// as at least one session of the key is open.
+//   - A player who comes back within kVisitPauseUs has not left: there is no line. So the line
+//     about one who leaves comes that much later.
 //   - A player who changes the server, or whose server begins to follow another owner, has neither
 //     joined nor left.
 //   - All lines together are at most kVisitLinesPerSecond, with kVisitLineBurst at once. More are

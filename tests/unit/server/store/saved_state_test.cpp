@@ -1,5 +1,5 @@
-// What a world keeps besides its log: the places of players and the clock. And the format of a world
-// whose clock was set.
+// What a world keeps besides its log: the places of players and the clock. And the format of a
+// world whose clock was set.
 #include <catch2/catch.hpp>
 
 #include "server/store/copy_stored_world.hpp"
