@@ -33,21 +33,26 @@ inline constexpr std::uint64_t kFeatureResume =
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
 inline constexpr std::uint64_t kFeatureLargeActions = 32768;
-inline constexpr std::uint64_t kFeatureBuilds = 131072;  // BuildsRequest to BuildAnswer
-inline constexpr std::uint64_t kFeatureShapes = 262144;  // shapes in Welcome, and ShapesGiven
+inline constexpr std::uint64_t kFeatureBuilds = 131072;      // BuildsRequest to BuildAnswer
+inline constexpr std::uint64_t kFeatureShapes = 262144;      // shapes in Welcome, and ShapesGiven
+inline constexpr std::uint64_t kFeatureWorldTime = 4194304;  // WorldTime
+// SessionAccepted.place, and lines of the chat of the kind visit.
+inline constexpr std::uint64_t kFeatureVisits = 16777216;
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
 inline constexpr std::uint64_t kFeatureLibrary = 65536;          // LogPart may have a LibraryChange
 inline constexpr std::uint64_t kFeatureShapeRecords = 524288;    // LogPart may have GivenShapes
-inline constexpr std::uint64_t kFeaturesOfServers =
-    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary | kFeatureShapeRecords;
+inline constexpr std::uint64_t kFeatureClockRecords = 8388608;   // LogPart may have a ClockEdit
+inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTimeCorrections |
+                                                    kFeatureLibrary | kFeatureShapeRecords |
+                                                    kFeatureClockRecords;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
-    kFeatureBuilds | kFeatureShapes;
+    kFeatureBuilds | kFeatureShapes | kFeatureWorldTime | kFeatureVisits;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below

@@ -14,6 +14,8 @@
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
 #include "client/report/exit_code.hpp"
+#include "client/settings/world_kits.hpp"
+#include "common/core/hex.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/view_tiles.hpp"
@@ -27,6 +29,7 @@ constexpr TimeUs kRestUs = 10'000;
 constexpr TimeUs kRestUsWindow = 2'000;
 /// The longest pause of the loop with a window that has no focus.
 constexpr TimeUs kRestUsBackground = 10'000;
+constexpr TimeUs kKeepKitUs = 10'000'000;  // between two writes of hotbar and tool
 constexpr TimeUs kHorizonLookUs = 20'000;  // between two looks at the distant ground
 /// The connecting screen ends this long after the world opened, if there is no ground before.
 constexpr TimeUs kGroundWaitUs = 3'000'000;
@@ -60,6 +63,11 @@ PlayConfig play_config(const ClientOptions& options, const Script* script, bool 
   out.is_watched = is_watched;
   out.workers = options.workers;
   out.started_us = steady_now_us();
+  out.time_of_day = options.time_of_day;
+  out.kit_of = [file = options.kits_file](const WorldId& world) -> std::optional<WorldKit> {
+    const auto line = load_kit(file, to_hex(world));
+    return line ? parse_kit(*line) : std::nullopt;
+  };
   return out;
 }
 
@@ -84,7 +92,6 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
   play_.tool().box().show_preview(window_ != nullptr);
   if (script != nullptr) runner_.emplace(*script, actions_);
   if (options_.benchmark) benchmark_.emplace(*options_.benchmark);
-  pipeline_.look().set_time_of_day(options_.time_of_day);
   pipeline_.look().set_quality(options_.quality);
   network_.start(play_.started_us());
 }
@@ -124,6 +131,10 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     }
     log_.log_players(session_.others(), now_us);
     step_files(now_us);
+    if (now_us >= kit_due_us_) {
+      kit_due_us_ = now_us + kKeepKitUs;
+      keep_kit();
+    }
     show_news();
     if (runner_) runner_->step(now_us);
     if (benchmark_ && session_.is_open()) benchmark_->step(play_.player(), pipeline_, play_.view());
@@ -250,6 +261,14 @@ void Client::pause() {
   menu_->feed(play_.input().take_waiting());
 }
 
+void Client::keep_kit() {
+  if (options_.kits_file.empty()) return;
+  const auto kept = play_.take_kit();
+  if (!kept) return;
+  const auto saved = save_kit(options_.kits_file, to_hex(kept->world), to_text(kept->kit));
+  if (!saved) spdlog::warn("{}", saved.error());
+}
+
 void Client::look_at_horizon(TimeUs now_us) {
   if (!session_.replica().opened() || tile_levels(session_.view()) == 0) return;
   horizon_due_us_ = now_us + kHorizonLookUs;
@@ -364,6 +383,7 @@ ClientReport Client::report() const {
 
 int Client::finish(int code) {
   look_at_horizon(steady_now_us());
+  keep_kit();
   network_.finish();
   if (runner_) {
     for (const std::string& failure : runner_->failures())

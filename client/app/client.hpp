@@ -57,6 +57,8 @@ class Client {
   void pause();
   /// Records how much of the distant ground is here.
   void look_at_horizon(TimeUs now_us);
+  /// Keeps hotbar and tool of the world if they have changed.
+  void keep_kit();
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Shows the notices and the new lines of the chat.
@@ -98,6 +100,7 @@ class Client {
   MeshPipeline& pipeline_;  // of play_
   HorizonRecorder horizon_;
   TimeUs horizon_due_us_ = 0;  // when it looks again
+  TimeUs kit_due_us_ = 0;      // when hotbar and tool are kept again
   TerminalChat chat_;
   ClientHud hud_;
   ClipboardTransfer files_;

@@ -118,7 +118,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
       ->check(output_refusal);
   app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--time", raw.time, "time of day of the picture, HH or HH:MM; default 9:36")
+  app.add_option("--time", raw.time,
+                 "time of day of the picture, HH or HH:MM, instead of the world's")
       ->check([](const std::string& text) {
         return parse_day_time(text) ? "" : "expected a time from 0:00 to 23:59";
       });
@@ -216,7 +217,7 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
                   : raw.encoding == "packed" ? 2
                   : raw.encoding == "coded"  ? 4
                                              : kEncodingsKnown;
-  out.time_of_day = parse_day_time(raw.time).value_or(out.time_of_day);
+  out.time_of_day = parse_day_time(raw.time);
   out.quality = parse_quality(raw.quality);
   if (!raw.benchmark.empty()) {
     if (!out.render) throw CLI::ValidationError("--benchmark", "needs a renderer");

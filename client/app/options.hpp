@@ -34,6 +34,7 @@ struct ClientOptions {
   std::string ticket;              // an invite token from the link; empty: none
   std::string password;            // of the world; empty: none was given
   bool asks_at_terminal = true;    // for the password, if there is a terminal
+  std::string kits_file;           // the hotbars and tools by world; empty: they are not kept
   std::string servers_file;        // the list of servers that were joined; empty: no list is kept
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
@@ -46,8 +47,8 @@ struct ClientOptions {
   std::string digests;             // file; empty: none
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
-  double time_of_day = FrameLook{}.time_of_day;
-  std::optional<Quality> quality;  // nullopt: automatic
+  std::optional<double> time_of_day;  // as FrameLook::time_of_day; nullopt: that of the world
+  std::optional<Quality> quality;     // nullopt: automatic
   std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
   bool exit_on_goodbye = false;

@@ -57,7 +57,8 @@ void ScriptActions::look(double yaw, double pitch) {
 }
 
 void ScriptActions::set_time_of_day(double share) {
-  play_.pipeline().look().set_time_of_day(share);
+  play_.set_own_time(share);
+  play_.pipeline().look().set_time_of_day(share);  // also for a picture of this turn
   play_.pipeline().moved();
 }
 

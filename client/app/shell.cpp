@@ -16,6 +16,7 @@
 #include "client/net/key_file.hpp"
 #include "client/session/join_check.hpp"
 #include "client/settings/recent_servers.hpp"
+#include "client/settings/world_kits.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/codec/server_link.hpp"
@@ -55,6 +56,7 @@ Shell::Shell(ClientOptions options, LoadedSettings loaded, std::string settings_
       display_(display),
       menu_(std::make_unique<Menu>(settings_)) {
   options_.asks_at_terminal = false;
+  if (options_.script.empty()) options_.kits_file = default_kits_file();
   static_cast<void>(key_map_of(settings_, loaded.warnings));
   if (!loaded.warnings.empty()) {
     title_.failure.headline = "Some settings are not used";

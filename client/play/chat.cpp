@@ -65,6 +65,8 @@ std::string printed_line(const ChatLine& line) {
       return "[today] " + text;
     case ChatLineKind::refused:
       return "[not sent] " + text;
+    case ChatLineKind::visit:
+      return "[players] " + text;
   }
   return "[chat] " + text;  // a kind that this client does not know
 }

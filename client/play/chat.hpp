@@ -32,9 +32,10 @@ class Chat {
 };
 
 /// Returns a line as it is printed: "<ana> hello", "[server] ...", "[today] ..." for the message of
-/// the day, or "[not sent] ..." with the reason why a line of this client was not passed on. Only a
-/// line of a player begins with "<", and it begins with the player's name. Characters that
-/// with_unseen_replaced() replaces are question marks. Pure.
+/// the day, "[players] ..." for one who joined or left, or "[not sent] ..." with the reason why a
+/// line of this client was not passed on. Only a line of a player begins with "<", and it begins
+/// with the player's name. Characters that with_unseen_replaced() replaces are question marks.
+/// Pure.
 std::string printed_line(const ChatLine& line);
 
 }  // namespace runstone

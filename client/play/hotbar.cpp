@@ -49,6 +49,14 @@ void Hotbar::fill(const MaterialTable& materials) {
   choose(0);
 }
 
+void Hotbar::take(const std::array<Material, kSlotCount>& slots, std::size_t slot,
+                  const MaterialTable& materials) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i] != kEmpty && slots[i] < materials.size()) slots_[i] = slots[i];
+  }
+  choose(slot);
+}
+
 void Hotbar::choose(std::size_t slot) {
   if (slot >= kSlotCount) return;
   slot_ = slot;

@@ -21,6 +21,10 @@ class Hotbar {
   /// the table. So the slots have blocks even if the table begins with plants. Chooses the first
   /// slot.
   void fill(const MaterialTable& materials);
+  /// Fills the slots with these materials, and chooses a slot. A material that the world does not
+  /// have leaves its slot as it is.
+  void take(const std::array<Material, kSlotCount>& slots, std::size_t slot,
+            const MaterialTable& materials);
   /// Chooses a slot. Does nothing if there is no such slot.
   void choose(std::size_t slot);
   /// Chooses the slot `steps` to the left. The first and the last slot are neighbours.

@@ -1,18 +1,23 @@
 #include "client/play/play.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "client/play/player_actions.hpp"
 #include "client/play/time_travel.hpp"
 #include "client/render/drawn_materials.hpp"
 #include "common/core/text.hpp"
+#include "common/core/world_time.hpp"
 
 namespace runstone {
 namespace {
 
 /// A longer time between two turns moves the player as if it were this long, in seconds.
 constexpr double kSecondsMax = 0.1;
+/// The sun moves in steps of this share of a day, a tenth of a degree: each step draws a frame and
+/// all shadows again.
+constexpr double kTimeStep = 1.0 / 3600;
 
 }  // namespace
 
@@ -35,6 +40,8 @@ Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLo
       panels_(session, tools, config.workers != 0),
       scene_(session, player_, tool_, view_, panels_, others_),
       server_notices_(session),
+      kit_of_(config.kit_of),
+      own_time_(config.time_of_day),
       input_us_(config.started_us) {
   input_.set_keys(config.keys);
 }
@@ -42,6 +49,7 @@ Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLo
 void Play::begin_turn(bool is_opened, const ShownPanels& shown, TimeUs now_us) {
   if (is_opened) open_world(now_us);
   take_new_materials();
+  show_time(now_us);
   take_changes(now_us);
   if (const auto ended = tool_.step_build(now_us)) {
     const bool is_whole =
@@ -60,10 +68,45 @@ void Play::open_world(TimeUs now_us) {
     if (walks_) player_.set_walking(true);
   }
   const Welcome& welcome = *session_.welcome();
-  player_.enter(welcome.world_id, welcome.spawn);
-  if (std::exchange(world_, welcome.world_id) != welcome.world_id) hotbar_.fill(welcome.materials);
+  player_.enter(welcome.world_id, welcome.spawn, session_.place());
+  const bool is_another = std::exchange(world_, welcome.world_id) != welcome.world_id;
+  if (is_another) hotbar_.fill(welcome.materials);
   set_materials(welcome.materials);
+  if (is_another) take_up_kit();
   limits_.open_world(welcome.view_radius_max);
+}
+
+void Play::take_up_kit() {
+  if (const auto kept = kit_of_ ? kit_of_(*world_) : std::nullopt) {
+    hotbar_.take(kept->slots, kept->slot, session_.welcome()->materials);
+    // A tool of another version of this client is left out.
+    static_cast<void>(tool_.box().choose(kept->tool));
+  }
+  kept_kit_ = kit();
+}
+
+WorldKit Play::kit() const {
+  return {hotbar_.slots(), hotbar_.slot(), std::string(tool_.box().tool().name())};
+}
+
+std::optional<KeptKit> Play::take_kit() {
+  if (!world_) return std::nullopt;
+  WorldKit now = kit();
+  if (now == kept_kit_) return std::nullopt;
+  kept_kit_ = now;
+  return KeptKit{*world_, std::move(now)};
+}
+
+void Play::set_own_time(std::optional<double> share) { own_time_ = share; }
+
+void Play::show_time(TimeUs now_us) {
+  LookControl& look = pipeline_.look();
+  const auto time = session_.world_time(now_us);
+  double share = own_time_.value_or(time ? day_share(*time) : FrameLook{}.time_of_day);
+  if (!own_time_ && time && time->rate != 0) share = std::floor(share / kTimeStep) * kTimeStep;
+  if (share == look.time_of_day()) return;
+  look.set_time_of_day(share);
+  pipeline_.moved();
 }
 
 void Play::take_new_materials() {
@@ -175,6 +218,7 @@ void Play::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
+  if (const auto* time = std::get_if<SetTime>(&action)) set_own_time(time->share);
   if (const auto* moment = std::get_if<ShowMoment>(&action))
     show_after(session_, moment->is_live ? kSequenceShownMax : moment->seq);
   // If a rollback cannot be ordered, its window says why.
@@ -247,6 +291,8 @@ void Play::fill(HudState& state, const ShownPanels& shown) const {
   }
   state.tools = &tool_.box();
   state.has_preview = tool_.has_preview();
+  state.time_of_day = pipeline_.look().time_of_day();
+  state.has_own_time = own_time_.has_value();
   panels_.fill(state, shown, player_.pose());
 }
 

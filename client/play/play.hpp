@@ -34,6 +34,7 @@
 #include "client/play/server_notices.hpp"
 #include "client/play/view_follower.hpp"
 #include "client/play/view_limits.hpp"
+#include "client/play/world_kit.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/tools/tool_box.hpp"
@@ -53,6 +54,16 @@ struct PlayConfig {
   bool is_watched = true;  // frames go to a window
   unsigned workers = 0;    // threads that mesh
   TimeUs started_us = 0;   // when the client began to connect
+  /// The time of day that the player has chosen, as FrameLook::time_of_day. nullopt: the world's.
+  std::optional<double> time_of_day;
+  /// Returns the kit that the program has kept for a world. Empty: none is kept.
+  std::function<std::optional<WorldKit>(const WorldId&)> kit_of;
+};
+
+/// A kit to keep for a world.
+struct KeptKit {
+  WorldId world{};
+  WorldKit kit;
 };
 
 /// The settings that the player may change while playing.
@@ -115,6 +126,12 @@ class Play {
   /// Returns a frame to order, without the interface. Requires pipeline().is_frame_due().
   FrameOrder frame(const FrameChoice& choice, TimeUs now_us);
 
+  /// Shows this time of day instead of the world's, or the world's again with nullopt. Others do
+  /// not see it.
+  void set_own_time(std::optional<double> share);
+  /// Returns the kit of the world if it has changed since the last call, or since the world was
+  /// opened.
+  std::optional<KeptKit> take_kit();
   /// Returns the notices for the player since the last call.
   std::vector<PlayerNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns a line about what is shown: a moment of the past, or why ground is missing. The line
@@ -159,6 +176,9 @@ class Play {
 
  private:
   void open_world(TimeUs now_us);
+  void take_up_kit();
+  WorldKit kit() const;
+  void show_time(TimeUs now_us);
   void take_new_materials();
   void set_materials(const MaterialTable& materials);
   void limit_memory(TimeUs now_us);
@@ -191,7 +211,10 @@ class Play {
   std::optional<WorldId> world_;     // whose materials the hotbar has
   std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened
-  TimeUs input_us_;                  // when input was last handled
+  std::function<std::optional<WorldKit>(const WorldId&)> kit_of_;
+  WorldKit kept_kit_;               // of world_, as the program has it
+  std::optional<double> own_time_;  // of day, instead of the world's
+  TimeUs input_us_;                 // when input was last handled
 };
 
 }  // namespace runstone

@@ -29,11 +29,12 @@ WalkInput over_ground(const WindowInput& input, double yaw) {
 
 }  // namespace
 
-void Player::enter(const WorldId& world, const WorldPos& spawn) {
+void Player::enter(const WorldId& world, const WorldPos& spawn, const std::optional<Pose>& place) {
   spawn_ = spawn;
   if (world_ == world) return;
   world_ = world;
-  move_to(spawn);
+  move_to(place ? place->at : spawn);
+  if (place) look(yaw_of(*place), pitch_of(*place));
 }
 
 void Player::move_to(const WorldPos& eye) {
@@ -70,6 +71,8 @@ Pose Player::pose() const {
 }
 
 double yaw_of(const Pose& pose) { return pose.yaw / 65536.0 * 2 * kPi; }
+
+double pitch_of(const Pose& pose) { return pose.pitch / 32768.0 * kPi; }
 
 Camera Player::camera(double view_voxels) const {
   Camera camera;

@@ -26,8 +26,9 @@ class Player {
   /// Makes the player walk, with a body that falls and that voxels stop, or fly.
   void set_walking(bool is_walking);
   /// Call it when a world opens. The player keeps the position if the world is the one of the last
-  /// call, and otherwise moves to `spawn`.
-  void enter(const WorldId& world, const WorldPos& spawn);
+  /// call, and otherwise moves to `place`, and to `spawn` without one.
+  void enter(const WorldId& world, const WorldPos& spawn,
+             const std::optional<Pose>& place = std::nullopt);
   /// Sets the direction, in radians. The pitch is limited to just less than straight up and down.
   void look(double yaw, double pitch);
   LookDirection direction() const { return look_direction(yaw_, pitch_); }
@@ -76,7 +77,8 @@ class Player {
   Material held_ = 1;
 };
 
-/// Returns the yaw of a pose in radians.
+/// Returns the yaw and the pitch of a pose in radians.
 double yaw_of(const Pose& pose);
+double pitch_of(const Pose& pose);
 
 }  // namespace runstone

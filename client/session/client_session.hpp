@@ -190,6 +190,11 @@ class ClientSession {
   /// Returns how often materials of welcome() were given shapes.
   std::uint64_t shapes_number() const { return connection_.shapes_number(); }
   AuthorId author() const { return connection_.author(); }
+  // These return what the functions of ServerConnection with the same names return.
+  const std::optional<Pose>& place() const { return connection_.place(); }
+  std::optional<WorldTime> world_time(TimeUs now_us) const {
+    return connection_.world_time(now_us);
+  }
   /// Returns the name with which this player joins.
   const std::string& name() const { return connection_.config().name; }
   OperationId operation(ClientSequence seq) const {

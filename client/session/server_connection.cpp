@@ -71,6 +71,11 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     return on_materials(*added);
   if (const auto* shapes = std::get_if<ShapesGiven>(&message); shapes != nullptr && is_open())
     return on_shapes(*shapes);
+  if (const auto* time = std::get_if<WorldTime>(&message); time != nullptr && is_open()) {
+    time_ = *time;
+    time_us_ = arrival.received_us;
+    return Dispatch::handled;
+  }
   if (auto* servers = std::get_if<Servers>(&message); servers != nullptr && is_open()) {
     servers_ = std::move(*servers);
     ++servers_number_;
@@ -123,6 +128,7 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
     servers_ = {};
     ++servers_number_;
   }
+  if (is_another_world || (welcome.features & kFeatureWorldTime) == 0) time_.reset();
   outgoing_.push_back(std::move(auth));
   welcome_ = std::move(welcome);
   state_ = SessionState::authenticating;
@@ -144,6 +150,7 @@ void ServerConnection::set_password(std::shared_ptr<PasswordKeys> password) {
 
 void ServerConnection::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
   author_ = accepted.author;
+  place_ = (welcome_->features & kFeatureVisits) != 0 ? accepted.place : std::nullopt;
   ++connect_count_;
   state_ = SessionState::open;
   ping_us_ = now_us - kPingEveryUs;

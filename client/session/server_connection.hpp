@@ -62,8 +62,8 @@ class ServerConnection {
     materials_added,   // welcome() has more materials now, or materials with other shapes
     for_session,       // the session decides whether the message is allowed in this state
   };
-  /// Handles the messages of the handshake, pongs, new materials and shapes once open, and
-  /// goodbyes. Leaves other messages as they are.
+  /// Handles the messages of the handshake, pongs, new materials, shapes and the time of the world
+  /// once open, and goodbyes. Leaves other messages as they are.
   Dispatch receive(Message& message, const Arrival& arrival);
   /// Notes that a valid message arrived that did not pass through receive().
   void note_message(TimeUs now_us) { last_message_us_ = now_us; }
@@ -121,6 +121,14 @@ class ServerConnection {
   /// Returns how often materials of welcome() were given shapes.
   std::uint64_t shapes_number() const { return shapes_number_; }
   AuthorId author() const { return author_; }
+  /// Returns where the player was last in the world, as the server of this connection says, or
+  /// nullopt if it does not know.
+  const std::optional<Pose>& place() const { return place_; }
+  /// Returns the time of the world, or nullopt if the world has no clock that this client knows.
+  std::optional<WorldTime> world_time(TimeUs now_us) const {
+    if (!time_) return std::nullopt;
+    return later(*time_, now_us - time_us_);
+  }
   std::uint64_t connect_count() const { return connect_count_; }
   std::uint64_t pongs() const { return pongs_; }
   const ClockOffset& clock() const { return clock_; }
@@ -154,6 +162,9 @@ class ServerConnection {
   std::uint64_t servers_number_ = 0;
   std::uint64_t shapes_number_ = 0;
   AuthorId author_ = 0;
+  std::optional<Pose> place_;
+  std::optional<WorldTime> time_;  // of the world, at time_us_
+  TimeUs time_us_ = 0;
   std::uint64_t connect_count_ = 0, pongs_ = 0;
   ClockOffset clock_;
   std::optional<View> view_sent_;

@@ -76,6 +76,8 @@ struct HudState {
   std::string tool;                  // the chosen tool and its numbers; empty: the plain voxel tool
   const ToolBox* tools = nullptr;    // not null while the tool window is open
   bool has_preview = false;          // `tools` has the preview of the next click
+  double time_of_day = 0.4;          // that frames show, as FrameLook::time_of_day
+  bool has_own_time = false;         // the player has chosen it
   bool has_files = false;            // the clipboard can be read from files, and written to them
   FileState file;
   bool shows_players = false;

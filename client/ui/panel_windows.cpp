@@ -55,6 +55,7 @@ void PanelWindows::build(const HudState& state, UiContext& context, std::vector<
   std::vector<ToolCommand> commands;
   tools_.build(state, scale, commands);
   for (ToolCommand& command : commands) out.emplace_back(std::move(command));
+  if (const auto time = tools_.take_time()) out.emplace_back(*time);
   if (auto wanted = tools_.file().take()) out.push_back(*std::move(wanted));
 }
 

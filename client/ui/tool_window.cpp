@@ -152,6 +152,7 @@ void ToolWindow::build(const HudState& state, double scale, std::vector<ToolComm
   build_next_click(state, out);
   build_places(state, out);
   build_symmetry(state, out);
+  if (ImGui::CollapsingHeader("Time of day")) time_ = build_time_slider(state);
   build_selection(state, scale, out);
   ImGui::PopItemWidth();
   ImGui::End();

@@ -1,6 +1,6 @@
 // ToolWindow: the building tools with their numbers, the effect of the next click, places by
-// numbers, the symmetry, the selection and the clipboard. It changes nothing itself: it returns
-// commands. One thread.
+// numbers, the symmetry, the selection and the clipboard, and the time of day. It changes nothing
+// itself: it returns commands. One thread.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -14,6 +14,7 @@
 #include "client/tools/tool_command.hpp"
 #include "client/ui/file_panel.hpp"
 #include "client/ui/hud_state.hpp"
+#include "client/ui/time_panel.hpp"
 
 namespace runstone {
 
@@ -36,6 +37,8 @@ class ToolWindow {
   void build(const HudState& state, double scale, std::vector<ToolCommand>& out);
   /// The file that the user wants to read or to write. The commands of build() come first.
   FilePanel& file() { return file_; }
+  /// Returns the time of day that the user has chosen since the last call, if so.
+  std::optional<SetTime> take_time() { return std::exchange(time_, std::nullopt); }
 
  private:
   void build_tools(const ToolBox& box, std::vector<ToolCommand>& out) const;
@@ -59,6 +62,7 @@ class ToolWindow {
   bool keeps_air_ = false;
   std::string replaced_;  // the name of the material to be replaced, as typed
   FilePanel file_;
+  std::optional<SetTime> time_;
 };
 
 }  // namespace runstone

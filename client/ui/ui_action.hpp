@@ -8,6 +8,7 @@
 #include "client/tools/tool_command.hpp"
 #include "client/ui/library_window.hpp"
 #include "client/ui/rollback_window.hpp"
+#include "client/ui/time_panel.hpp"
 #include "common/core/ids.hpp"
 #include "common/models/model_choices.hpp"
 
@@ -42,6 +43,6 @@ struct SetInspection {
 };
 
 using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
-                              LibraryOrder, ToolCommand, ClipboardOfFile, FileStop>;
+                              LibraryOrder, ToolCommand, ClipboardOfFile, FileStop, SetTime>;
 
 }  // namespace runstone

@@ -41,6 +41,11 @@ PlayConfig play_config(const JoinOptions& options) {
       options.memory_mib, {options.view_radius, options.view_radius_v}, options.far_levels};
   out.keys = browser_keys();
   out.started_us = steady_now_us();
+  out.kit_of = [](const WorldId& world) {
+    std::array<char, kKitBytesMax + 1> line{};
+    page_read_kit(to_hex(world).c_str(), line.data(), static_cast<int>(line.size()));
+    return parse_kit(line.data());
+  };
   return out;
 }
 
@@ -69,6 +74,8 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   handle_input(now_us);
   pipeline_.take_drawn();
   hud_.step();
+  if (const auto kept = play_.take_kit())
+    page_keep_kit(to_hex(kept->world).c_str(), to_text(kept->kit).c_str());
   flush(now_us);  // local edits go first
   play_.follow(now_us);
   network_.step_cache(play_.limits().room(), now_us);  // the view names the chunks that were found

@@ -43,6 +43,7 @@ struct BodyReader {
   Result<Message> read(const wire::SessionAccepted& t) const;
   Result<Message> read(const wire::Ping& t) const;
   Result<Message> read(const wire::Pong& t) const;
+  Result<Message> read(const wire::WorldTime& t) const;
   Result<Message> read(const wire::Goodbye& t) const;
   Result<Message> read(const wire::Move& t) const;
   Result<Message> read(const wire::PlayerPoses& t) const;

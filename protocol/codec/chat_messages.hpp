@@ -22,6 +22,7 @@ enum class ChatLineKind : std::uint8_t {
   server = 2,              // the host, by the command `say`
   message_of_the_day = 3,  // for one who joins
   refused = 4,             // for the sender alone: why a line was not passed on
+  visit = 5,               // a player has joined or left
 };
 
 struct ChatLine {

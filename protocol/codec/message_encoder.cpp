@@ -68,7 +68,9 @@ struct BodyBuilder {
     return wire::CreateClientAuth(b, signature, ticket, optional_bytes(m.password_key));
   }
   Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
-    return wire::CreateSessionAccepted(b, m.author, m.resolved, m.tile_rules);
+    const wire::Pose place = pose_of(m.place.value_or(Pose{}));
+    return wire::CreateSessionAccepted(b, m.author, m.resolved, m.tile_rules,
+                                       m.place ? &place : nullptr);
   }
   Offset<wire::View> operator()(const View& m) {
     RUNSTONE_ASSERT(m.number != 0);
@@ -248,6 +250,11 @@ struct BodyBuilder {
     ByteWriter w(bytes);
     write_given_shapes(w, m.given);
     return wire::CreateShapesGiven(b, bytes_of(b, bytes));
+  }
+
+  Offset<wire::WorldTime> operator()(const WorldTime& m) {
+    RUNSTONE_ASSERT(is_valid(m));
+    return wire::CreateWorldTime(b, m.day_ms, m.rate);
   }
 
   Offset<wire::LogMarksRequest> operator()(const LogMarksRequest& m) {

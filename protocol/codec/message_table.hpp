@@ -102,6 +102,7 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"BuildUpload", client, kEdits, open, kFeatureBuilds},
       {"BuildAnswer", server, kControl, open, kFeatureBuilds},
       {"ShapesGiven", server, kEdits, open, kFeatureShapes},
+      {"WorldTime", server, kEdits, open, kFeatureWorldTime},
   }};
 }();
 

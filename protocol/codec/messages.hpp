@@ -98,6 +98,8 @@ struct SessionAccepted {
   /// The rules by which the server makes tiles. Tiles that were made by other rules are not
   /// claimed. 0: the server takes no claims of tiles.
   std::uint32_t tile_rules = 0;
+  /// Where the player was last in this world; nullopt: the player begins at the spawn.
+  std::optional<Pose> place = std::nullopt;
   friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
 
@@ -464,7 +466,8 @@ struct Resumed {
   friend bool operator==(const Resumed&, const Resumed&) = default;
 };
 
-/// The order is that of the enum Kind in the schema.
+/// The order is that of the enum Kind in the schema. WorldTime is that of common/core: the clock of
+/// the world, when the message was sent.
 using Message = std::variant<
     Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks, EditRequest, Commit,
     Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList, Ping, Pong, Goodbye,
@@ -473,7 +476,7 @@ using Message = std::variant<
     ChatLines, KeyRequest, SealedKey, KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest,
     LogMarks, RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
     RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest, Builds,
-    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven>;
+    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven, WorldTime>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

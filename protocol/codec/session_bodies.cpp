@@ -108,7 +108,16 @@ Result<Message> BodyReader::read(const wire::ClientAuth& t) const {
 }
 
 Result<Message> BodyReader::read(const wire::SessionAccepted& t) const {
-  return SessionAccepted{t.author(), t.resolved(), t.tile_rules()};
+  SessionAccepted m{t.author(), t.resolved(), t.tile_rules()};
+  if (t.place() != nullptr && !take_pose(t.place(), m.place.emplace()))
+    return bad("session_accepted: place is outside the world");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::WorldTime& t) const {
+  const WorldTime m{t.day_ms(), t.rate()};
+  if (!is_valid(m)) return bad("world_time: time or rate is out of range");
+  return m;
 }
 
 Result<Message> BodyReader::read(const wire::Ping& t) const {

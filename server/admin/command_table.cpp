@@ -13,6 +13,7 @@
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
+#include "server/admin/time_commands.hpp"
 
 namespace runstone {
 namespace {
@@ -24,7 +25,7 @@ constexpr const char* kBoxHelp =
 constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME or author #N (several: any of them), "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library";
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library|clock";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;
@@ -111,7 +112,7 @@ const std::vector<CommandRow>& command_table() {
     for (const auto& part :
          {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
           role_commands(), password_commands(), clock_commands(), library_commands(),
-          shape_commands(), host_commands()})
+          shape_commands(), time_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -27,17 +27,18 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 9> kCauses = {{{"player", Cause::player},
-                                               {"console", Cause::console},
-                                               {"rollback", Cause::rollback},
-                                               {"undo", Cause::undo},
-                                               {"redo", Cause::redo},
-                                               {"import", Cause::import},
-                                               {"rights", Cause::rights},
-                                               {"materials", Cause::materials},
-                                               {"library", Cause::library}}};
+constexpr std::array<CauseName, 10> kCauses = {{{"player", Cause::player},
+                                                {"console", Cause::console},
+                                                {"rollback", Cause::rollback},
+                                                {"undo", Cause::undo},
+                                                {"redo", Cause::redo},
+                                                {"import", Cause::import},
+                                                {"rights", Cause::rights},
+                                                {"materials", Cause::materials},
+                                                {"library", Cause::library},
+                                                {"clock", Cause::clock}}};
 constexpr const char* kCauseNames =
-    "player, console, rollback, undo, redo, import, rights, materials or library";
+    "player, console, rollback, undo, redo, import, rights, materials, library or clock";
 
 CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   if (word.starts_with('#')) {
@@ -212,6 +213,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"materials\": added materials and shapes stay");
   if (preview.filter.cause == Cause::library)
     return failure("rollback preview cause \"library\": builds remove takes a build away");
+  if (preview.filter.cause == Cause::clock)
+    return failure("rollback preview cause \"clock\": `time` sets the time of the world");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(
@@ -326,6 +329,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " shapes of " + given_names_text(given->rows, materials);
   if (const LibraryChange* change = library_change_of(record.edit))
     return line + " " + library_change_text(*change);
+  if (const WorldTime* time = world_time_of(record.edit))
+    return line + " time " + day_time_text(time->day_ms) + " rate " + std::to_string(time->rate);
   return line + " " + edit_text(record, materials);
 }
 

@@ -93,6 +93,9 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto library = store.library_rows();
   if (!library) return failure(library.error().message());
   start.library = *std::move(library);
+  auto saved = store.saved_state();
+  if (!saved) return failure(saved.error().message());
+  start.saved = *std::move(saved);
   if (const auto counted = store.check_counts(); !counted)
     return failure(counted.error().message());
   return start;
@@ -131,6 +134,9 @@ Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<L
   auto read = read_missed_log(store, std::max<Sequence>(1, last.seq), SIZE_MAX);
   if (!read) return failure(read.error());
   out.read = *std::move(read);
+  auto saved = store.saved_state();
+  if (!saved) return failure(saved.error().message());
+  out.places = std::move(saved->places);
   return out;
 }
 

@@ -222,6 +222,7 @@ Result<SessionId, std::string> ServerCore::begin_handover(std::optional<SessionI
     if (const auto why = world_->cluster().handover_refusal(successor)) return failure(*why);
     if (!commands_->is_idle())
       return failure("rollbacks or undos are under way: wait, or cancel them (rollback list)");
+    world_->save_state(read_clocks());
     return world_->cluster().hand_over(successor, read_clocks());
   });
 }

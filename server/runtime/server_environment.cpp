@@ -125,6 +125,10 @@ void ServerEnvironment::log_names(std::vector<NameChange> changes) {
   log_->writer().change_names(std::move(changes));
 }
 
+void ServerEnvironment::save_state(SavedState state) {
+  if (log_ != nullptr) log_->writer().save_state(std::move(state));
+}
+
 void ServerEnvironment::log_chat(const ChatEntry& entry) {
   if (chat_log_ != nullptr) chat_log_->append(entry);
 }

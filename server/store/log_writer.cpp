@@ -61,6 +61,14 @@ void LogWriter::change_names(std::vector<NameChange> names) {
   queue(std::move(batch));
 }
 
+void LogWriter::save_state(SavedState state) {
+  if (!has_room(1)) return;
+  Batch batch;
+  batch.room = 1;
+  batch.state = std::move(state);
+  queue(std::move(batch));
+}
+
 void LogWriter::queue(Batch batch) {
   {
     const std::lock_guard guard(mutex_);
@@ -176,6 +184,7 @@ LogWriter::Batch LogWriter::take_group() {
     std::move(next.names.begin(), next.names.end(), std::back_inserter(group.names));
     std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
     std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
+    if (next.state) group.state = std::move(next.state);
     group.room += next.room;
     group.bytes += next.bytes;
     batches_.pop_front();
@@ -237,6 +246,10 @@ StoreResult<void> LogWriter::write(Batch& group) {
     if (auto changed = world_.change_names(group.names); !changed) return changed;
     const std::size_t count = std::exchange(group.names, {}).size();
     if (callbacks_.on_names_written) callbacks_.on_names_written(count);
+  }
+  if (group.state) {
+    if (auto saved = world_.save_state(*group.state); !saved) return saved;
+    group.state.reset();
   }
   if (!group.players.empty() || !group.records.empty()) {
     if (auto appended = world_.append(group.players, group.records); !appended) return appended;

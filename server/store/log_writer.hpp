@@ -20,7 +20,7 @@
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe, a tile or a file that cannot be written ends only its job.
-// Threads: append(), change_names(), save_snapshots(), save_keyframe(), save_tiles(),
+// Threads: append(), change_names(), save_state(), save_snapshots(), save_keyframe(), save_tiles(),
 // save_build_file() and has_room() from any thread. The writer thread calls the callbacks,
 // which must return soon. The mutex is a
 // leaf: no callback and no disk access happens while it is locked.
@@ -110,6 +110,9 @@ class LogWriter {
   /// stopped drops them. They take room for one record, and are written before all records that are
   /// queued later.
   void change_names(std::vector<NameChange> names);
+  /// Queues what is kept besides the log. It takes room for one record, and of several in one
+  /// commit the newest is written, before the records. Does nothing without has_room().
+  void save_state(SavedState state);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
@@ -145,6 +148,7 @@ class LogWriter {
     std::vector<NameChange> names;
     std::vector<PlayerRow> players;
     std::vector<EditRecord> records;
+    std::optional<SavedState> state;
     std::size_t room = 0;   // of queued_records_max that the batch takes
     std::size_t bytes = 0;  // of memory that the records take
   };

@@ -12,6 +12,7 @@
 
 #include "common/sql/database.hpp"
 #include "server/store/log_reader.hpp"
+#include "server/world/environment/saved_state.hpp"
 
 namespace runstone {
 
@@ -56,6 +57,11 @@ inline constexpr const char* kLogErasKey = "log_eras";
 /// The key of a row, always 1, that only a world has in which a material has or had a shape.
 inline constexpr const char* kShapesKey = "shapes";
 
+/// The keys of the rows that saved_state() reads. Only a world whose clock was set has the first
+/// one.
+inline constexpr const char* kClockKey = "world_clock";
+inline constexpr const char* kPlacesKey = "player_places";
+
 class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
@@ -84,6 +90,12 @@ class MetaTable {
   StoreResult<std::optional<Epoch>> open_epoch();
   StoreResult<void> put_open_epoch(std::optional<Epoch> epoch);
 
+  /// Returns the rows `world_clock` and `player_places`. Fails (corrupt) if one has an impossible
+  /// value.
+  StoreResult<SavedState> saved_state();
+  StoreResult<void> put_clock(const SavedClock& clock);
+  StoreResult<void> put_places(const std::vector<PlayerPlace>& places);
+
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)
       : file_(std::move(file)),
@@ -93,6 +105,8 @@ class MetaTable {
   StoreResult<MetaValue> read_row(sql::Statement& row, std::string_view key);
   StoreResult<std::optional<MetaValue>> find(const std::string& key);
   StoreResult<MetaValue> get(const std::string& key);
+  StoreResult<std::optional<SavedClock>> clock();
+  StoreResult<std::vector<PlayerPlace>> places();
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;
 
   std::string file_;

@@ -83,6 +83,7 @@ class SqlStore final : public Store {
   StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<NameClaim>> name_claims() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
+  StoreResult<SavedState> saved_state() override;
   AuthorId author_max() const override { return state_.author_max; }
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;
@@ -101,6 +102,7 @@ class SqlStore final : public Store {
   StoreResult<void> append(std::span<const PlayerRow> players,
                            std::span<const EditRecord> records) override;
   StoreResult<void> change_names(std::span<const NameChange> changes) override;
+  StoreResult<void> save_state(const SavedState& state) override;
   StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override;
@@ -194,6 +196,8 @@ class SqlStore final : public Store {
   /// follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
   /// records are inserted.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
+  /// Notes the clock that the newest of these records sets, in the caller's transaction.
+  StoreResult<void> set_clock(std::span<const EditRecord> records);
   /// Fails (bad_request) if new materials or shapes among the records do not continue the material
   /// table.
   StoreResult<void> check_continues_materials(std::span<const EditRecord> records);

@@ -9,6 +9,7 @@
 #include "server/store/library_reader.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/world/environment/player_rows.hpp"
+#include "server/world/environment/saved_state.hpp"
 
 namespace runstone {
 
@@ -42,6 +43,9 @@ class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
   /// Returns the highest author number that was ever stored, or 0. It is not lower if rows of
   /// players are lost, so that no number is given to two players.
   virtual AuthorId author_max() const = 0;
+
+  /// Returns what is kept besides the log, as it was saved last. Fails (corrupt) if it is damaged.
+  virtual StoreResult<SavedState> saved_state() { return SavedState{}; }
 
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.

@@ -17,6 +17,7 @@
 #include "server/store/keyframe.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
+#include "server/world/environment/saved_state.hpp"
 
 namespace runstone {
 
@@ -49,6 +50,9 @@ class WorldSink {
   /// Writes claims of names and removes released ones, in this order. All of it is durable on
   /// return. It may be repeated. Fails (bad_request) if another key owns a claimed name.
   virtual StoreResult<void> change_names(std::span<const NameChange> changes) = 0;
+  /// Replaces what is kept besides the log. The clock is left out if another record has set it
+  /// last.
+  virtual StoreResult<void> save_state(const SavedState& /*state*/) { return {}; }
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Deletes the tiles
   /// above these chunks that are older. Fails (bad_request) if a chunk or the checkpoint is ahead
   /// of the log.

@@ -27,11 +27,13 @@ struct WorldServer::Rooms {
         people({config, environment, counters, sessions, order, receipts, rights, quotas, ground,
                 changes},
                start, random),
-        cluster({config, environment, counters, sessions, order, receipts, commits,
-                 people.joining(), people.edits(), people.presence(), people.chat()},
-                random),
+        cluster(
+            {config, environment, counters, sessions, order, receipts, commits, people.joining(),
+             people.edits(), people.presence(), people.chat(), people.visits(), people.places()},
+            random),
         build_reads(config, environment, sessions, order, rights),
-        build_uploads({environment, sessions, order, rights, changes, cluster}) {}
+        build_uploads({environment, sessions, order, rights, changes, cluster}),
+        saved(start.saved) {}
 
   WorldConfig config;
   WorldEnvironment& environment;
@@ -48,9 +50,13 @@ struct WorldServer::Rooms {
   Cluster cluster;
   BuildReads build_reads;
   BuildUploads build_uploads;
+  SavedState saved;     // what was saved last
+  TimeUs saved_us = 0;  // when; steady clock
 };
 
 namespace {
+
+constexpr TimeUs kSaveStateUs = 60'000'000;
 
 /// A kind of message that does not reach OpenMessages: servers send it, or it was handled before.
 template <class Kind>
@@ -266,10 +272,23 @@ void WorldServer::step_checkpointer(const Clocks& now) {
     rooms_->ground.request_load(key, now);
 }
 
+void WorldServer::save_state(TimeUs now_us, TimeUs clock_us) {
+  rooms_->saved_us = now_us;
+  if (!rooms_->order.owns_world()) return;
+  rooms_->people.note_places();
+  SavedState state{rooms_->people.places().all(), rooms_->order.clock().saved_at(clock_us)};
+  if (state == rooms_->saved) return;
+  rooms_->environment.save_state(state);
+  rooms_->saved = std::move(state);
+}
+
+void WorldServer::save_state(const Clocks& now) { save_state(now.steady_us, now.steady_us); }
+
 void WorldServer::tick(const Clocks& now) {
   Cluster& cluster = rooms_->cluster;
   Ground& ground = rooms_->ground;
   People& people = rooms_->people;
+  rooms_->order.clock().begin(now.steady_us);
   people.edits().step(now, [&](const Session& session) { cluster.count_edit(session); });
   commit_one(now);
   if (!cluster.is_following()) {
@@ -285,6 +304,7 @@ void WorldServer::tick(const Clocks& now) {
   ground.apply_views(now);
   if (!cluster.is_following()) {  // the owner of the world sends them
     people.presence().broadcast_player_list();
+    people.visits().tick(now);
     people.chat().broadcast();
     people.presence().broadcast_poses(now);
     cluster.tick_owner(now);
@@ -298,6 +318,9 @@ void WorldServer::tick(const Clocks& now) {
   }
   rooms_->build_reads.serve(now);
   rooms_->build_uploads.tick(now);
+  // The clock is saved as it will be at the next save: after a crash it never goes back.
+  if (now.steady_us - rooms_->saved_us >= kSaveStateUs)
+    save_state(now.steady_us, now.steady_us + kSaveStateUs);
   step_checkpointer(now);
   remove_closed();
   ground.start_work(now);
@@ -348,6 +371,7 @@ void WorldServer::log_failed() {
 
 void WorldServer::begin_stop(const Clocks& now) {
   rooms_->commits.commit_all(LargeEdits::all, now);  // the edits that were accepted
+  save_state(now);
   rooms_->cluster.begin_stop();
   const TimeUs stop_us = rooms_->cluster.hands_over() ? 0 : rooms_->config.stop_us_max;
   rooms_->order.begin_stop(now.steady_us + stop_us);

@@ -79,8 +79,8 @@ class WorldServer {
   void commit_one(const Clocks& now);
   /// Orders and sends queued edits as long as has_ready_edits().
   void commit(const Clocks& now);
-  /// Does periodic work: timeouts, views, presence, digest checks, retries, checkpoints and
-  /// eviction.
+  /// Does periodic work: timeouts, views, presence, digest checks, retries, checkpoints, eviction,
+  /// and the state that is kept besides the log.
   void tick(const Clocks& now);
 
   // Answers of WorldEnvironment. The others go to ground(), cluster(), build_reads() and
@@ -107,11 +107,16 @@ class WorldServer {
   /// Order::is_flushed().
   void begin_stop(const Clocks& now);
 
+  /// Saves the places of players and the clock of the world, if they have changed. Call it before
+  /// the world is handed over. A stop does it, and tick() does it from time to time.
+  void save_state(const Clocks& now);
+
  private:
   struct Rooms;
   /// Removes the sessions that were closed.
   void remove_closed();
   void step_checkpointer(const Clocks& now);
+  void save_state(TimeUs now_us, TimeUs clock_us);
   void authenticate(Session& session, const ClientAuth& auth, const Clocks& now);
   void handle(Session& session, Message&& message, const Clocks& now);
 

@@ -53,6 +53,13 @@ mergeInto(LibraryManager.library, {
   page_keep_server: function (world, key) {
     Module.page.keepServer(UTF8ToString(world), UTF8ToString(key));
   },
+  page_keep_kit: function (world, line) {
+    Module.page.keepKit(UTF8ToString(world), UTF8ToString(line));
+  },
+  page_read_kit: function (world, out, bytes) {
+    var line = Module.page.readKit(UTF8ToString(world));
+    stringToUTF8(lengthBytesUTF8(line) < bytes ? line : "", out, bytes);
+  },
   page_toggle_timeline: function () {
     Module.page.toggleTimeline();
   },

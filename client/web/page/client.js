@@ -137,6 +137,8 @@ const page = {
     Program.call("web_font");
   },
   keepServer: Keys.keepServer,
+  keepKit: (world, line) => keep(`kit.${world}`, line),
+  readKit: (world) => kept(`kit.${world}`) ?? "",
 };
 
 // Joining.

@@ -105,6 +105,13 @@ Result<void> validate_shape(const ShapesEdit& shape) {
   return validate(*shape.given);
 }
 
+Result<void> validate_shape(const ClockEdit& shape) {
+  if (shape.time.day_ms >= kDayMs) return fail(ErrorCode::bad_value, "time is not one of a day");
+  if (shape.time.rate > kTimeRateMax)
+    return fail(ErrorCode::limit_exceeded, "rate of time is too high");
+  return {};
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -157,6 +164,11 @@ void write_shape(ByteWriter& w, const LibraryEdit& shape) {
 }
 
 void write_shape(ByteWriter& w, const ShapesEdit& shape) { write_given_shapes(w, *shape.given); }
+
+void write_shape(ByteWriter& w, const ClockEdit& shape) {
+  w.varint(shape.time.day_ms);
+  w.varint(shape.time.rate);
+}
 
 std::int32_t read_coordinate(ByteReader& r) {
   return static_cast<std::int32_t>(
@@ -212,6 +224,13 @@ Paste read_paste(ByteReader& r) {
   return shape;
 }
 
+WorldTime read_world_time(ByteReader& r) {
+  WorldTime time;
+  time.day_ms = static_cast<std::uint32_t>(r.varint_max(kDayMs - 1, "time is not one of a day"));
+  time.rate = static_cast<std::uint32_t>(r.varint_max(kTimeRateMax, "rate of time is too high"));
+  return time;
+}
+
 Material read_material(ByteReader& r) {
   return static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
 }
@@ -228,6 +247,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::materials_with_looks:
     case EditKind::library:
     case EditKind::shapes:
+    case EditKind::clock:
       return true;
   }
   return false;
@@ -266,6 +286,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return LibraryEdit{std::make_shared<const LibraryChange>(read_library_change(r))};
     case EditKind::shapes:
       return ShapesEdit{std::make_shared<const GivenShapes>(read_given_shapes(r))};
+    case EditKind::clock:
+      return ClockEdit{read_world_time(r)};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -274,9 +296,9 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
-      EditKind::fill_stroke, EditKind::paste,    EditKind::rights,
-      EditKind::materials,   EditKind::library,  EditKind::shapes};
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
+      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
+      EditKind::shapes,    EditKind::clock};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -297,6 +319,8 @@ EditDescriptor library_edit(LibraryChange change) {
 EditDescriptor shapes_edit(GivenShapes given) {
   return {ShapesEdit{std::make_shared<const GivenShapes>(std::move(given))}, {}, kEmpty};
 }
+
+EditDescriptor clock_edit(const WorldTime& time) { return {ClockEdit{time}, {}, kEmpty}; }
 
 Result<void> validate(const EditDescriptor& edit) {
   if (static_cast<std::uint8_t>(edit.mask.kind) >
@@ -364,9 +388,10 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
-      in[0] <= static_cast<std::uint8_t>(EditKind::shapes))
-    return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials, shapes or the library is no edit of voxels");
+      in[0] <= static_cast<std::uint8_t>(EditKind::clock))
+    return fail(
+        ErrorCode::unknown_kind,
+        "a change of rights, materials, shapes, the library or the clock is no edit of voxels");
   return decode_descriptor(in);
 }
 

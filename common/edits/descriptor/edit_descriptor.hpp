@@ -2,8 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
-// have no voxels: they change who may do what, add materials or give them shapes, or change the
-// library of builds. They stand in the same order as the others.
+// have no voxels: they change who may do what, add materials or give them shapes, change the
+// library of builds, or set the clock of the world. They stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,6 +14,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
+#include "common/core/world_time.hpp"
 #include "common/edits/clipboard/clipboard.hpp"
 #include "common/edits/clipboard/orientation.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
@@ -24,7 +25,7 @@
 namespace runstone {
 
 /// The tags of the kinds, as they are stored. 5 is unused, because fill_box with the mask
-/// only_material replaces a material in a box.
+/// only_material replaces a material in a box. 12 is unused, too.
 enum class EditKind : std::uint8_t {
   set_voxel = 1,
   fill_box = 2,
@@ -35,7 +36,8 @@ enum class EditKind : std::uint8_t {
   materials = 8,
   materials_with_looks = 9,  // of which at least one has a look
   library = 10,
-  shapes = 11
+  shapes = 11,
+  clock = 13
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -139,9 +141,15 @@ struct ShapesEdit {
   }
 };
 
+/// Sets the clock of the world. It has no voxels and touches no chunk.
+struct ClockEdit {
+  WorldTime time;  // from when the edit is ordered
+  friend bool operator==(const ClockEdit&, const ClockEdit&) = default;
+};
+
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
 using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit, ShapesEdit>;
+                               MaterialsEdit, LibraryEdit, ShapesEdit, ClockEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -188,6 +196,13 @@ inline const GivenShapes* given_shapes_of(const EditDescriptor& edit) {
   const auto* shapes = std::get_if<ShapesEdit>(&edit.shape);
   return shapes == nullptr ? nullptr : shapes->given.get();
 }
+/// Returns the descriptor that sets the clock of the world.
+EditDescriptor clock_edit(const WorldTime& time);
+/// Returns the time of a descriptor that sets the clock; null for the other kinds.
+inline const WorldTime* world_time_of(const EditDescriptor& edit) {
+  const auto* clock = std::get_if<ClockEdit>(&edit.shape);
+  return clock == nullptr ? nullptr : &clock->time;
+}
 /// Returns true if the edit adds materials or gives shapes to some: it changes the material table.
 inline bool changes_materials(const EditDescriptor& edit) {
   return std::holds_alternative<MaterialsEdit>(edit.shape) ||
@@ -198,7 +213,8 @@ inline bool has_voxels(const EditDescriptor& edit) {
   return !std::holds_alternative<RightsEdit>(edit.shape) &&
          !std::holds_alternative<MaterialsEdit>(edit.shape) &&
          !std::holds_alternative<LibraryEdit>(edit.shape) &&
-         !std::holds_alternative<ShapesEdit>(edit.shape);
+         !std::holds_alternative<ShapesEdit>(edit.shape) &&
+         !std::holds_alternative<ClockEdit>(edit.shape);
 }
 
 /// Returns the maximum number of bytes of a descriptor of this kind.

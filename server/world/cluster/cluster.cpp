@@ -66,6 +66,8 @@ bool Cluster::take_over(const Takeover& start, const Clocks& now) {
   servers_.hold(now);
   world_.commits.begin_epoch(start.epoch);
   world_.presence.begin_anew();
+  world_.places.restore(start.places);
+  world_.visits.begin_anew();
   for (Session* session : world_.sessions.open()) {
     if (!world_.order.players().adopt({session->author, session->key, session->name})) {
       world_.sessions.close(*session, GoodbyeReason::closing, kConnectAgain);

@@ -27,6 +27,8 @@ class Cluster {
     EditRequests& edits;
     Presence& presence;
     ChatRoom& chat;
+    Visits& visits;
+    PlayerPlaces& places;
   };
   Cluster(const World& world, const RandomBytes& random);
 
@@ -50,6 +52,9 @@ class Cluster {
   std::optional<std::string> library_refusal() const { return followers_.library_refusal(); }
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const { return followers_.shapes_refusal(); }
+  /// Returns why the clock of the world may not be set, as a sentence without its period, or
+  /// nullopt.
+  std::optional<std::string> clock_refusal() const { return followers_.clock_refusal(); }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const {

@@ -83,7 +83,7 @@ void Followers::on_relay_close(SessionId link, const RelayClose& close) {
   if (Session* const session = sessions_.find(found->second)) sessions_.leave(*session);
 }
 
-void Followers::on_follow_request(SessionId link, const FollowRequest& request) {
+void Followers::on_follow_request(SessionId link, const FollowRequest& request, const Clocks& now) {
   if (!environment_.owns_world())
     return close(link, GoodbyeReason::closing, "another server may own the world");
   Follower& follower = all_.at(link);
@@ -100,6 +100,8 @@ void Followers::on_follow_request(SessionId link, const FollowRequest& request) 
     for (const LogPart& part : feed.unwritten().parts()) feed.send(link, encode_message(part));
   }
   feed.send(link, encode_message(receipts_.durable()));
+  // The records that the follower reads say when the clock was set, not how far it has come.
+  if (const auto time = order_.clock().at(now.steady_us)) feed.send(link, encode_message(*time));
 }
 
 std::optional<std::string> Followers::correction_refusal() const {
@@ -129,6 +131,15 @@ std::optional<std::string> Followers::shapes_refusal() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Followers::clock_refusal() const {
+  for (const auto& [link, follower] : all_) {
+    if (!follower.takes_clock)
+      return "a server that follows is of an older version, which cannot read the clock of the world: "
+             "stop it, or start it with this version (servers lists them)";
+  }
+  return std::nullopt;
+}
+
 void Followers::admit(Session& session, const Clocks& now) {
   const SessionId link = session.id;
   environment_.report(OperatorLogLevel::info,
@@ -146,6 +157,7 @@ void Followers::admit(Session& session, const Clocks& now) {
   follower.takes_corrections = session.has(kFeatureTimeCorrections);
   follower.takes_library = session.has(kFeatureLibrary);
   follower.takes_shapes = session.has(kFeatureShapeRecords);
+  follower.takes_clock = session.has(kFeatureClockRecords);
   order_.feed().add(link);
   environment_.trust(link);
   environment_.opened(link);
@@ -179,7 +191,7 @@ std::optional<RelayedMessage> Followers::received(SessionId link, const Message&
   } else if (const auto* end = std::get_if<RelayClose>(&message)) {
     on_relay_close(link, *end);
   } else if (const auto* request = std::get_if<FollowRequest>(&message)) {
-    on_follow_request(link, *request);
+    on_follow_request(link, *request, now);
   }
   return std::nullopt;
 }

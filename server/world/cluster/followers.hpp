@@ -29,6 +29,7 @@ struct Follower {
   bool takes_corrections = false;            // it knows a CorrectTime
   bool takes_library = false;                // it knows a LibraryChange
   bool takes_shapes = false;                 // it knows GivenShapes
+  bool takes_clock = false;                  // it knows a ClockEdit
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -68,6 +69,9 @@ class Followers {
   std::optional<std::string> library_refusal() const;
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const;
+  /// Returns why the clock of the world may not be set, as a sentence without its period, or
+  /// nullopt.
+  std::optional<std::string> clock_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;
@@ -103,7 +107,7 @@ class Followers {
   void on_relay_open(SessionId link, const RelayOpen& open, const Clocks& now);
   std::optional<RelayedMessage> on_relay(SessionId link, const Relay& relay, const Clocks& now);
   void on_relay_close(SessionId link, const RelayClose& close);
-  void on_follow_request(SessionId link, const FollowRequest& request);
+  void on_follow_request(SessionId link, const FollowRequest& request, const Clocks& now);
 
   const WorldConfig& config_;
   WorldEnvironment& environment_;

@@ -211,6 +211,9 @@ void Following::on_live_message(const Message& message, const Clocks& now) {
     }
   } else if (const auto* servers = std::get_if<Servers>(&message)) {
     world_.servers.take(*servers);
+  } else if (const auto* time = std::get_if<WorldTime>(&message)) {
+    world_.order.clock().correct(*time, now.steady_us);
+    world_.receipts.send_time_to_all(now);
   } else if (const auto* charge = std::get_if<RelayCharge>(&message)) {
     if (const Session* session = world_.sessions.find(charge->session))
       world_.sessions.charge_reading(*session, charge->bytes);

@@ -217,6 +217,16 @@ Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
   return order_.newest_materials();
 }
 
+Result<Sequence, std::string> Changes::set_clock(const WorldTime& time, AuthorId author,
+                                                 const Clocks& now) {
+  if (author != 0 && !order_.players().key_of(author)) return failure("the player has left");
+  const OperationId op = order_.next_own_operation(author);
+  const EditOffer offer{op, Cause::clock, now.steady_us, clock_edit(time), 0};
+  const ServerEditsResult ordered = order_edits({offer}, author, now);
+  if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
+  return order_.clock().record();
+}
+
 Result<Sequence, std::string> Changes::change_library(const LibraryChange& change, AuthorId author,
                                                       const Clocks& now) {
   if (author != 0 && !order_.players().key_of(author)) return failure("the player has left");

@@ -91,6 +91,11 @@ class Changes {
   /// or why it was refused, as a sentence.
   Result<Sequence, std::string> remove_build(Sequence number, AuthorId author, const Clocks& now);
 
+  /// Orders a record that sets the clock of the world, by an author (0: the console). Returns its
+  /// sequence, or why it was refused, as a sentence. Requires is_valid(time).
+  Result<Sequence, std::string> set_clock(const WorldTime& time, AuthorId author,
+                                          const Clocks& now);
+
  private:
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);

@@ -80,13 +80,14 @@ void Commits::send(const OrderedBatch& batch, const Clocks& now) {
   }
 }
 
-void Commits::apply(const std::vector<EditRecord>& records) {
+void Commits::apply(const std::vector<EditRecord>& records, const Clocks& now) {
   if (const auto ground = rights_.apply(records)) {
     rights_.close_refused();
     ground_.rights_changed(*ground);
   }
   if (order_.apply_materials(records)) receipts_.send_materials_to_all();
   order_.library().apply(records);
+  if (order_.apply_clock(records, now)) receipts_.send_time_to_all(now);
 }
 
 void Commits::send_batch(const OrderedBatch& batch, const Clocks& now) {
@@ -97,7 +98,7 @@ void Commits::send_batch(const OrderedBatch& batch, const Clocks& now) {
 bool Commits::commit(LargeEdits large, const Clocks& now) {
   auto batch = order_.commit(large, sessions_.count(), now);
   if (!batch) return false;
-  apply(batch->records);
+  apply(batch->records, now);
   order_.append(*batch);
   send_batch(*batch, now);
   return true;
@@ -111,7 +112,7 @@ void Commits::apply_ordered(std::span<const LogPartRecord> records, const Clocks
     const auto same = records.first(static_cast<std::size_t>(other - records.begin()));
     if (epoch > order_.epoch()) begin_epoch(epoch);
     const OrderedBatch batch = order_.authority().apply_ordered(same, now);
-    apply(batch.records);
+    apply(batch.records, now);
     send_batch(batch, now);
     records = records.subspan(same.size());
   }

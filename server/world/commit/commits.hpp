@@ -47,7 +47,7 @@ class Commits {
  private:
   /// Applies the changes of rights and materials among these records. Sessions that may not stay
   /// are closed.
-  void apply(const std::vector<EditRecord>& records);
+  void apply(const std::vector<EditRecord>& records, const Clocks& now);
   /// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and
   /// for chunks that are not in memory.
   void send_batch(const OrderedBatch& batch, const Clocks& now);

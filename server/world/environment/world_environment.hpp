@@ -18,6 +18,7 @@
 #include "protocol/codec/session_encodings.hpp"
 #include "server/world/environment/chat_entry.hpp"
 #include "server/world/environment/player_rows.hpp"
+#include "server/world/environment/saved_state.hpp"
 #include "server/world/environment/tile_request.hpp"
 
 namespace runstone {
@@ -232,6 +233,9 @@ class WorldEnvironment {
   virtual void player_left(const PlayerVisit& /*visit*/) {}
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
   virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
+  /// Queues what is kept besides the log. The newest state that is queued replaces those before it.
+  /// If the log takes nothing, or has no room, the state is not written; a later one brings it.
+  virtual void save_state(SavedState /*state*/) {}
 };
 
 }  // namespace runstone

@@ -11,6 +11,7 @@
 #include "server/world/environment/chat_entry.hpp"
 #include "server/world/environment/library_rows.hpp"
 #include "server/world/environment/player_rows.hpp"
+#include "server/world/environment/saved_state.hpp"
 
 namespace runstone {
 
@@ -36,6 +37,7 @@ struct WorldStart {
   AuthorId author_max = 0;           // the highest author number ever stored
   std::vector<HighWater> resolved;
   std::vector<LibraryRow> library;  // all builds, ascending
+  SavedState saved;
 };
 
 }  // namespace runstone

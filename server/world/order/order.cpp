@@ -33,7 +33,8 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       tile_rules_(tile_rules_of(tile_shapes_number(materials_))),
       library_(config.library, start.library),
       feed_(environment, config.may_be_followed),
-      durable_(start.log.last) {
+      durable_(start.log.last),
+      clock_(start.saved.clock) {
   for (const auto& [key, version] : start.snapshots) chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players_.restore(player);
   players_.begin_above(start.author_max);
@@ -87,6 +88,17 @@ bool Order::apply_materials(const std::vector<EditRecord>& records) {
     tile_rules_ = tile_rules_of(tile_shapes_number(materials_));
   }
   return has_changed;
+}
+
+bool Order::apply_clock(const std::vector<EditRecord>& records, const Clocks& now) {
+  bool is_set = false;
+  for (const EditRecord& record : records) {
+    const WorldTime* time = world_time_of(record.edit);
+    if (time == nullptr) continue;
+    clock_.set(*time, record.version.seq, now.steady_us);
+    is_set = true;
+  }
+  return is_set;
 }
 
 void Order::append(OrderedBatch& batch) {

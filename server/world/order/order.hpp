@@ -25,6 +25,7 @@
 #include "server/world/order/name_claims.hpp"
 #include "server/world/order/ownership.hpp"
 #include "server/world/order/players.hpp"
+#include "server/world/order/world_clock.hpp"
 #include "server/world/order/world_memory.hpp"
 
 namespace runstone {
@@ -92,6 +93,11 @@ class Order {
   /// Returns the builds of the world. The caller applies records to it as to the materials.
   Library& library() { return library_; }
   const Library& library() const { return library_; }
+  /// Returns the time of day of the world.
+  WorldClock& clock() { return clock_; }
+  const WorldClock& clock() const { return clock_; }
+  /// Sets the clock as these records say, which were ordered just now. Returns true if one does.
+  bool apply_clock(const std::vector<EditRecord>& records, const Clocks& now);
   /// Returns the operation of the next edit that this server makes for an author.
   OperationId next_own_operation(AuthorId author) { return {author, own_instance_, ++own_seq_}; }
 
@@ -196,6 +202,7 @@ class Order {
   std::optional<TimeUs> stop_due_us_;
   ClientInstance own_instance_ = 0;  // of the server's own edits of this run
   ClientSequence own_seq_ = 0;       // of the last one
+  WorldClock clock_;
 };
 
 }  // namespace runstone

@@ -117,6 +117,16 @@ void Receipts::send_epoch_to_all() {
   for (Session* session : sessions_.open()) send_epoch(*session);
 }
 
+void Receipts::send_time(Session& session, const Clocks& now) {
+  if (session.is_closed || session.is_relayed || !session.has(kFeatureWorldTime)) return;
+  if (const auto time = order_.clock().at(now.steady_us))
+    sessions_.send_or_close(session, encode_message(*time));
+}
+
+void Receipts::send_time_to_all(const Clocks& now) {
+  for (Session* session : sessions_.open()) send_time(*session, now);
+}
+
 void Receipts::send_materials(Session& session) {
   News news;
   send_materials(session, news);

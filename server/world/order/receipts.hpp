@@ -61,6 +61,12 @@ class Receipts {
   void send_materials(Session& session);
   void send_materials_to_all();
 
+  // The time of the world.
+  /// Sends the clock of the world to an open session, if somebody has set it. Does nothing without
+  /// the feature world time. Closes a session whose queue is full.
+  void send_time(Session& session, const Clocks& now);
+  void send_time_to_all(const Clocks& now);
+
  private:
   struct Sent {
     Epoch epoch = 0;

@@ -120,6 +120,18 @@ void ChatRoom::tell(const Session& session, const std::string& text, const Clock
   sessions_.send_or_skip(session, encode_message(ChatLines{{line}}));
 }
 
+void ChatRoom::tell_of_visit(const PublicKey& player, const std::string& text, const Clocks& now) {
+  std::vector<SessionId> readers;
+  for (const Session* session : sessions_.open()) {
+    if (reads_chat(*session) && session->has(kFeatureVisits) && session->key != player)
+      readers.push_back(session->id);
+  }
+  if (readers.empty()) return;
+  const ChatLine line{ChatLineKind::visit, 0, "", std::string(cut_utf8(text, kChatBytesMax)),
+                      time_of_line(now)};
+  sessions_.send_to_all(readers, encode_message(ChatLines{{line}}));
+}
+
 void ChatRoom::send_recent(const Session& session, const Clocks& now) {
   if (!reads_chat(session)) return;
   ChatLines recent{{state_.recent.begin(), state_.recent.end()}};

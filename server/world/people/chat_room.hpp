@@ -33,6 +33,9 @@ class ChatRoom {
   /// Sends one session a line of the host, which nobody else gets and no log keeps. It is skipped
   /// if the session reads no chat or has no room. Requires a text that chat_text() returned.
   void tell(const Session& session, const std::string& text, const Clocks& now);
+  /// Sends every session a line about a player who has joined or left, but not to the player. No
+  /// log keeps it. Sessions without the feature visits do not get it.
+  void tell_of_visit(const PublicKey& player, const std::string& text, const Clocks& now);
   /// Sends a session that has opened the newest lines, and then the message of the day.
   void send_recent(const Session& session, const Clocks& now);
   /// Sends the lines that wait to every session. Call it on every tick.

@@ -222,6 +222,8 @@ bool Joining::close_if_old_server(Session& session) {
     why = "this world has a library of builds: start a version that can read this";
   if (!session.has(kFeatureShapeRecords) && world_.order.has_shapes())
     why = "this world has materials with shapes: start a version that can read this";
+  if (!session.has(kFeatureClockRecords) && world_.order.clock().is_set())
+    why = "the clock of this world was set: start a version that can read this";
   if (why == nullptr) return false;
   world_.sessions.close(session, GoodbyeReason::wrong_protocol, why);
   return true;
@@ -236,18 +238,21 @@ void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clo
 }
 
 /// Sends session accepted and, unless another server does it, what the player has to know at first.
-/// Returns false if the session is closed.
-bool Joining::send_accepted(Session& session, ClientSequence resolved) {
+/// `place`: where the player begins, if that is not the spawn. Returns false if the session is
+/// closed.
+bool Joining::send_accepted(Session& session, ClientSequence resolved,
+                            const std::optional<Pose>& place, const Clocks& now) {
   session.tile_rules = session.has(kFeatureTiles) ? world_.order.tile_rules() : 0;
-  if (!world_.sessions.send_or_close(session,
-                                     SessionAccepted{session.author, resolved, session.tile_rules}))
+  if (!world_.sessions.send_or_close(session, SessionAccepted{session.author, resolved,
+                                                              session.tile_rules, place}))
     return false;
   if (session.is_relayed) return true;
   world_.receipts.send_epoch(session);      // if it began since Welcome
   world_.receipts.send_materials(session);  // those that were added since Welcome
   if (session.is_closed) return false;
   world_.ground.send_permissions(session);
-  return true;
+  world_.receipts.send_time(session, now);
+  return !session.is_closed;
 }
 
 void Joining::open(Session& session, const Clocks& now) {
@@ -258,13 +263,17 @@ void Joining::open(Session& session, const Clocks& now) {
     world_.sessions.close(*other, GoodbyeReason::already_connected,
                           "the same client connected again");
   if (close_if_no_seat(session)) return;
-  if (!goes_on) session.pose.at = world_.config.spawn;
+  std::optional<Pose> place;
+  if (!goes_on && session.has(kFeatureVisits)) place = world_.places.find(session.key);
+  if (!goes_on) session.pose = place.value_or(Pose{world_.config.spawn});
   Players& players = world_.order.players();
   enter(session, players.enter(session.key, session.name), true, now);
   if (players.is_renamed(session.author) && world_.order.log_has_room())
     world_.order.append_players({*players.take_unsaved(session.author)});
   const ClientSequence resolved = world_.order.resolved(session.author, session.instance);
-  if (!send_accepted(session, resolved) || goes_on) return;
+  const bool is_open = send_accepted(session, resolved, place, now);
+  world_.visits.joined(session, goes_on, now);
+  if (!is_open || goes_on) return;
   world_.presence.send_all_poses_to(session);
   world_.chat.send_recent(session, now);
   // A player who is let in without the invite must not believe that it has worked.
@@ -364,9 +373,10 @@ void Joining::open_let_in(Session& session, const SessionAccepted& accepted, con
   session.awaits_owner = false;
   if (!world_.order.players().adopt({accepted.author, session.key, session.name}))
     return world_.sessions.close(session, GoodbyeReason::closing, kConnectAgain);
-  session.pose.at = world_.config.spawn;
+  const auto place = session.has(kFeatureVisits) ? accepted.place : std::nullopt;
+  session.pose = place.value_or(Pose{world_.config.spawn});
   enter(session, accepted.author, false, now);
-  send_accepted(session, accepted.resolved);
+  send_accepted(session, accepted.resolved, place, now);
 }
 
 void Joining::open_authenticated(const Clocks& now) {

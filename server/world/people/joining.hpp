@@ -10,7 +10,9 @@
 #include "server/world/people/chat_room.hpp"
 #include "server/world/people/credentials.hpp"
 #include "server/world/people/names.hpp"
+#include "server/world/people/player_places.hpp"
 #include "server/world/people/presence.hpp"
+#include "server/world/people/visits.hpp"
 
 namespace runstone {
 
@@ -35,6 +37,8 @@ class Joining {
     Names& names;
     Presence& presence;
     ChatRoom& chat;
+    Visits& visits;
+    const PlayerPlaces& places;
   };
   Joining(const World& world, RandomBytes random);
 
@@ -46,8 +50,8 @@ class Joining {
   /// Returns true for another server of the world. Requires that the features are in force.
   bool is_server(const Session& session) const;
   /// Closes the session of another server that cannot read the log (wrong_protocol): it lacks the
-  /// feature time corrections and the time of this world was corrected, or it lacks the feature library
-  /// and this world has builds. Returns true if it closed the session.
+  /// feature time corrections and the time of this world was corrected, or another feature of
+  /// records that this world has. Returns true if it closed the session.
   bool close_if_old_server(Session& session);
   /// Lets an authenticated player in, at once or when the claim of the name is on disk, or closes
   /// the session: closing (another server may own the world), server_full, name_refused or
@@ -97,7 +101,8 @@ class Joining {
   bool close_if_forged(Session& session, const Signature& signature);
 
   void enter(Session& session, AuthorId author, bool is_listed, const Clocks& now);
-  bool send_accepted(Session& session, ClientSequence resolved);
+  bool send_accepted(Session& session, ClientSequence resolved, const std::optional<Pose>& place,
+                     const Clocks& now);
   void open(Session& session, const Clocks& now);
 
   World world_;

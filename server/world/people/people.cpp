@@ -16,12 +16,15 @@ People::People(const World& world, const WorldStart& start, const RandomBytes& r
       names_(world.config, world.environment, world.order, world.rights),
       presence_(world.config, world.sessions, world.order, world.rights),
       chat_(world.config, start, world.environment, world.sessions, world.order, world.rights),
+      visits_(world.sessions, chat_),
+      places_(start.saved.places),
       commands_(world.environment, world.sessions, world.ground),
       previews_(world.config, world.sessions, world.order, world.receipts, world.ground),
       edits_(world.config, world.environment, world.counters, world.sessions, world.order,
              world.receipts, world.rights, world.quotas),
       joining_({world.config, world.environment, world.sessions, world.order, world.receipts,
-                world.rights, world.quotas, world.ground, world.changes, names_, presence_, chat_},
+                world.rights, world.quotas, world.ground, world.changes, names_, presence_, chat_,
+                visits_, places_},
                random) {}
 
 std::vector<OnlinePlayer> People::online() const {
@@ -57,6 +60,12 @@ std::size_t People::kick(const RestrictionSubject& who, const std::string& reaso
   return kicked;
 }
 
+void People::note_places() {
+  for (const Session* session : world_.sessions.open()) {
+    if (session->has(kFeatureVisits)) places_.note(session->key, session->pose);
+  }
+}
+
 void People::close_silent(const Clocks& now) {
   for (Session* session : world_.sessions.all()) {
     if (session->is_relayed) continue;  // the server that it is connected to closes it
@@ -77,7 +86,11 @@ void People::forget_gone_authors() {
 }
 
 void People::forget(const Session& session) {
-  if (session.stage == SessionStage::open) world_.order.author_left(session.author);
+  if (session.stage == SessionStage::open) {
+    world_.order.author_left(session.author);
+    visits_.left(session);
+    if (session.has(kFeatureVisits)) places_.note(session.key, session.pose);
+  }
   presence_.forget(session);
   chat_.forget(session.id);
   commands_.forget(session.id);

@@ -44,6 +44,8 @@ class People {
   Commands& commands() { return commands_; }
   const Commands& commands() const { return commands_; }
   Previews& previews() { return previews_; }
+  Visits& visits() { return visits_; }
+  PlayerPlaces& places() { return places_; }
   EditRequests& edits() { return edits_; }
 
   /// Returns the players with open sessions, ordered by session.
@@ -54,6 +56,8 @@ class People {
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite.
   std::string invite_link(InviteId invite) const;
+  /// Notes the places of the players with open sessions.
+  void note_places();
   /// Closes the sessions that have sent nothing for too long.
   void close_silent(const Clocks& now);
   /// Removes authors without a row and without a session from players and watermarks.
@@ -66,6 +70,8 @@ class People {
   Names names_;
   Presence presence_;
   ChatRoom chat_;
+  Visits visits_;
+  PlayerPlaces places_;
   Commands commands_;
   Previews previews_;
   EditRequests edits_;

@@ -114,6 +114,10 @@ Shape any_shape(SplitMix64& rng) {
   return shape;
 }
 
+WorldTime any_world_time(SplitMix64& rng) {
+  return {rng.below(kDayMs), rng.below(2) == 0 ? 0 : rng.below(kTimeRateMax + 1)};
+}
+
 GivenShapes any_given_shapes(SplitMix64& rng) {
   GivenShapes given;
   const std::vector<Shape> shapes = {any_shape(rng), any_shape(rng)};
@@ -496,7 +500,7 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
 }
 
 /// Returns a record of the log at this version. It may change voxels, rights,
-/// materials, their shapes or the library.
+/// materials, their shapes, the library or the clock.
 EditRecord any_record(SplitMix64& rng, Version version) {
   EditRecord record;
   record.version = version;
@@ -512,6 +516,8 @@ EditRecord any_record(SplitMix64& rng, Version version) {
     record.edit = materials_edit({added.first, std::move(added.rows)});
   } else if (record.cause == Cause::library) {
     record.edit = library_edit(RemoveBuild{1 + rng.below(1000)});
+  } else if (record.cause == Cause::clock) {
+    record.edit = clock_edit(any_world_time(rng));
   } else {
     record.edit = any_edit(rng);
   }
@@ -697,7 +703,8 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_client_auth(rng);
     case kKindOf<SessionAccepted>:
       return SessionAccepted{static_cast<AuthorId>(any64(rng) >> 32), any64(rng),
-                             rng.below(2) == 0 ? 0 : rng.below(1000)};
+                             rng.below(2) == 0 ? 0 : rng.below(1000),
+                             rng.below(2) == 0 ? std::nullopt : std::optional(any_pose(rng))};
     case kKindOf<View>:
       return any_view(rng);
     case kKindOf<ChunkRequest>:
@@ -768,6 +775,8 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_materials_added(rng);
     case kKindOf<ShapesGiven>:
       return ShapesGiven{any_given_shapes(rng)};
+    case kKindOf<WorldTime>:
+      return any_world_time(rng);
     case kKindOf<LogMarksRequest>:
       return any_log_marks_request(rng);
     case kKindOf<LogMarks>:

@@ -71,6 +71,14 @@ TEST_CASE("the bytes of given shapes are pinned", "[edits][golden]") {
   CHECK(static_cast<int>(EditKind::shapes) == 11);
 }
 
+TEST_CASE("the bytes of a record that sets the clock are pinned", "[edits][golden]") {
+  check_bytes_of(clock_edit({75'600'000, 20}), {0x0d, 0x00, 0x00,        // no mask, no material
+                                                0x80, 0xa1, 0x86, 0x24,  // 21:00
+                                                0x14});                  // rate 20
+  CHECK(static_cast<int>(EditKind::clock) == 13);
+  CHECK(static_cast<int>(Cause::clock) == 9);
+}
+
 TEST_CASE("the cause of changes of the library has its number", "[edits][golden]") {
   CHECK(static_cast<int>(Cause::library) == 8);
   CHECK(kind_of(library_edit(RemoveBuild{1})) == EditKind::library);

@@ -77,6 +77,7 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
                      {301, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}}}}},
        "0c0000000000060008000400060000000400000013000000010001f070f00101"
        "e1b0e1020401a60200000000"},
+      {WorldTime{75'600'000, 20}, "0c00000000000000080009000400080008000000"},
       {BuildAnswer{6, 100, 0, "the library is full"},
        "14000000000000000c00140004000c00000008000c000000060000000c000000"
        "640000000000000013000000746865206c6962726172792069732066756c6c00"},
@@ -92,6 +93,9 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureBuilds == 1 << 17);
   CHECK(kFeatureShapes == 1 << 18);
   CHECK(kFeatureShapeRecords == 1 << 19);
+  CHECK(kFeatureWorldTime == 1 << 22);
+  CHECK(kFeatureClockRecords == 1 << 23);
+  CHECK(kFeatureVisits == 1 << 24);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
@@ -103,6 +107,7 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<BuildUpload>) == 57);
   CHECK(wire_number(kKindOf<BuildAnswer>) == 58);
   CHECK(wire_number(kKindOf<ShapesGiven>) == 59);
+  CHECK(wire_number(kKindOf<WorldTime>) == 60);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

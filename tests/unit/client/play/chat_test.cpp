@@ -13,6 +13,8 @@ TEST_CASE("only a line of a player begins with a name", "[client][chat]") {
   CHECK(printed_line({ChatLineKind::message_of_the_day, 0, "", "hello", 0}) == "[today] hello");
   CHECK(printed_line({ChatLineKind::refused, 0, "", "you are muted", 0}) ==
         "[not sent] you are muted");
+  CHECK(printed_line({ChatLineKind::visit, 0, "", "ana has joined", 0}) ==
+        "[players] ana has joined");
   CHECK(printed_line({static_cast<ChatLineKind>(9), 0, "", "news", 0}) == "[chat] news");
   CHECK(printed_line({ChatLineKind::player, 7, "ana",
                       "a\xe2\x80\xae"

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "client/display/player_body.hpp"
+#include "common/core/world_time.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
 namespace runstone::test::play_test {
@@ -105,6 +106,51 @@ TEST_CASE_METHOD(PlayBench, "after a lost connection the player has the same pla
   turn(true);
   CHECK(play.player().eye() == server.welcome.spawn);
   CHECK(play.hotbar().slot() == 0);
+}
+
+TEST_CASE_METHOD(PlayBench, "frames show the time of the world, or the time that the player chose",
+                 "[client]") {
+  const auto shown = [this] {
+    turn();
+    return play.pipeline().look().time_of_day();
+  };
+  CHECK(shown() == FrameLook{}.time_of_day);
+  server.features |= kFeatureWorldTime;
+  session.disconnected();
+  static_cast<void>(open());
+  receive(WorldTime{kDayMs / 4, 0});
+  CHECK(shown() == 0.25);
+  play.set_own_time(0.75);
+  CHECK(shown() == 0.75);
+  receive(WorldTime{kDayMs / 2, 3600});
+  CHECK(shown() == 0.75);
+  play.set_own_time(std::nullopt);
+  const double noon = shown();
+  CHECK(noon >= 0.5);
+  CHECK(noon < 0.51);
+  now += 1'000'000;  // an hour of the world
+  CHECK(shown() > noon);
+}
+
+TEST_CASE_METHOD(PlayBench, "hotbar and tool come back that were kept for a world", "[client]") {
+  CHECK_FALSE(play.take_kit());
+  play.hotbar().choose(2);
+  REQUIRE(tools.choose("sphere"));
+  const auto kept = play.take_kit();
+  REQUIRE(kept);
+  CHECK(kept->world == session.welcome()->world_id);
+  CHECK(kept->kit.slot == 2);
+  CHECK(kept->kit.tool == "sphere");
+  CHECK_FALSE(play.take_kit());
+  PlayConfig next = config();
+  next.kit_of = [&](const WorldId&) { return std::optional(kept->kit); };
+  ToolBox others;
+  Play again{session, others, nullptr, log, next};
+  again.begin_turn(true, {}, now);
+  CHECK(again.hotbar().slot() == 2);
+  CHECK(again.player().held() == kept->kit.slots[2]);
+  CHECK(others.tool().name() == "sphere");
+  CHECK_FALSE(again.take_kit());
 }
 
 TEST_CASE_METHOD(PlayBench, "a click edits the ground, and a key of a tool changes the tool",

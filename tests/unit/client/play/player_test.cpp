@@ -157,3 +157,16 @@ TEST_CASE("a player that flies is in the voxel of the eye, and one that walks in
   player.move_to({0.9, 2.0 + kEyeHeight, 0.5});
   CHECK(player.is_in({1, 2, 0}));  // half of the body
 }
+
+TEST_CASE("a player enters a world at the place where the player left it", "[client_app]") {
+  Player player;
+  const Pose place{{5, 6, 7}, 16384, -8192};
+  player.enter({1}, {1, 2, 3}, place);
+  CHECK(player.eye() == place.at);
+  CHECK(player.pose() == place);
+  player.move_to({9, 9, 9});
+  player.enter({1}, {1, 2, 3}, place);  // connected again
+  CHECK(player.eye() == WorldPos{9, 9, 9});
+  player.enter({2}, {1, 2, 3});
+  CHECK(player.eye() == WorldPos{1, 2, 3});
+}

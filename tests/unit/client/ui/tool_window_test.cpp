@@ -40,6 +40,10 @@ struct ToolWindowBench {
         ++stops;
         continue;
       }
+      if (const auto* time = std::get_if<SetTime>(&action)) {
+        times.push_back(time->share);
+        continue;
+      }
       REQUIRE(std::holds_alternative<ToolCommand>(action));
       commands.push_back(std::get<ToolCommand>(std::move(action)));
       // Edits and copies need a world, which is not here.
@@ -80,6 +84,7 @@ struct ToolWindowBench {
   HudState state;
   std::vector<ToolCommand> commands;
   std::vector<ClipboardOfFile> files;
+  std::vector<std::optional<double>> times;  // that were chosen
   int stops = 0;
   std::array<int, 2> size = kToolsSize;
   double found_y = 0;
@@ -192,6 +197,26 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
   REQUIRE(copied);
   CHECK(copied->kind == SelectionCommand::Kind::copy);
   CHECK(copied->is_solid);
+}
+
+TEST_CASE_METHOD(ToolWindowBench,
+                 "a slider sets the time of day, and a button gives the world's back",
+                 "[client_ui]") {
+  state.time_of_day = 0.25;
+  state.has_own_time = true;
+  for (double y = 300; y < 460 && times.empty(); y += 5) {
+    click(x(kRow), y);  // a header, perhaps
+    click(x(kSliderMiddle), y + 24);
+    found_y = y + 24;
+  }
+  REQUIRE_FALSE(times.empty());
+  REQUIRE(times.back().has_value());
+  CHECK(*times.back() > 0.2);
+  CHECK(*times.back() < 0.8);
+  times.clear();
+  for (double y = found_y + 15; y < found_y + 60 && times.empty(); y += 5) click(x(kRow), y);
+  REQUIRE_FALSE(times.empty());
+  CHECK_FALSE(times.back().has_value());
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "a path is typed from which the clipboard is loaded",

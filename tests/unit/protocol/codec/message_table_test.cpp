@@ -41,6 +41,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureServerList) return "server list";
   if (feature == kFeatureBuilds) return "builds";
   if (feature == kFeatureShapes) return "shapes";
+  if (feature == kFeatureWorldTime) return "world time";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -96,7 +97,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<ShapesGiven> == kMessageKindCount - 1);
+  CHECK(kKindOf<WorldTime> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

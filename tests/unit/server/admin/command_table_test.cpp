@@ -131,8 +131,8 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
-        "log cause \"rage\": player, console, rollback, undo, redo, import, rights, materials or "
-        "library");
+        "log cause \"rage\": player, console, rollback, undo, redo, import, rights, materials, "
+        "library or clock");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==
@@ -164,7 +164,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
   for (const Cause cause :
        {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import,
-        Cause::rights, Cause::materials, Cause::library}) {
+        Cause::rights, Cause::materials, Cause::library, Cause::clock}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }
@@ -176,7 +176,8 @@ CommandRule rule(const std::string& line) { return command_of(line).row->rule; }
 }  // namespace
 
 TEST_CASE("each command needs its right", "[admin][rights]") {
-  for (const char* line : {"help", "players", "materials", "roles", "protected", "why ana see"})
+  for (const char* line :
+       {"help", "players", "materials", "roles", "protected", "why ana see", "time"})
     CHECK(rule(line).any_of == RightSet());
   for (const char* line : {"undo", "redo"}) CHECK(rule(line).any_of == RightSet{Right::undo});
   for (const char* line :

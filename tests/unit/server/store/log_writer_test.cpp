@@ -31,6 +31,7 @@ class FakeSink final : public WorldSink {
     std::optional<Keyframe> keyframe = {};
     std::vector<NameChange> names = {};
     FilePart file = {};
+    std::optional<SavedState> state = {};
   };
 
   bool is_owned() const override { return owned.load(); }
@@ -66,6 +67,11 @@ class FakeSink final : public WorldSink {
     if (refuse_keyframes)
       return failure(StoreError{StoreError::Kind::full, "w", "keyframe", "disk full"});
     return commit({{}, {}, chunks.size(), {}, keyframe});
+  }
+  StoreResult<void> save_state(const SavedState& state) override {
+    Commit written;
+    written.state = state;
+    return commit(std::move(written));
   }
   StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t /*rules*/) override {
     return commit({{}, {}, tiles.size(), {}});
@@ -114,6 +120,27 @@ TEST_CASE("queued records count with the memory that they take, until they are d
   sink.open_gate();
   writer.stop();
   CHECK(writer.queued_bytes() == 0);
+}
+
+TEST_CASE("of several saved states the newest is written, before the records of its commit",
+          "[store][log-writer]") {
+  FakeSink sink;
+  SplitMix64 rng(1);
+  LogWriter writer(sink, {});
+  writer.append({}, sample_records(rng, 1, 1, 1));
+  sink.entered.acquire();  // being written
+  const SavedState newest{{}, SavedClock{1, {5, 1}}};
+  writer.save_state({});
+  writer.append({}, sample_records(rng, 1, 2, 1));
+  writer.save_state(newest);
+  sink.open_gate();
+  writer.stop();
+  REQUIRE(sink.commits.size() == 3);
+  CHECK(sink.commits[1].state == newest);
+  CHECK(sink.commits[2].records.size() == 1);
+  CHECK(writer.counters().queued_records == 0);
+  writer.save_state(newest);  // has no effect any more
+  CHECK(writer.counters().queued_records == 0);
 }
 
 TEST_CASE("one file of a build is written at a time, in parts, and may be removed again",

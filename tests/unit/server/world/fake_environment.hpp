@@ -49,6 +49,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::vector<EditRecord> records;
   std::vector<NameChange> names;
   std::vector<ChatEntry> chat;
+  std::vector<SavedState> states;
   std::deque<ChunkKey> loads;
   struct HistoryLoad {
     SessionId session = 0;
@@ -160,6 +161,7 @@ class FakeEnvironment : public WorldEnvironment {
   void log_names(std::vector<NameChange> changes) override {
     names.insert(names.end(), changes.begin(), changes.end());
   }
+  void save_state(SavedState state) override { states.push_back(std::move(state)); }
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }

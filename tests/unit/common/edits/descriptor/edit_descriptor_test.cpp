@@ -38,6 +38,7 @@ EditRecord random_record(SplitMix64& rng) {
                     ? rights_edit(Unprotect{"box" + std::to_string(rng.below(10))})
                 : record.cause == Cause::materials ? sample_materials_edit(rng)
                 : record.cause == Cause::library   ? library_edit(RemoveBuild{1 + rng.below(1000)})
+                : record.cause == Cause::clock     ? clock_edit({rng.below(kDayMs), rng.below(100)})
                                                    : random_edit_anywhere(rng);
   return record;
 }

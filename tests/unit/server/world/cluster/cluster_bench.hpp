@@ -62,6 +62,8 @@ struct WorldDatabase {
       mark = std::max(mark, op.seq);
       if (const RightsChange* change = rights_change_of(record.edit))
         start.rights.push_back({*change, {record.version.seq, op.author, record.time_us}});
+      if (const WorldTime* time = world_time_of(record.edit))
+        start.saved.clock = SavedClock{record.version.seq, *time};
     }
     for (const auto& [client, seq] : resolved)
       start.resolved.push_back({client.first, client.second, seq, 0});

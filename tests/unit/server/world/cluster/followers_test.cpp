@@ -264,6 +264,23 @@ TEST_CASE("no shapes go to a follower that cannot read them", "[world][servers][
         "this world has materials with shapes: start a version that can read this");
 }
 
+TEST_CASE("the clock is not set while a follower cannot read it", "[world][servers][world_time]") {
+  constexpr std::uint64_t kOlder = kFeaturesOfServers & ~kFeatureClockRecords;
+  WorldBench bench;
+  const auto refused = [&] { return bench.server.cluster().clock_refusal().has_value(); };
+  handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+  CHECK_FALSE(refused());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  CHECK(refused());
+  bench.server.disconnected(kLink + 1);
+  REQUIRE(bench.server.changes().set_clock({1, 1}, 0, bench.now()).has_value());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::wrong_protocol);
+  CHECK(bench.environment.closed[0].text ==
+        "the clock of this world was set: start a version that can read this");
+}
+
 TEST_CASE("the features of servers are in force for no player", "[world][servers][clock]") {
   WorldBench bench;
   CHECK((handshake(bench, 1, 3, ~std::uint64_t{0}) & kFeaturesOfServers) == 0);

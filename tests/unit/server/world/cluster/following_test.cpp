@@ -46,6 +46,33 @@ TEST_CASE("a follower that connects late reads what it lacks, and holds the rest
   bench.check_same_chunks(0, late);
 }
 
+TEST_CASE(
+    "servers of a world have one time of day, also one that comes late and one that takes over",
+    "[world][servers][world_time]") {
+  constexpr WorldTime kDawn{21'600'000, 30};
+  ClusterBench bench(1);
+  const auto time_at = [&](std::size_t server) {
+    return bench.world(server).order().clock().at(bench.time_us);
+  };
+  REQUIRE(bench.world(0).changes().set_clock(kDawn, 0, bench.now()).has_value());
+  const TimeUs set_us = bench.time_us;
+  bench.run();
+  CHECK(time_at(1) == kDawn);
+  for (int i = 0; i < 10; ++i) bench.tick(1'000'000);
+  const std::size_t late = bench.add_follower();  // it reads a record of ten seconds ago
+  bench.connect(late);
+  for (int i = 0; i < 5; ++i) bench.tick();
+  REQUIRE(bench.world(late).cluster().is_live());
+  CHECK(time_at(0) == later(kDawn, bench.time_us - set_us));
+  CHECK(time_at(1) == time_at(0));
+  CHECK(time_at(late) == time_at(0));
+  CHECK(bench.world(late).order().clock().record() == 1);
+  bench.lose_owner();
+  REQUIRE(bench.take_over(late));
+  bench.tick(2'000'000);
+  CHECK(time_at(late) == later(kDawn, bench.time_us - set_us));
+}
+
 TEST_CASE("a player who waits for the owner at a late follower gets every commit once",
           "[world][servers]") {
   ClusterBench bench(1, config(), false);

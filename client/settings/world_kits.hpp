@@ -1,0 +1,25 @@
+// World kits: the lines in which the client keeps hotbar and tool of the worlds that a player
+// joined, newest first, in a TOML file. The functions wait for the disk.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// The number of worlds that are kept: those that were played last.
+inline constexpr std::size_t kWorldKitsMax = 64;
+
+/// Returns $XDG_STATE_HOME/runstone/worlds.toml, otherwise the one in ~/.local/state, or an empty
+/// text if neither variable is an absolute path.
+std::string default_kits_file();
+/// Returns the line of a world (its id in hex), or nullopt if the file has none or cannot be read.
+std::optional<std::string> load_kit(const std::string& file, const std::string& world);
+/// Puts the line of a world at the front and replaces the file. A file that is not TOML is kept as
+/// FILE.broken. Fails with a line that begins with the file's name.
+Result<void, std::string> save_kit(const std::string& file, const std::string& world,
+                                   const std::string& line);
+
+}  // namespace runstone

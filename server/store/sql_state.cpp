@@ -1,0 +1,38 @@
+// The part of SqlStore that keeps what belongs to no record (SavedState), and the clock that the
+// newest record has set.
+#include "server/store/sql_result.hpp"
+#include "server/store/sql_store.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+StoreResult<SavedState> SqlStore::saved_state() {
+  return at_one_moment<SavedState>([&] { return meta_table_.saved_state(); });
+}
+
+StoreResult<void> SqlStore::save_state(const SavedState& state) {
+  return write([&]() -> StoreResult<void> {
+    const auto present = meta_table_.saved_state();
+    if (!present) return failed(present.error());
+    if (state.places != present->places) {
+      if (auto put = meta_table_.put_places(state.places); !put) return put;
+    }
+    const bool is_newest = state.clock && present->clock &&
+                           state.clock->record == present->clock->record &&
+                           state.clock != present->clock;
+    return is_newest ? meta_table_.put_clock(*state.clock) : StoreResult<void>();
+  });
+}
+
+StoreResult<void> SqlStore::set_clock(std::span<const EditRecord> records) {
+  std::optional<SavedClock> clock;
+  for (const EditRecord& record : records) {
+    if (const WorldTime* time = world_time_of(record.edit))
+      clock = SavedClock{record.version.seq, *time};
+  }
+  if (!clock) return {};
+  if (auto put = meta_table_.put_clock(*clock); !put) return put;
+  return raise_format(kWorldFormatOfClock);
+}
+
+}  // namespace runstone

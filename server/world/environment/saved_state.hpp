@@ -1,0 +1,36 @@
+// SavedState: what the store keeps of a world besides the log, and writes from time to time: where
+// players were last, and how far the clock of the world has come. No edit depends on it.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/core/public_key.hpp"
+#include "common/core/world_time.hpp"
+#include "protocol/codec/pose.hpp"
+
+namespace runstone {
+
+/// The places that are kept: those of the players who were seen last.
+inline constexpr std::size_t kPlayerPlacesMax = 4096;
+
+struct PlayerPlace {
+  PublicKey key{};
+  Pose pose;
+  friend bool operator==(const PlayerPlace&, const PlayerPlace&) = default;
+};
+
+struct SavedClock {
+  Sequence record = 0;  // the record of the log that set the clock last
+  WorldTime time;       // with which the clock goes on at the next start
+  friend bool operator==(const SavedClock&, const SavedClock&) = default;
+};
+
+struct SavedState {
+  std::vector<PlayerPlace> places;  // at most kPlayerPlacesMax, those seen last at the end
+  std::optional<SavedClock> clock;  // nullopt: nobody has set it
+  friend bool operator==(const SavedState&, const SavedState&) = default;
+};
+
+}  // namespace runstone

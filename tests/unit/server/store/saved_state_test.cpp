@@ -1,0 +1,117 @@
+// What a world keeps besides its log: the places of players and the clock. And the format of a
+// world whose clock was set.
+#include <catch2/catch.hpp>
+
+#include "server/store/copy_stored_world.hpp"
+#include "server/store/world_schema.hpp"
+#include "tests/support/sql/raw_sql.hpp"
+#include "tests/support/sql/temp_place.hpp"
+#include "tests/support/store/sample_world.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr WorldTime kEvening{75'600'000, 20};
+
+EditRecord record_of_clock(Sequence seq, const WorldTime& time, Epoch epoch = 1) {
+  EditRecord record;
+  record.version = {epoch, seq};
+  record.op = {0, 5, seq};
+  record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
+  record.cause = Cause::clock;
+  record.edit = clock_edit(time);
+  return record;
+}
+
+PlayerPlace place_of(std::uint8_t who, double x) {
+  PlayerPlace place;
+  place.key.fill(who);
+  place.pose = {{x, 64.25, -1e6}, 65'535, -16'384};
+  return place;
+}
+
+}  // namespace
+
+TEST_CASE("a world has no clock and no places until they are saved", "[store][saved_state]") {
+  TempPlace place;
+  auto store = *create_world(place / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  CHECK(*store->saved_state() == SavedState{});
+  // A clock that no record has set is left out.
+  REQUIRE(store->save_state({{place_of(1, 7.5)}, SavedClock{3, kEvening}}).has_value());
+  CHECK(*store->saved_state() == SavedState{{place_of(1, 7.5)}, std::nullopt});
+}
+
+TEST_CASE("the newest record sets the clock, and its time is saved over and over",
+          "[store][saved_state]") {
+  TempPlace place;
+  {
+    auto store = *create_world(place / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->append({}, std::vector{record_of_clock(1, {5, 1}), record_of_clock(2, kEvening)})
+                .has_value());
+    CHECK(store->saved_state()->clock == SavedClock{2, kEvening});
+    const WorldTime on = later(kEvening, 9'000'000);
+    REQUIRE(store->save_state({{place_of(2, 1), place_of(1, 2)}, SavedClock{2, on}}).has_value());
+    REQUIRE(store->save_state({{place_of(2, 1), place_of(1, 2)}, SavedClock{1, {}}}).has_value());
+    CHECK(store->saved_state()->clock == SavedClock{2, on});
+  }
+  const auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(store->saved_state()->clock == SavedClock{2, later(kEvening, 9'000'000)});
+  CHECK(store->saved_state()->places == std::vector{place_of(2, 1), place_of(1, 2)});
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("the clock stays when its record is compacted away", "[store][saved_state]") {
+  TempPlace place;
+  auto store = *create_world(place / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  SplitMix64 rng(7);
+  auto records = sample_records(rng, 1, 1, 12);
+  records[2] = record_of_clock(3, kEvening);
+  REQUIRE(store->append({}, records).has_value());
+  REQUIRE(store->save_keyframe({}, Keyframe{{records[9].version, records[9].time_us}, 0, {}})
+              .has_value());
+  REQUIRE(store->compact(10).has_value());
+  CHECK(store->saved_state()->clock == SavedClock{3, kEvening});
+}
+
+TEST_CASE("a world is of format 10 from the first clock on, and so is a copy",
+          "[store][saved_state]") {
+  TempPlace place;
+  const std::string world = place / "w", copy = place / "copy";
+  const auto format_of_clock = [&](const std::string& path) {
+    if (place.is_postgres()) return std::to_string(kWorldFormatOfClock);
+    return raw_sql(path + "/world.sqlite", "PRAGMA user_version");
+  };
+  {
+    auto store = *create_world(world, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->save_state({{place_of(1, 7.5)}, std::nullopt}).has_value());
+    if (!place.is_postgres()) CHECK(format_of_clock(world) == std::to_string(kWorldFormat));
+    REQUIRE(store->append({}, std::vector{record_of_clock(1, kEvening)}).has_value());
+  }
+  CHECK(format_of_clock(world) == std::to_string(kWorldFormatOfClock));
+  REQUIRE(copy_stored_world(world, copy).has_value());
+  {
+    auto store = *open_world(copy, StoreAccess::read_write);
+    CHECK(*store->saved_state() == SavedState{{place_of(1, 7.5)}, SavedClock{1, kEvening}});
+    CHECK(store->check().has_value());
+  }
+  CHECK(format_of_clock(copy) == std::to_string(kWorldFormatOfClock));
+}
+
+TEST_CASE("places that are damaged are an error that names them", "[store][saved_state]") {
+  TempPlace place;
+  if (place.is_postgres()) return;
+  auto store = *create_world(place / "w", sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  PlayerPlace beyond = place_of(1, 1e300);
+  REQUIRE(store->save_state({{beyond}, std::nullopt}).has_value());
+  const auto read = store->saved_state();
+  REQUIRE_FALSE(read.has_value());
+  CHECK(read.error().kind == StoreError::Kind::corrupt);
+  CHECK(read.error().message().find("player_places") != std::string::npos);
+}
+
+}  // namespace runstone::test
