@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/textures/texture_table.hpp"
-#include "server/world/order/world_textures.hpp"
+#include "server/textures/stored_textures.hpp"
 
 namespace runstone {
 namespace {
@@ -55,28 +54,6 @@ StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
   return store.append_history(players, records);
 }
 
-/// Returns the textures of the world in the order of the log. The error names the record that fits no
-/// table.
-Result<std::vector<GivenTexturePtr>, std::string> read_textures(LogReader& store) {
-  std::vector<GivenTexturePtr> textures;
-  TextureTable table;
-  std::string wrong;
-  const auto read = store.read_textures([&](const EditRecord& record) {
-    const auto* texture = std::get_if<TextureEdit>(&record.edit.shape);
-    if (texture == nullptr) return true;
-    if (const auto added = table.add(entry_of(*texture->given)); !added) {
-      wrong = store.file() + ": edit_log seq=" + std::to_string(record.version.seq) + ": " +
-              added.error().what;
-      return false;
-    }
-    textures.push_back(texture->given);
-    return true;
-  });
-  if (!read) return failure(read.error().message());
-  if (!wrong.empty()) return failure(wrong);
-  return textures;
-}
-
 }  // namespace
 
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
@@ -118,9 +95,9 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto library = store.library_rows();
   if (!library) return failure(library.error().message());
   start.library = *std::move(library);
-  auto textures = read_textures(store);
+  auto textures = read_stored_textures(store);
   if (!textures) return failure(textures.error());
-  start.textures = *std::move(textures);
+  start.textures = std::move(textures->given);
   if (const auto counted = store.check_counts(); !counted)
     return failure(counted.error().message());
   return start;

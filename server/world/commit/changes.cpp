@@ -5,6 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/textures/texture_hash.hpp"
 #include "protocol/rules/edit_price.hpp"
 
 namespace runstone {
@@ -217,7 +218,7 @@ Result<Sequence, std::string> Changes::give_textures(std::span<const GivenTextur
   TextureTable table = order_.textures().table();
   std::vector<EditOffer> offers;
   for (const GivenTexturePtr& given : textures) {
-    const auto fits = table.add(entry_of(*given));
+    const auto fits = table.add(texture_entry(given->png, given->uses));
     // The uses ascend by material.
     if (fits && !materials.knows(given->uses.back().material))
       return failure("the world has no material " + std::to_string(given->uses.back().material));

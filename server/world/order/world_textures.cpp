@@ -5,16 +5,12 @@
 
 namespace runstone {
 
-TextureEntry entry_of(const GivenTexture& given) {
-  return {texture_hash(given.png), static_cast<std::uint32_t>(given.png.size()), given.uses};
-}
-
 WorldTextures::WorldTextures(std::span<const GivenTexturePtr> start) {
   for (const GivenTexturePtr& given : start) add(given);
 }
 
 void WorldTextures::add(const GivenTexturePtr& given) {
-  TextureEntry entry = entry_of(*given);
+  TextureEntry entry = texture_entry(given->png, given->uses);
   const auto added = table_.add(entry);
   RUNSTONE_ASSERT(added.has_value());
   if (table_.entries().size() > pictures_.size()) pictures_.push_back(given);

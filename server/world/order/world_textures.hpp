@@ -13,9 +13,6 @@ namespace runstone {
 
 using GivenTexturePtr = std::shared_ptr<const GivenTexture>;
 
-/// Returns the entry of a texture that a record gives. Cost: O(bytes).
-TextureEntry entry_of(const GivenTexture& given);
-
 class WorldTextures {
  public:
   /// `start`: what the log gave before this run, in order. Requires that a table takes all of them.
