@@ -32,7 +32,8 @@ struct TexturePart {
 /// Answers a TexturesWanted, in several messages and in any order. That the bytes have the hash, and
 /// are a picture, is not checked.
 struct TextureParts {
-  std::vector<TexturePart> parts;  // 1 .. kTexturesWantedMax, together kTexturePartsBytesMax at most
+  std::vector<TexturePart>
+      parts;  // 1 .. kTexturesWantedMax, together kTexturePartsBytesMax at most
   friend bool operator==(const TextureParts&, const TextureParts&) = default;
 };
 

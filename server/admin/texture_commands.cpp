@@ -22,8 +22,8 @@ void give_found_textures(const CommandCall& call, const TextureImport& found) {
     return call.refuse("materials textures: " + *why);
   const auto given = call.world().changes().give_textures(found.textures, call.now);
   if (!given) return call.refuse("materials textures: " + given.error());
-  call.answer_when_durable(*given, textures_text(found) + "\ngiven, for ever (record " +
-                                       std::to_string(*given) + ")");
+  call.answer_when_durable(
+      *given, textures_text(found) + "\ngiven, for ever (record " + std::to_string(*given) + ")");
 }
 
 void use_textures_of(const CommandCall& call, const std::string& place, TexturesUse use) {

@@ -37,9 +37,8 @@ inline constexpr std::uint32_t kWorldFormatConverted = 2;
 /// Returns "world formats 5, 6, 7, 8 and 9": those that this program makes, for --version.
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
-         std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) +
-         ", " + std::to_string(kWorldFormatOfShapes) + " and " +
-         std::to_string(kWorldFormatOfTextures);
+         std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) + ", " +
+         std::to_string(kWorldFormatOfShapes) + " and " + std::to_string(kWorldFormatOfTextures);
 }
 
 /// Makes all tables in the caller's transaction.

@@ -28,17 +28,20 @@ class MinecraftPictures final : public PictureSource {
 
  private:
   using Json = nlohmann::json;
-  /// Returns a file below the assets, or null if there is none, or it is too long or no JSON.
+  /// Returns a file below the assets, or null if there is none, it is too long or no JSON, or too much
+  /// was read before.
   const Json& json_of(const std::string& path);
   /// Returns the variant that the states of a block choose: {"model": ..., "x": ..., "y": ...}.
   const Json& variant_of(const std::string& name, std::string_view states);
   SidePictures pictures_of_model(const std::string& model, bool is_cube);
   /// Returns the path of the picture of a text such as "#side" or "minecraft:block/stone", or an empty
   /// text.
-  std::string texture_path(std::string text, const std::map<std::string, std::string>& textures) const;
+  std::string texture_path(std::string text,
+                           const std::map<std::string, std::string>& textures) const;
 
   FilesBelow pictures_, texts_;
   std::map<std::string, Json> read_;
+  std::size_t read_bytes_ = 0;
 };
 
 }  // namespace runstone

@@ -24,7 +24,8 @@ Result<StoredTextures, std::string> read_stored_textures(LogReader& reader);
 
 /// Gives a new world textures, as records of the log in an epoch of their own, at this time (UTC).
 /// Requires that the world has its base chunks, and no log.
-StoreResult<void> append_textures(
-    Store& store, std::span<const std::shared_ptr<const GivenTexture>> textures, TimeUs time_us);
+StoreResult<void> append_textures(Store& store,
+                                  std::span<const std::shared_ptr<const GivenTexture>> textures,
+                                  TimeUs time_us);
 
 }  // namespace runstone

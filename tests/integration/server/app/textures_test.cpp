@@ -98,8 +98,8 @@ TEST_CASE("a world has its textures after kill -9, compaction, backup and copy",
     auto store = *open_world(world, StoreAccess::read_only);
     CHECK(store->log_range()->first > 2);
     const auto generator = generator_of(*store);
-    const auto copied = copy_world(*store, **generator, store->log_range()->last.version.seq,
-                                   folder / "copy", out);
+    const auto copied =
+        copy_world(*store, **generator, store->log_range()->last.version.seq, folder / "copy", out);
     if (!copied) FAIL(copied.error());
   }
   has_textures(world, 43);
