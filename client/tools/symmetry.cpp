@@ -74,6 +74,7 @@ struct Mirror {
   void operator()(MaterialsEdit&) const {}
   void operator()(LibraryEdit&) const {}
   void operator()(ShapesEdit&) const {}
+  void operator()(TextureEdit&) const {}
   void operator()(ClockEdit&) const {}
 };
 

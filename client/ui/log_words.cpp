@@ -20,6 +20,8 @@ std::string kind_words(EditKind kind) {
       return "change of the library";
     case EditKind::shapes:
       return "shapes of materials";
+    case EditKind::texture:
+      return "texture of materials";
     case EditKind::clock:
       return "time of the world";
     default:
@@ -44,6 +46,7 @@ std::string record_words(EditKind kind, Cause cause) {
     case Cause::rights:
     case Cause::materials:
     case Cause::library:
+    case Cause::textures:
     case Cause::clock:
       return kind_words(kind);
   }

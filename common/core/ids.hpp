@@ -51,14 +51,15 @@ enum class Cause : std::uint8_t {
   rights = 6,     // a change of rights, by a player or by the console (author 0)
   materials = 7,  // new materials, by the console
   library = 8,    // a change of the library of builds, by a player or by the console (author 0)
-  clock = 9       // the clock of the world is set, by a player or by the console (author 0)
+  clock = 9,      // the clock of the world is set, by a player or by the console (author 0)
+  textures = 10   // a picture for sides of materials, by the console
 };
-inline constexpr std::uint8_t kCauseMax = 9;
+inline constexpr std::uint8_t kCauseMax = 10;
 /// Returns true if the edits with this cause change voxels. The others change rights, materials,
-/// the library of builds or the clock.
+/// textures, the library of builds or the clock.
 constexpr bool changes_voxels(Cause cause) {
   return cause != Cause::rights && cause != Cause::materials && cause != Cause::library &&
-         cause != Cause::clock;
+         cause != Cause::clock && cause != Cause::textures;
 }
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs

@@ -39,6 +39,7 @@
 #include "protocol/codec/rights_messages.hpp"
 #include "protocol/codec/server_list.hpp"
 #include "protocol/codec/server_messages.hpp"
+#include "protocol/codec/texture_messages.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -476,7 +477,8 @@ using Message = std::variant<
     ChatLines, KeyRequest, SealedKey, KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest,
     LogMarks, RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
     RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest, Builds,
-    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven, WorldTime>;
+    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven,
+    TexturesGiven, TexturesWanted, TextureParts, WorldTime>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

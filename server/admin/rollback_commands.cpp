@@ -36,9 +36,10 @@ constexpr std::array<CauseName, 10> kCauses = {{{"player", Cause::player},
                                                 {"rights", Cause::rights},
                                                 {"materials", Cause::materials},
                                                 {"library", Cause::library},
-                                                {"clock", Cause::clock}}};
+                                                {"clock", Cause::clock},
+                                                {"textures", Cause::textures}}};
 constexpr const char* kCauseNames =
-    "player, console, rollback, undo, redo, import, rights, materials, library or clock";
+    "player, console, rollback, undo, redo, import, rights, materials, library, clock or textures";
 
 CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   if (word.starts_with('#')) {
@@ -213,6 +214,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"materials\": added materials and shapes stay");
   if (preview.filter.cause == Cause::library)
     return failure("rollback preview cause \"library\": builds remove takes a build away");
+  if (preview.filter.cause == Cause::textures)
+    return failure("rollback preview cause \"textures\": textures stay");
   if (preview.filter.cause == Cause::clock)
     return failure("rollback preview cause \"clock\": `time` sets the time of the world");
   // A preview without filters would select the whole world, most likely by mistake.
@@ -327,6 +330,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " " + added_materials_text(*added);
   if (const GivenShapes* given = given_shapes_of(record.edit))
     return line + " shapes of " + given_names_text(given->rows, materials);
+  if (const GivenTexture* given = given_texture_of(record.edit))
+    return line + " texture of " + given_names_text(given->uses, materials);
   if (const LibraryChange* change = library_change_of(record.edit))
     return line + " " + library_change_text(*change);
   if (const WorldTime* time = world_time_of(record.edit))

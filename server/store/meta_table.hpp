@@ -56,6 +56,8 @@ inline constexpr const char* kLogErasKey = "log_eras";
 
 /// The key of a row, always 1, that only a world has in which a material has or had a shape.
 inline constexpr const char* kShapesKey = "shapes";
+/// The key of a row, always 1, that only a world has to which a texture was given.
+inline constexpr const char* kTexturesKey = "textures";
 
 /// The keys of the rows that saved_state() reads. Only a world whose clock was set has the first
 /// one.

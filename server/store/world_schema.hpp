@@ -28,17 +28,21 @@ inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// table and its log have what programs of format 7 do not know. It has the tables of a library
 /// only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
+/// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records that
+/// programs of format 8 do not know.
+inline constexpr std::uint32_t kWorldFormatOfTextures = 9;
 /// The format of a world whose clock was set (kClockKey): its log has records that programs of
-/// format 8 do not know. It has the tables of a library only if it has a library.
+/// format 9 do not know. It has the tables of a library only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfClock = 10;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Returns "world formats 5, 6, 7, 8 and 10": those that this program makes, for --version.
+/// Returns "world formats 5, 6, 7, 8, 9 and 10": those that this program makes, for --version.
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
          std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) + ", " +
-         std::to_string(kWorldFormatOfShapes) + " and " + std::to_string(kWorldFormatOfClock);
+         std::to_string(kWorldFormatOfShapes) + ", " + std::to_string(kWorldFormatOfTextures) +
+         " and " + std::to_string(kWorldFormatOfClock);
 }
 
 /// Makes all tables in the caller's transaction.

@@ -2,8 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
-// have no voxels: they change who may do what, add materials or give them shapes, change the
-// library of builds, or set the clock of the world. They stand in the same order as the others.
+// have no voxels: they change who may do what, add materials, give them shapes or textures, change
+// the library of builds, or set the clock of the world. They stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,6 +19,7 @@
 #include "common/edits/clipboard/orientation.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
 #include "common/edits/descriptor/given_shapes.hpp"
+#include "common/edits/descriptor/given_texture.hpp"
 #include "common/edits/descriptor/library_change.hpp"
 #include "common/rights/rights_change.hpp"
 
@@ -37,6 +38,7 @@ enum class EditKind : std::uint8_t {
   materials_with_looks = 9,  // of which at least one has a look
   library = 10,
   shapes = 11,
+  texture = 12,
   clock = 13
 };
 
@@ -141,6 +143,14 @@ struct ShapesEdit {
   }
 };
 
+/// Gives a picture to sides of materials of the world. It has no voxels and touches no chunk.
+struct TextureEdit {
+  std::shared_ptr<const GivenTexture> given;
+  friend bool operator==(const TextureEdit& a, const TextureEdit& b) {
+    return a.given == b.given || (a.given != nullptr && b.given != nullptr && *a.given == *b.given);
+  }
+};
+
 /// Sets the clock of the world. It has no voxels and touches no chunk.
 struct ClockEdit {
   WorldTime time;  // from when the edit is ordered
@@ -149,7 +159,7 @@ struct ClockEdit {
 
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
 using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit, ShapesEdit, ClockEdit>;
+                               MaterialsEdit, LibraryEdit, ShapesEdit, TextureEdit, ClockEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -196,6 +206,13 @@ inline const GivenShapes* given_shapes_of(const EditDescriptor& edit) {
   const auto* shapes = std::get_if<ShapesEdit>(&edit.shape);
   return shapes == nullptr ? nullptr : shapes->given.get();
 }
+/// Returns the descriptor that gives a picture.
+EditDescriptor texture_edit(GivenTexture given);
+/// Returns the picture of a descriptor that gives one; null for the other kinds.
+inline const GivenTexture* given_texture_of(const EditDescriptor& edit) {
+  const auto* texture = std::get_if<TextureEdit>(&edit.shape);
+  return texture == nullptr ? nullptr : texture->given.get();
+}
 /// Returns the descriptor that sets the clock of the world.
 EditDescriptor clock_edit(const WorldTime& time);
 /// Returns the time of a descriptor that sets the clock; null for the other kinds.
@@ -214,6 +231,7 @@ inline bool has_voxels(const EditDescriptor& edit) {
          !std::holds_alternative<MaterialsEdit>(edit.shape) &&
          !std::holds_alternative<LibraryEdit>(edit.shape) &&
          !std::holds_alternative<ShapesEdit>(edit.shape) &&
+         !std::holds_alternative<TextureEdit>(edit.shape) &&
          !std::holds_alternative<ClockEdit>(edit.shape);
 }
 
@@ -226,12 +244,14 @@ constexpr std::size_t descriptor_bytes_max(EditKind kind) {
     return 64 + kAddedMaterialsBytesMax + kAddedLooksBytesMax;
   if (kind == EditKind::library) return 64 + kLibraryChangeBytesMax;
   if (kind == EditKind::shapes) return 64 + kGivenShapesBytesMax;
+  if (kind == EditKind::texture) return 64 + kGivenTextureBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
 inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
 static_assert(descriptor_bytes_max(EditKind::materials_with_looks) <= kDescriptorBytesMax);
 static_assert(descriptor_bytes_max(EditKind::shapes) <= kDescriptorBytesMax);
+static_assert(descriptor_bytes_max(EditKind::texture) <= kDescriptorBytesMax);
 
 /// Fails with the first field outside its range: a position beyond the world, an empty or oversized
 /// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.

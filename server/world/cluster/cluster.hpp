@@ -52,6 +52,8 @@ class Cluster {
   std::optional<std::string> library_refusal() const { return followers_.library_refusal(); }
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const { return followers_.shapes_refusal(); }
+  /// Returns why no textures may be ordered, as a sentence without its period, or nullopt.
+  std::optional<std::string> textures_refusal() const { return followers_.textures_refusal(); }
   /// Returns why the clock of the world may not be set, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> clock_refusal() const { return followers_.clock_refusal(); }

@@ -32,6 +32,7 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       materials_(config.materials),
       tile_rules_(tile_rules_of(tile_shapes_number(materials_))),
       library_(config.library, start.library),
+      textures_(start.textures),
       feed_(environment, config.may_be_followed),
       durable_(start.log.last),
       clock_(start.saved.clock) {

@@ -27,6 +27,7 @@
 #include "server/world/order/players.hpp"
 #include "server/world/order/world_clock.hpp"
 #include "server/world/order/world_memory.hpp"
+#include "server/world/order/world_textures.hpp"
 
 namespace runstone {
 
@@ -93,6 +94,9 @@ class Order {
   /// Returns the builds of the world. The caller applies records to it as to the materials.
   Library& library() { return library_; }
   const Library& library() const { return library_; }
+  /// Returns the textures of the world. The caller applies records to it as to the materials.
+  WorldTextures& textures() { return textures_; }
+  const WorldTextures& textures() const { return textures_; }
   /// Returns the time of day of the world.
   WorldClock& clock() { return clock_; }
   const WorldClock& clock() const { return clock_; }
@@ -192,6 +196,7 @@ class Order {
   Sequence materials_seq_ = 0;
   std::vector<Material> shaped_;  // at most one entry a row
   Library library_;
+  WorldTextures textures_;
   Players players_;
   NameClaims names_;
   std::vector<AuthorId> gone_authors_;
