@@ -153,9 +153,10 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   // tiles of other rules.
   if (access != StoreAccess::read_only && !store->loss_) {
     const auto present = store->present_tile_rules();
-    if (!present) return failed(present.error());
     const auto rules = rows->find("tile_rules");
-    if (rules == rows->end() || rules->second != MetaValue{std::int64_t{*present}}) {
+    const bool are_tiles_current = present && rules != rows->end() &&
+                                   rules->second == MetaValue{std::int64_t{*present}};
+    if (!are_tiles_current) {
       const auto deleted = store->transact([&] { return store->delete_tiles(); });
       if (!deleted) return failed(deleted.error());
     }
