@@ -55,8 +55,8 @@ void preview_textures_of(const CommandCall& call, const std::string& place) {
 
 constexpr std::array<CommandRow, 2> kTextureRows = {{
     {"materials textures FILE", kLocal,
-     "materials textures FILE   give materials the pictures of a folder: of PNGs that are named for\n"
-     "                          them, of a game of Luanti, or of a resource pack of Minecraft\n"
+     "materials textures FILE   give materials the pictures of a folder: of PNGs that are named\n"
+     "                          for them, of a game of Luanti, or of a resource pack of Minecraft\n"
      "materials textures preview FILE\n"
      "                          say what that would give",
      parsed_by<parse_picture_folder, give_textures_of>()},

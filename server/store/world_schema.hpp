@@ -28,8 +28,8 @@ inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// table and its log have what programs of format 7 do not know. It has the tables of a library
 /// only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
-/// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records that
-/// programs of format 8 do not know.
+/// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records
+/// that programs of format 8 do not know.
 inline constexpr std::uint32_t kWorldFormatOfTextures = 9;
 /// The format of a world whose clock was set (kClockKey): its log has records that programs of
 /// format 9 do not know. It has the tables of a library only if it has a library.

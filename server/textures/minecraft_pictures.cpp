@@ -61,7 +61,8 @@ bool fits(std::string_view condition, const ShapeStates& states) {
   return true;
 }
 
-/// Returns true if the states fit {"north": "true", "axis": "x|y"}, or the lists OR and AND of such.
+/// Returns true if the states fit {"north": "true", "axis": "x|y"}, or the lists OR and AND of
+/// such.
 bool fits_when(const Json& when, const ShapeStates& states, int depth = 0) {
   if (!when.is_object() || depth > kChainMax) return true;
   for (const auto& [key, value] : when.items()) {

@@ -18,8 +18,8 @@ struct StoredTextures {
   TextureTable table;
 };
 
-/// Reads all textures of a world. The error is one line that names the file, and the record if no table
-/// takes it.
+/// Reads all textures of a world. The error is one line that names the file, and the record if no
+/// table takes it.
 Result<StoredTextures, std::string> read_stored_textures(LogReader& reader);
 
 /// Gives a new world textures, as records of the log in an epoch of their own, at this time (UTC).

@@ -18,7 +18,8 @@ namespace runstone {
 inline constexpr std::size_t kTextureLinesShown = 8;
 
 struct TextureImport {
-  /// Pictures for which read_texture() succeeds, with their uses. The present table takes all of them.
+  /// Pictures for which read_texture() succeeds, with their uses. The present table takes all of
+  /// them.
   std::vector<std::shared_ptr<const GivenTexture>> textures;
   std::string kind;                        // of the folder, in words
   std::size_t pictures = 0;                // different ones
@@ -31,8 +32,8 @@ struct TextureImport {
 };
 
 /// Reads the pictures of a folder, or of one file, for the materials of a table. `present`: the
-/// textures that the world has. Ends early if `should_continue` returns false. The error is one line that begins with the place. Memory: the textures,
-/// and some pictures.
+/// textures that the world has. Ends early if `should_continue` returns false. The error is one
+/// line that begins with the place. Memory: the textures, and some pictures.
 Result<TextureImport, std::string> import_textures(
     const std::string& place, const MaterialTable& materials, const TextureTable& present,
     const std::function<bool()>& should_continue = {});

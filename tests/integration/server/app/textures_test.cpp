@@ -22,7 +22,8 @@ namespace {
 
 constexpr TimeUs kLaterUs = 2'000'000'000'000'000;  // than any edit of the test
 
-/// Joins with the feature, and fetches the list and all pictures. Returns the pictures by their hash.
+/// Joins with the feature, and fetches the list and all pictures. Returns the pictures by their
+/// hash.
 std::map<TextureHash, Bytes> fetched(std::uint16_t port, TextureTable& table, std::uint64_t who) {
   RawClient client(port);
   client.features = kFeatureMaterials | kFeatureTextures;
