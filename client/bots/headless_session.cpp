@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the configuration without what only a player needs.
 SessionConfig for_bot(SessionConfig config) {
-  config.features &= ~(kFeatureRights | kFeatureChat | kFeaturePreviews);
+  config.features &= ~(kFeatureRights | kFeatureChat | kFeaturePreviews | kFeatureTextures);
   return config;
 }
 
