@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/core/texture.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/extent.hpp"
@@ -33,21 +34,24 @@ inline constexpr std::uint64_t kFeatureResume =
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
 inline constexpr std::uint64_t kFeatureLargeActions = 32768;
-inline constexpr std::uint64_t kFeatureBuilds = 131072;  // BuildsRequest to BuildAnswer
-inline constexpr std::uint64_t kFeatureShapes = 262144;  // shapes in Welcome, and ShapesGiven
+inline constexpr std::uint64_t kFeatureBuilds = 131072;     // BuildsRequest to BuildAnswer
+inline constexpr std::uint64_t kFeatureShapes = 262144;     // shapes in Welcome, and ShapesGiven
+inline constexpr std::uint64_t kFeatureTextures = 1 << 20;  // TexturesGiven to TextureParts
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
 inline constexpr std::uint64_t kFeatureLibrary = 65536;          // LogPart may have a LibraryChange
 inline constexpr std::uint64_t kFeatureShapeRecords = 524288;    // LogPart may have GivenShapes
-inline constexpr std::uint64_t kFeaturesOfServers =
-    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary | kFeatureShapeRecords;
+inline constexpr std::uint64_t kFeatureTextureRecords = 1 << 21;  // LogPart may have a GivenTexture
+inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTimeCorrections |
+                                                    kFeatureLibrary | kFeatureShapeRecords |
+                                                    kFeatureTextureRecords;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
-    kFeatureBuilds | kFeatureShapes;
+    kFeatureBuilds | kFeatureShapes | kFeatureTextures;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -170,6 +174,19 @@ inline constexpr std::size_t kListedBuildsMax = 50;             // per message
 inline constexpr std::size_t kBuildPieceBytes = 64 * 1024;      // of a file that a client fetches
 inline constexpr std::size_t kBuildUploadBytesMax = 32 * 1024;  // of a file, per message
 static_assert(kBuildUploadBytesMax + 512 <= kClientEditBytesMax, "an upload fits a message");
+
+// Textures.
+inline constexpr std::size_t kTexturesGivenMax = 1024;        // per message
+inline constexpr std::size_t kTexturesGivenUsesMax = 65'536;  // of all pictures of a message
+inline constexpr std::size_t kTexturesWantedMax = 96;         // per message
+inline constexpr std::size_t kTexturePartsBytesMax = 64 * 1024;
+static_assert(kTexturesGivenMax * (sizeof(TextureHash) + 6) + kTexturesGivenUsesMax * 3 + 512 <=
+                  kServerEditBytesMax,
+              "the pictures of a message fit it");
+static_assert(kTexturesWantedMax * sizeof(TextureHash) + 512 <= kClientControlBytesMax,
+              "the hashes of a message fit it");
+static_assert(sizeof(TextureHash) + 2 + kTextureBytesMax <= kTexturePartsBytesMax,
+              "every picture fits a message");
 
 // The list of servers.
 inline constexpr std::size_t kServersMax = 64;

@@ -1,8 +1,8 @@
 // BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
 // cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
 // chunk_bodies.cpp, edit_bodies.cpp, rights_bodies.cpp, chat_bodies.cpp, key_transfer_bodies.cpp,
-// material_bodies.cpp, preview_bodies.cpp, server_bodies.cpp, server_list_bodies.cpp and
-// build_bodies.cpp.
+// material_bodies.cpp, preview_bodies.cpp, server_bodies.cpp, server_list_bodies.cpp,
+// build_bodies.cpp and texture_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -120,6 +120,11 @@ struct BodyReader {
   Result<Message> read(const wire::BuildOffer& t) const;
   Result<Message> read(const wire::BuildUpload& t) const;
   Result<Message> read(const wire::BuildAnswer& t) const;
+
+  // ---- texture_bodies.cpp
+  Result<Message> read(const wire::TexturesGiven& t) const;
+  Result<Message> read(const wire::TexturesWanted& t) const;
+  Result<Message> read(const wire::TextureParts& t) const;
 
   using TakeEdit = std::function<Result<void>()>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then

@@ -24,7 +24,8 @@ using Bodies =
                wire::RelayOpen, wire::Relay, wire::RelayClose, wire::RelayCharge, wire::Resume,
                wire::Resumed, wire::Servers, wire::BuildsRequest, wire::Builds,
                wire::BuildPieceRequest, wire::BuildPiece, wire::BuildOffer, wire::BuildUpload,
-               wire::BuildAnswer, wire::ShapesGiven>;
+               wire::BuildAnswer, wire::ShapesGiven, wire::TexturesGiven, wire::TexturesWanted,
+               wire::TextureParts>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

@@ -12,6 +12,7 @@
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/preview_list.hpp"
 #include "protocol/codec/shape_list.hpp"
+#include "protocol/codec/texture_list.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -248,6 +249,15 @@ struct BodyBuilder {
     ByteWriter w(bytes);
     write_given_shapes(w, m.given);
     return wire::CreateShapesGiven(b, bytes_of(b, bytes));
+  }
+  Offset<wire::TexturesGiven> operator()(const TexturesGiven& m) {
+    return wire::CreateTexturesGiven(b, bytes_of(b, encode_textures(m.entries)));
+  }
+  Offset<wire::TexturesWanted> operator()(const TexturesWanted& m) {
+    return wire::CreateTexturesWanted(b, bytes_of(b, encode_hashes(m.hashes)));
+  }
+  Offset<wire::TextureParts> operator()(const TextureParts& m) {
+    return wire::CreateTextureParts(b, bytes_of(b, encode_texture_parts(m.parts)));
   }
 
   Offset<wire::LogMarksRequest> operator()(const LogMarksRequest& m) {

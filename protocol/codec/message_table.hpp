@@ -102,6 +102,9 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"BuildUpload", client, kEdits, open, kFeatureBuilds},
       {"BuildAnswer", server, kControl, open, kFeatureBuilds},
       {"ShapesGiven", server, kEdits, open, kFeatureShapes},
+      {"TexturesGiven", server, kEdits, open, kFeatureTextures},
+      {"TexturesWanted", client, kControl, open, kFeatureTextures},
+      {"TextureParts", server, kChunks, open, kFeatureTextures},
   }};
 }();
 
