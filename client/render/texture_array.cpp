@@ -55,7 +55,8 @@ void TextureArray::set(const DrawnTexturesPtr& textures) {
   }
   if (wanted.empty()) {
     held_.clear();
-    array_ = sides_ = GlTexture();
+    array_ = GlTexture();
+    sides_ = GlTexture();
     layers_ = 0;
     return;
   }
