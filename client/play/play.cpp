@@ -218,7 +218,8 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
   const bool is_on = settings.shows_textures && pipeline_.draws();
   TextureExchange& textures = session_.textures();
   textures.set_wanted(is_on);
-  if (auto drawn = textures_.step(textures, is_on, now_us)) pipeline_.set_textures(*std::move(drawn));
+  if (auto drawn = textures_.step(textures, is_on, now_us))
+    pipeline_.set_textures(*std::move(drawn));
   if (pipeline_.recent_frames().empty()) return;
   const std::size_t left_out = pipeline_.recent_frames().back().stats.textures_left_out;
   if (auto notice = textures_.take_notice(textures, left_out))

@@ -30,9 +30,9 @@ class WorldTextures {
   std::optional<DrawnTexturesPtr> take_nothing();
 
   std::map<TexturePicturePtr, TextureLevelsPtr> levels_;  // of the pictures that are drawn
-  std::uint64_t serial_ = 0;  // TextureExchange::serial() of what was returned last
-  bool has_drawn_ = false;    // what was returned last are textures
-  TimeUs drawn_us_ = 0;       // when it was returned
+  std::uint64_t serial_ = 0;               // TextureExchange::serial() of what was returned last
+  bool has_drawn_ = false;                 // what was returned last are textures
+  TimeUs drawn_us_ = 0;                    // when it was returned
   std::size_t failed_ = 0, left_out_ = 0;  // of which there was a notice
 };
 

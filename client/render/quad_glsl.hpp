@@ -23,12 +23,12 @@ namespace runstone {
   "#else\n"                                                                            \
   "const int first_vertex = 0;\n"                                                      \
   "#endif\n"                                                                           \
-  "struct QuadCorner {\n"                                                               \
-  "  vec3 at, normal, outward, across;\n"                                               \
-  "  uint material, side;\n"                                                            \
-  "  bool is_shape;\n"                                                                  \
-  "  float inside;\n"                                                                   \
-  "};\n"                                                                                \
+  "struct QuadCorner {\n"                                                              \
+  "  vec3 at, normal, outward, across;\n"                                              \
+  "  uint material, side;\n"                                                           \
+  "  bool is_shape;\n"                                                                 \
+  "  float inside;\n"                                                                  \
+  "};\n"                                                                               \
   "QuadCorner quad_corner() {\n"                                                       \
   "  int number = first_vertex + gl_VertexID;\n"                                       \
   "  uvec2 quad = texelFetch(quads, texel_place(number >> 2), 0).xy;\n"                \

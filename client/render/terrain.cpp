@@ -312,11 +312,12 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
   if (!out.gl) {
     const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
     const bool is_textured = (variant & kTextured) != 0;
-    const std::string textures = texture_definitions(is_textured, (variant & kHoles) != 0,
-                                                     is_textured && is_transparent);
+    const std::string textures =
+        texture_definitions(is_textured, (variant & kHoles) != 0, is_textured && is_transparent);
     const auto text = [&](const char* shader) {
-      return textures + variant_of(shader, quality, (variant & kTile) != 0, (variant & kInField) != 0,
-                        (variant & kFine) != 0, (variant & kInFog) != 0, (variant & kFade) != 0);
+      return textures + variant_of(shader, quality, (variant & kTile) != 0,
+                                   (variant & kInField) != 0, (variant & kFine) != 0,
+                                   (variant & kInFog) != 0, (variant & kFade) != 0);
     };
     out.gl = link_program(is_transparent ? "transparent" : "terrain",
                           text(kTerrainVertexShader).c_str(), text(fragment).c_str());

@@ -158,11 +158,11 @@ class Terrain {
   std::uint8_t joined_sides(const ChunkKey& key, std::uint8_t octants) const;
   void find_visible_tiles(const FrameView& view, const Frustum& frustum, TerrainStats& stats);
   /// The variants of a program: bits that add what not every chunk needs.
-  static constexpr unsigned kInField = 1;  // it reads the light field
-  static constexpr unsigned kFine = 2;     // grain and joints are seen
-  static constexpr unsigned kInFog = 4;    // a part of the chunk is in the fog
-  static constexpr unsigned kTile = 8;     // it is a part of a tile, without shadows
-  static constexpr unsigned kFade = 16;    // it appears or dissolves
+  static constexpr unsigned kInField = 1;    // it reads the light field
+  static constexpr unsigned kFine = 2;       // grain and joints are seen
+  static constexpr unsigned kInFog = 4;      // a part of the chunk is in the fog
+  static constexpr unsigned kTile = 8;       // it is a part of a tile, without shadows
+  static constexpr unsigned kFade = 16;      // it appears or dissolves
   static constexpr unsigned kTextured = 32;  // the world has textures
   static constexpr unsigned kHoles = 64;     // textures with holes
   static constexpr std::size_t kVariants = 128;

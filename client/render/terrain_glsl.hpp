@@ -77,8 +77,8 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL
-        RUNSTONE_SHADOW_GLSL RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
+        RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL
     "float hash(ivec3 p) {\n"
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"

@@ -34,8 +34,8 @@ std::vector<std::uint8_t> layer_pixels(const TextureLevels& picture, std::size_t
   out.reserve(edge * edge * 4);
   for (std::size_t y = 0; y < edge; ++y) {
     for (std::size_t x = 0; x < edge; ++x) {
-      const auto at = from.begin() + static_cast<std::ptrdiff_t>(
-                                         (y / repeats * picture.edge + x / repeats) * 4);
+      const auto at = from.begin() +
+                      static_cast<std::ptrdiff_t>((y / repeats * picture.edge + x / repeats) * 4);
       out.insert(out.end(), at, at + 4);
     }
   }

@@ -37,8 +37,8 @@ class TextureArray {
   void fill_sides(const DrawnTextures& textures);
 
   GlTexture array_, sides_;
-  std::uint16_t edge_ = 0;   // of a layer, pixels
-  std::size_t layers_ = 0;   // of the array
+  std::uint16_t edge_ = 0;                        // of a layer, pixels
+  std::size_t layers_ = 0;                        // of the array
   std::map<TextureLevelsPtr, std::size_t> held_;  // pictures and their layers
   std::size_t left_out_ = 0;
 };

@@ -87,8 +87,8 @@ Pixels halved_pixels(const Pixels& pixels, std::size_t edge) {
 /// Returns the factor of alpha with which this share of the pixels, or one pixel if there is any
 /// share, is no hole. It makes no holes larger.
 float alpha_factor(const Pixels& pixels, double solid_share) {
-  const auto wanted = static_cast<std::size_t>(std::max(
-      1.0, std::round(solid_share * static_cast<double>(pixels.size()))));
+  const auto wanted = static_cast<std::size_t>(
+      std::max(1.0, std::round(solid_share * static_cast<double>(pixels.size()))));
   if (solid_count(pixels) >= wanted) return 1;
   std::vector<float> alphas;
   for (const Pixel& pixel : pixels) alphas.push_back(pixel.alpha);

@@ -109,8 +109,7 @@ template <typename Cache>
 void exchange_textures(TextureExchange& textures, Cache& cache) {
   for (auto& found : cache.drain_textures()) textures.receive_cached(std::move(found));
   while (auto hashes = textures.take_lookup()) cache.look_up_textures(*std::move(hashes));
-  if (auto parts = textures.take_for_cache(); !parts.empty())
-    cache.keep_textures(std::move(parts));
+  if (auto parts = textures.take_for_cache(); !parts.empty()) cache.keep_textures(std::move(parts));
 }
 
 }  // namespace runstone

@@ -101,8 +101,8 @@ class WebClient {
   bool types_ = false;                 // the page knows that a field of a window has the keyboard
   TimeUs windows_us_ = 0;              // when the windows were made last
   PlaySettings settings_;
-  std::size_t pins_kept_ = 0;          // server keys that the page keeps
-  std::optional<TimeUs> drawn_us_;     // when the last turn began, if it drew a frame
+  std::size_t pins_kept_ = 0;       // server keys that the page keeps
+  std::optional<TimeUs> drawn_us_;  // when the last turn began, if it drew a frame
   bool is_joined_ = false, is_over_ = false, is_exact_ = false;
 };
 

@@ -246,7 +246,7 @@ TEST_CASE("each side of a cube shows its own picture upright and not mirrored, o
     const Image image = scene.draw(look.camera());
     check_quarters(image, look, kQuarters);
     CHECK(named(pixel_at(image, look, 0, 0)) == kSideColours[side]);
-    }
+  }
   CHECK(scene.stats().textures_left_out == 0);
 }
 
@@ -275,8 +275,7 @@ TEST_CASE("faces that are merged to one quad show the picture in each voxel",
   }
 }
 
-TEST_CASE("the steps of stairs show the part of the picture at their place",
-          "[render][textures]") {
+TEST_CASE("the steps of stairs show the part of the picture at their place", "[render][textures]") {
   const auto context = some_context();
   if (!context) return;
   const Shape stairs{ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}, {{8, 8, 0}, {16, 16, 16}}}};
@@ -328,9 +327,8 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
           "[render][textures]") {
   const auto context = some_context();
   if (!context) return;
-  const auto holed = painted(16, [](double right, double) {
-    return right < 0.5 ? kRed : Rgba{20, 200, 20, 0};
-  });
+  const auto holed =
+      painted(16, [](double right, double) { return right < 0.5 ? kRed : Rgba{20, 200, 20, 0}; });
   const Look look = before(Direction::neg_z);
   SECTION("opaque") {
     const MaterialTable materials = materials_of({material_row("leaves")});
@@ -349,8 +347,7 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
     const MaterialTable materials = materials_of({glass, blue});
     Textures textures;
     textures.add(holed, 1, kAllTextureSides);
-    TexturedScene scene(*context, materials,
-                        mesh_of(materials, {{{8, 8, 8}, 1}, {{8, 8, 9}, 2}}));
+    TexturedScene scene(*context, materials, mesh_of(materials, {{{8, 8, 8}, 1}, {{8, 8, 9}, 2}}));
     scene.renderer().set_textures(textures.take());
     check_quarters(scene.draw(look.camera()), look, {kRed, kBlue, kRed, kBlue});
   }
@@ -375,8 +372,8 @@ TEST_CASE("far away a side has the mean of its picture, and a plant is still see
     Textures textures;
     textures.add(painted(16,
                          [](double right, double down) {
-                           const int square = static_cast<int>(16 * right) +
-                                              static_cast<int>(16 * down);
+                           const int square =
+                               static_cast<int>(16 * right) + static_cast<int>(16 * down);
                            return square % 2 == 0 ? kRed : kGreen;
                          }),
                  1, kAllTextureSides);
@@ -408,11 +405,10 @@ TEST_CASE("far away a side has the mean of its picture, and a plant is still see
     ChunkMesh mesh;
     mesh.shapes.opaque = quads_of_shape(materials, 1);
     Textures textures;
-    textures.add(painted(16,
-                         [](double right, double) {
-                           return static_cast<int>(16 * right) % 4 == 1 ? kRed : kHole;
-                         }),
-                 1, kAllTextureSides);
+    textures.add(
+        painted(16, [](double right,
+                       double) { return static_cast<int>(16 * right) % 4 == 1 ? kRed : kHole; }),
+        1, kAllTextureSides);
     TexturedScene scene(*context, materials, mesh);
     scene.renderer().set_textures(textures.take());
     const Look far{M_PI / 4, 0, 40};

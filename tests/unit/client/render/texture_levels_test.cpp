@@ -89,9 +89,8 @@ TEST_CASE("each level has about the share of holes of the picture, and never non
         CHECK(solid_share(level) <= std::max(2 * least, 1.5 * share + least));
     }
   }
-  const TextureLevels empty = texture_levels(picture_of(16, [](unsigned, unsigned) {
-    return Pixel4{9, 9, 9, 0};
-  }));
+  const TextureLevels empty =
+      texture_levels(picture_of(16, [](unsigned, unsigned) { return Pixel4{9, 9, 9, 0}; }));
   CHECK(solid_share(empty.levels.back()) == 0);
 }
 

@@ -30,9 +30,7 @@ struct FakeTextureCache {
   std::map<TextureHash, Bytes> kept;
 
   std::vector<std::vector<TexturePart>> drain_textures() { return std::exchange(results, {}); }
-  void look_up_textures(std::vector<TextureHash> hashes) {
-    lookups.push_back(std::move(hashes));
-  }
+  void look_up_textures(std::vector<TextureHash> hashes) { lookups.push_back(std::move(hashes)); }
   void keep_textures(const std::vector<TexturePart>& parts) {
     for (const TexturePart& part : parts) kept[part.hash] = part.png;
   }
@@ -157,7 +155,8 @@ TEST_CASE_METHOD(TextureSession, "pictures come from the server, and the next ti
   }
 }
 
-TEST_CASE_METHOD(TextureSession, "nothing is asked for while textures are off or without the feature",
+TEST_CASE_METHOD(TextureSession,
+                 "nothing is asked for while textures are off or without the feature",
                  "[session][textures]") {
   const std::vector<Bytes> pngs = {png_of(1), png_of(2)};
   use(GENERATE(false, true));
@@ -190,9 +189,9 @@ TEST_CASE_METHOD(TextureSession, "pictures with other bytes than the list says a
   REQUIRE(turn().size() == 4);
   TextureParts parts;
   parts.parts.push_back({texture_hash(good), good});
-  parts.parts.push_back({texture_hash(other), good});  // another hash
-  parts.parts.push_back({texture_hash(text), text});   // no picture
-  parts.parts.push_back({texture_hash(unsent), {}});   // the server does not send it
+  parts.parts.push_back({texture_hash(other), good});           // another hash
+  parts.parts.push_back({texture_hash(text), text});            // no picture
+  parts.parts.push_back({texture_hash(unsent), {}});            // the server does not send it
   parts.parts.push_back({texture_hash(png_of(9)), png_of(9)});  // nobody asked for it
   receive(parts);
   CHECK(turn().empty());
@@ -259,7 +258,8 @@ TEST_CASE_METHOD(TextureSession,
   for (int i = 0; i < 250; ++i) {
     Image image{16, 16, {}};
     for (int at = 0; at < 16 * 16 * 3; ++at)
-      image.rgb.push_back(static_cast<std::uint8_t>(mix64(static_cast<std::uint64_t>(i * 1000 + at))));
+      image.rgb.push_back(
+          static_cast<std::uint8_t>(mix64(static_cast<std::uint64_t>(i * 1000 + at))));
     pngs.push_back(encode_png(image));
   }
   static_cast<void>(open());
