@@ -74,6 +74,7 @@ struct Mirror {
   void operator()(MaterialsEdit&) const {}
   void operator()(LibraryEdit&) const {}
   void operator()(ShapesEdit&) const {}
+  void operator()(TextureEdit&) const {}
 };
 
 /// Appends an edit unless it has the voxels of another one. A copy onto itself has, although its

@@ -20,6 +20,8 @@ std::string kind_words(EditKind kind) {
       return "change of the library";
     case EditKind::shapes:
       return "shapes of materials";
+    case EditKind::texture:
+      return "texture of materials";
     default:
       return name_of(kind);
   }
@@ -42,6 +44,7 @@ std::string record_words(EditKind kind, Cause cause) {
     case Cause::rights:
     case Cause::materials:
     case Cause::library:
+    case Cause::textures:
       return kind_words(kind);
   }
   return kind_words(kind);

@@ -50,13 +50,15 @@ enum class Cause : std::uint8_t {
   import = 5,
   rights = 6,     // a change of rights, by a player or by the console (author 0)
   materials = 7,  // new materials, by the console
-  library = 8     // a change of the library of builds, by a player or by the console (author 0)
+  library = 8,    // a change of the library of builds, by a player or by the console (author 0)
+  textures = 10   // a picture for sides of materials, by the console
 };
-inline constexpr std::uint8_t kCauseMax = 8;
-/// Returns true if the edits with this cause change voxels. The others change rights, materials or the
-/// library of builds.
+inline constexpr std::uint8_t kCauseMax = 10;
+/// Returns true if the edits with this cause change voxels. The others change rights, materials,
+/// textures or the library of builds.
 constexpr bool changes_voxels(Cause cause) {
-  return cause != Cause::rights && cause != Cause::materials && cause != Cause::library;
+  return cause != Cause::rights && cause != Cause::materials && cause != Cause::library &&
+         cause != Cause::textures;
 }
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs

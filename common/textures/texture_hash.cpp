@@ -2,6 +2,8 @@
 
 #include <sodium.h>
 
+#include <utility>
+
 namespace runstone {
 
 static_assert(sizeof(TextureHash) == crypto_generichash_BYTES);
@@ -10,6 +12,10 @@ TextureHash texture_hash(ByteView png) {
   TextureHash hash;
   crypto_generichash(hash.data(), hash.size(), png.data(), png.size(), nullptr, 0);
   return hash;
+}
+
+TextureEntry texture_entry(ByteView png, std::vector<TextureUse> uses) {
+  return {texture_hash(png), static_cast<std::uint32_t>(png.size()), std::move(uses)};
 }
 
 }  // namespace runstone

@@ -13,6 +13,7 @@
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
+#include "server/admin/texture_commands.hpp"
 
 namespace runstone {
 namespace {
@@ -111,7 +112,7 @@ const std::vector<CommandRow>& command_table() {
     for (const auto& part :
          {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
           role_commands(), password_commands(), clock_commands(), library_commands(),
-          shape_commands(), host_commands()})
+          shape_commands(), texture_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -39,15 +39,15 @@ std::string added_materials_text(const AddedMaterials& added) {
   return text;
 }
 
-std::string given_names_text(std::span<const GivenShape> given, const MaterialTable& materials) {
+std::string material_names_text(const std::vector<Material>& ids, const MaterialTable& materials) {
   std::string text;
   std::size_t shown = 0;
-  for (; shown < std::min(given.size(), kRowsInLine); ++shown) {
-    const Material id = given[shown].material;
+  for (; shown < std::min(ids.size(), kRowsInLine); ++shown) {
+    const Material id = ids[shown];
     text += shown == 0 ? "" : ", ";
     text += materials.knows(id) ? materials[id].name : std::to_string(id);
   }
-  if (given.size() > shown) text += " and " + std::to_string(given.size() - shown) + " more";
+  if (ids.size() > shown) text += " and " + std::to_string(ids.size() - shown) + " more";
   return text;
 }
 

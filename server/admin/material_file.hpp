@@ -25,6 +25,13 @@ std::string added_materials_text(const AddedMaterials& added);
 
 /// Returns a text such as "oak_slab, oak_stairs and 3 more" with the names of the first eight
 /// materials. Those that the table lacks are shown by their ids.
-std::string given_names_text(std::span<const GivenShape> given, const MaterialTable& materials);
+std::string material_names_text(const std::vector<Material>& ids, const MaterialTable& materials);
+/// Returns the names of the materials of rows that a record gives.
+template <class Rows>
+std::string given_names_text(const Rows& rows, const MaterialTable& materials) {
+  std::vector<Material> ids;
+  for (const auto& row : rows) ids.push_back(row.material);
+  return material_names_text(ids, materials);
+}
 
 }  // namespace runstone

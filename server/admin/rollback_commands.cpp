@@ -27,7 +27,7 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 9> kCauses = {{{"player", Cause::player},
+constexpr std::array<CauseName, 10> kCauses = {{{"player", Cause::player},
                                                {"console", Cause::console},
                                                {"rollback", Cause::rollback},
                                                {"undo", Cause::undo},
@@ -35,9 +35,10 @@ constexpr std::array<CauseName, 9> kCauses = {{{"player", Cause::player},
                                                {"import", Cause::import},
                                                {"rights", Cause::rights},
                                                {"materials", Cause::materials},
-                                               {"library", Cause::library}}};
+                                               {"library", Cause::library},
+                                               {"textures", Cause::textures}}};
 constexpr const char* kCauseNames =
-    "player, console, rollback, undo, redo, import, rights, materials or library";
+    "player, console, rollback, undo, redo, import, rights, materials, library or textures";
 
 CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   if (word.starts_with('#')) {
@@ -212,6 +213,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"materials\": added materials and shapes stay");
   if (preview.filter.cause == Cause::library)
     return failure("rollback preview cause \"library\": builds remove takes a build away");
+  if (preview.filter.cause == Cause::textures)
+    return failure("rollback preview cause \"textures\": textures stay");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(
@@ -324,6 +327,8 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " " + added_materials_text(*added);
   if (const GivenShapes* given = given_shapes_of(record.edit))
     return line + " shapes of " + given_names_text(given->rows, materials);
+  if (const GivenTexture* given = given_texture_of(record.edit))
+    return line + " texture of " + given_names_text(given->uses, materials);
   if (const LibraryChange* change = library_change_of(record.edit))
     return line + " " + library_change_text(*change);
   return line + " " + edit_text(record, materials);

@@ -9,6 +9,7 @@
 
 #include "common/os/new_folder.hpp"
 #include "server/store/world_folder.hpp"
+#include "server/textures/stored_textures.hpp"
 
 namespace runstone {
 namespace {
@@ -45,6 +46,12 @@ Result<WorldCopy, std::string> fill(WorldReader& source, WorldAt& world, const s
       return failure(saved.error().message());
     slice.clear();
   }
+  const auto textures = read_stored_textures(source);
+  if (!textures) return failure(textures.error());
+  const auto range = source.log_range();
+  if (!range) return failure(range.error().message());
+  const auto given = append_textures(**store, textures->given, range->last.time_us);
+  if (!given) return failure(given.error().message());
   return copy;
 }
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "server/textures/stored_textures.hpp"
+
 namespace runstone {
 namespace {
 
@@ -93,6 +95,9 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto library = store.library_rows();
   if (!library) return failure(library.error().message());
   start.library = *std::move(library);
+  auto textures = read_stored_textures(store);
+  if (!textures) return failure(textures.error());
+  start.textures = std::move(textures->given);
   if (const auto counted = store.check_counts(); !counted)
     return failure(counted.error().message());
   return start;

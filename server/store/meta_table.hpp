@@ -55,6 +55,8 @@ inline constexpr const char* kLogErasKey = "log_eras";
 
 /// The key of a row, always 1, that only a world has in which a material has or had a shape.
 inline constexpr const char* kShapesKey = "shapes";
+/// The key of a row, always 1, that only a world has to which a texture was given.
+inline constexpr const char* kTexturesKey = "textures";
 
 class MetaTable {
  public:

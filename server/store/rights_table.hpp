@@ -1,5 +1,6 @@
-// RightsTable: the changes of rights that a compaction moved out of the log (`rights_record`), as
-// the bytes of their records. Who may do what follows from them and from the log.
+// RightsTable: the records that a compaction moved out of the log because they are needed as they are
+// (`rights_record`): changes of rights, and textures. Who may do what, and what materials show,
+// follows from them and from the log.
 #pragma once
 #include <string>
 #include <utility>

@@ -76,7 +76,9 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
       if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put)
         return put;
     }
-    if (auto kept = keep_rights(keyframe); !kept) return kept;
+    for (const Cause cause : {Cause::rights, Cause::textures}) {
+      if (auto kept = keep_records(cause, keyframe); !kept) return kept;
+    }
     auto kept_materials = keep_materials(keyframe);
     if (!kept_materials) return failed(kept_materials.error());
     materials = *std::move(kept_materials);

@@ -1,5 +1,5 @@
 // The part of SqlStore that knows the material table: `meta` has the table before the first edit
-// of the log, and records of the log append to it, and give its rows shapes.
+// of the log, and records of the log append to it, and give its rows shapes and textures.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -80,6 +80,15 @@ StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
   }
   if (auto put = meta_table_.put(kShapesKey, std::int64_t{1}); !put) return put;
   return raise_format(kWorldFormatOfShapes);
+}
+
+StoreResult<void> SqlStore::mark_textures(std::span<const EditRecord> records) {
+  const bool has_textures = std::ranges::any_of(records, [](const EditRecord& record) {
+    return given_texture_of(record.edit) != nullptr;
+  });
+  if (!has_textures) return {};
+  if (auto put = meta_table_.put(kTexturesKey, std::int64_t{1}); !put) return put;
+  return raise_format(kWorldFormatOfTextures);
 }
 
 StoreResult<MaterialTable> SqlStore::keep_materials(Sequence last) {

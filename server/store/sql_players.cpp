@@ -117,27 +117,27 @@ StoreResult<void> SqlStore::convert_to_format_3() {
   return meta_table_.put_fold(fold_key_of(kRights), {});
 }
 
-StoreResult<void> SqlStore::read_rights(const EachRecord& each) {
+StoreResult<void> SqlStore::read_kept(Cause cause, const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
     if (rights_) {
       const auto compacted = rights_->records();
       if (!compacted) return failed(compacted.error());
       if (auto sound = check_fold(kRights, compacted->fold); !sound) return sound;
       for (const EditRecord& record : compacted->rows) {
-        if (!each(record)) return {};
+        if (record.cause == cause && !each(record)) return {};
       }
     }
     LogQuery in_log;
-    in_log.cause = Cause::rights;
+    in_log.cause = cause;
     return query_log(in_log, each);
   });
 }
 
-StoreResult<void> SqlStore::keep_rights(Sequence last) {
+StoreResult<void> SqlStore::keep_records(Cause cause, Sequence last) {
   auto fold = meta_table_.fold(fold_key_of(kRights));
   if (!fold) return failed(fold.error());
   LogQuery in_log;
-  in_log.cause = Cause::rights;
+  in_log.cause = cause;
   in_log.last = last;
   StoreResult<void> kept;
   auto read = query_log(in_log, [&](const EditRecord& record) {

@@ -205,6 +205,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   if (auto added = add_eras(records); !added) return added;
   if (auto applied = apply_library(records, is_history); !applied) return applied;
   if (auto marked = mark_shapes(records); !marked) return marked;
+  if (auto marked = mark_textures(records); !marked) return marked;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
   const auto author_max = meta_table_.counter("author_max");

@@ -48,7 +48,12 @@ class SqlStore final : public Store {
   StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) override;
   StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) override;
   StoreResult<void> rows_of_author(AuthorId author, Sequence last, const EachRow& each) override;
-  StoreResult<void> read_rights(const EachRecord& each) override;
+  StoreResult<void> read_rights(const EachRecord& each) override {
+    return read_kept(Cause::rights, each);
+  }
+  StoreResult<void> read_textures(const EachRecord& each) override {
+    return read_kept(Cause::textures, each);
+  }
   using LogReader::materials;
   StoreResult<MaterialTable> materials(Sequence at) override;
 
@@ -184,12 +189,17 @@ class SqlStore final : public Store {
   /// Returns the base chunks that a compaction completed. Reads nothing if there was no compaction.
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
   StoreResult<void> complete_base(const StoredMoment& moment);
-  /// Copies the changes of rights that the log holds up to `last` to the table of their own.
-  StoreResult<void> keep_rights(Sequence last);
+  /// Calls `each` for the records of this cause that compactions kept, then for those of the log.
+  StoreResult<void> read_kept(Cause cause, const EachRecord& each);
+  /// Copies the records of this cause that the log holds up to `last` to the table of those that are
+  /// kept.
+  StoreResult<void> keep_records(Cause cause, Sequence last);
   /// Writes the material table after edit `last` to `meta` and returns it.
   StoreResult<MaterialTable> keep_materials(Sequence last);
   /// Appends the rows of a record. Fails (corrupt) if they do not continue the table.
   StoreResult<void> append_materials(const EditRecord& record, MaterialTable& table) const;
+  /// Marks the world as one with textures if a record gives one.
+  StoreResult<void> mark_textures(std::span<const EditRecord> records);
   /// Marks the world as one with shapes if a record gives some.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
   /// Fails (bad_request) if new materials or shapes among the records do not continue the material

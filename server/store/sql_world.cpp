@@ -138,14 +138,15 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
       if (!raised) return failed(raised.error());
     }
   }
-  if (rows->contains(kShapesKey) && access != StoreAccess::read_only && !store->loss_) {
+  for (const auto& [key, needed] : {std::pair(kShapesKey, kWorldFormatOfShapes),
+                                    std::pair(kTexturesKey, kWorldFormatOfTextures)}) {
+    if (!rows->contains(key) || access == StoreAccess::read_only || store->loss_) continue;
     const auto format = store->backend_->format();
     if (!format) return failed(format.error());
-    if (*format < kWorldFormatOfShapes) {
-      const auto raised =
-          store->transact([&] { return store->raise_format(kWorldFormatOfShapes); });
-      if (!raised) return failed(raised.error());
-    }
+    if (*format >= needed) continue;
+    const auto raised =
+        store->transact([&, needed = needed] { return store->raise_format(needed); });
+    if (!raised) return failed(raised.error());
   }
   const auto rules = rows->find("tile_rules");
   const bool are_tiles_current =

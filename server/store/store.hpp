@@ -61,7 +61,7 @@ class Store : public WorldReader, public WorldSink, public ImportSink {
   /// runs the world.
   ///   - The base is completed from the keyframe.
   ///   - The edits, their indexes, the keyframe and those before it are deleted. Changes of rights
-  ///     move to a table of their own, new materials to the material table of `meta`.
+  ///     and textures move to a table of their own, new materials to the material table of `meta`.
   ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
   ///   - A chunk whose snapshot is older than the base gets a snapshot that is not. Tiles above it
   ///     that are older are deleted.

@@ -143,6 +143,8 @@ StoreResult<void> SqlStore::check() {
   if (const auto rows = name_claims(); !rows) return failed(rows.error());
   const auto rights = read_rights([](const EditRecord&) { return true; });
   if (!rights) return failed(rights.error());
+  const auto textures = read_textures([](const EditRecord&) { return true; });
+  if (!textures) return failed(textures.error());
   if (const auto table = materials(); !table) return failed(table.error());
   if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   // A watermark that the log proves to be missing is named before the rows are counted.

@@ -31,7 +31,8 @@ struct WorldServer::Rooms {
                  people.joining(), people.edits(), people.presence(), people.chat()},
                 random),
         build_reads(config, environment, sessions, order, rights),
-        build_uploads({environment, sessions, order, rights, changes, cluster}) {}
+        build_uploads({environment, sessions, order, rights, changes, cluster}),
+        textures(sessions, order) {}
 
   WorldConfig config;
   WorldEnvironment& environment;
@@ -48,6 +49,7 @@ struct WorldServer::Rooms {
   Cluster cluster;
   BuildReads build_reads;
   BuildUploads build_uploads;
+  TextureSending textures;
 };
 
 namespace {
@@ -67,6 +69,7 @@ struct OpenMessages {
   Cluster& cluster;
   BuildReads& build_reads;
   BuildUploads& build_uploads;
+  TextureSending& textures;
   Session& session;
   const Clocks& now;
   void operator()(const View& view) const { ground.on_view(session, view, now); }
@@ -101,6 +104,7 @@ struct OpenMessages {
   void operator()(const BuildUpload& upload) const {
     build_uploads.on_upload(session, upload, now);
   }
+  void operator()(const TexturesWanted& wanted) const { textures.on_wanted(session, wanted); }
   void operator()(const Ping& ping) const {
     sessions.send_or_skip(session, encode_message(Pong{ping.sent_us, now.steady_us}));
   }
@@ -164,6 +168,7 @@ void WorldServer::remove_closed() {
     rooms_->cluster.forget(session);
     rooms_->build_reads.forget(session.id);
     rooms_->build_uploads.forget(session.id);
+    rooms_->textures.forget(session.id);
     rooms_->receipts.forget(session.id);
   }
   rooms_->sessions.remove_closed();
@@ -182,7 +187,7 @@ void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock f
 void WorldServer::handle(Session& session, Message&& message, const Clocks& now) {
   if (rooms_->cluster.on_message_for_owner(session, message, now)) return;
   std::visit(OpenMessages{rooms_->sessions, rooms_->ground, rooms_->people, rooms_->cluster,
-                          rooms_->build_reads, rooms_->build_uploads, session, now},
+                          rooms_->build_reads, rooms_->build_uploads, rooms_->textures, session, now},
              message);
 }
 
@@ -242,6 +247,7 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
   Session* const mine = rooms_->sessions.find(session);
   if (mine == nullptr) return;
   rooms_->receipts.send_pending(*mine);
+  rooms_->textures.drained(*mine);
   rooms_->ground.drained(*mine, now);
   remove_closed();
 }
@@ -298,6 +304,7 @@ void WorldServer::tick(const Clocks& now) {
   }
   rooms_->build_reads.serve(now);
   rooms_->build_uploads.tick(now);
+  rooms_->textures.tick();
   step_checkpointer(now);
   remove_closed();
   ground.start_work(now);

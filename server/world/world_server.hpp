@@ -22,6 +22,7 @@
 #include "server/world/ground/ground.hpp"
 #include "server/world/library/build_reads.hpp"
 #include "server/world/library/build_uploads.hpp"
+#include "server/world/library/texture_sending.hpp"
 #include "server/world/people/people.hpp"
 
 namespace runstone {

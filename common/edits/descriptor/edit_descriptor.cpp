@@ -105,6 +105,12 @@ Result<void> validate_shape(const ShapesEdit& shape) {
   return validate(*shape.given);
 }
 
+Result<void> validate_shape(const TextureEdit& shape) {
+  if (shape.given == nullptr)
+    return fail(ErrorCode::bad_value, "edit of a texture without a picture");
+  return validate(*shape.given);
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -157,6 +163,8 @@ void write_shape(ByteWriter& w, const LibraryEdit& shape) {
 }
 
 void write_shape(ByteWriter& w, const ShapesEdit& shape) { write_given_shapes(w, *shape.given); }
+
+void write_shape(ByteWriter& w, const TextureEdit& shape) { write_given_texture(w, *shape.given); }
 
 std::int32_t read_coordinate(ByteReader& r) {
   return static_cast<std::int32_t>(
@@ -228,6 +236,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::materials_with_looks:
     case EditKind::library:
     case EditKind::shapes:
+    case EditKind::texture:
       return true;
   }
   return false;
@@ -266,6 +275,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return LibraryEdit{std::make_shared<const LibraryChange>(read_library_change(r))};
     case EditKind::shapes:
       return ShapesEdit{std::make_shared<const GivenShapes>(read_given_shapes(r))};
+    case EditKind::texture:
+      return TextureEdit{std::make_shared<const GivenTexture>(read_given_texture(r))};
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -276,7 +287,8 @@ EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
       EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
       EditKind::fill_stroke, EditKind::paste,    EditKind::rights,
-      EditKind::materials,   EditKind::library,  EditKind::shapes};
+      EditKind::materials,   EditKind::library,  EditKind::shapes,
+      EditKind::texture};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -296,6 +308,10 @@ EditDescriptor library_edit(LibraryChange change) {
 
 EditDescriptor shapes_edit(GivenShapes given) {
   return {ShapesEdit{std::make_shared<const GivenShapes>(std::move(given))}, {}, kEmpty};
+}
+
+EditDescriptor texture_edit(GivenTexture given) {
+  return {TextureEdit{std::make_shared<const GivenTexture>(std::move(given))}, {}, kEmpty};
 }
 
 Result<void> validate(const EditDescriptor& edit) {
@@ -364,9 +380,9 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
-      in[0] <= static_cast<std::uint8_t>(EditKind::shapes))
+      in[0] <= static_cast<std::uint8_t>(EditKind::texture))
     return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials, shapes or the library is no edit of voxels");
+                "a change of rights, materials, shapes, textures or the library is no edit of voxels");
   return decode_descriptor(in);
 }
 

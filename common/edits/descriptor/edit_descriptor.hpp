@@ -2,8 +2,8 @@
 // pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
-// have no voxels: they change who may do what, add materials or give them shapes, or change the
-// library of builds. They stand in the same order as the others.
+// have no voxels: they change who may do what, add materials, give them shapes or textures, or
+// change the library of builds. They stand in the same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,6 +18,7 @@
 #include "common/edits/clipboard/orientation.hpp"
 #include "common/edits/descriptor/added_materials.hpp"
 #include "common/edits/descriptor/given_shapes.hpp"
+#include "common/edits/descriptor/given_texture.hpp"
 #include "common/edits/descriptor/library_change.hpp"
 #include "common/rights/rights_change.hpp"
 
@@ -35,7 +36,8 @@ enum class EditKind : std::uint8_t {
   materials = 8,
   materials_with_looks = 9,  // of which at least one has a look
   library = 10,
-  shapes = 11
+  shapes = 11,
+  texture = 12
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -139,9 +141,17 @@ struct ShapesEdit {
   }
 };
 
+/// Gives a picture to sides of materials of the world. It has no voxels and touches no chunk.
+struct TextureEdit {
+  std::shared_ptr<const GivenTexture> given;
+  friend bool operator==(const TextureEdit& a, const TextureEdit& b) {
+    return a.given == b.given || (a.given != nullptr && b.given != nullptr && *a.given == *b.given);
+  }
+};
+
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
 using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit, ShapesEdit>;
+                               MaterialsEdit, LibraryEdit, ShapesEdit, TextureEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -188,6 +198,13 @@ inline const GivenShapes* given_shapes_of(const EditDescriptor& edit) {
   const auto* shapes = std::get_if<ShapesEdit>(&edit.shape);
   return shapes == nullptr ? nullptr : shapes->given.get();
 }
+/// Returns the descriptor that gives a picture.
+EditDescriptor texture_edit(GivenTexture given);
+/// Returns the picture of a descriptor that gives one; null for the other kinds.
+inline const GivenTexture* given_texture_of(const EditDescriptor& edit) {
+  const auto* texture = std::get_if<TextureEdit>(&edit.shape);
+  return texture == nullptr ? nullptr : texture->given.get();
+}
 /// Returns true if the edit adds materials or gives shapes to some: it changes the material table.
 inline bool changes_materials(const EditDescriptor& edit) {
   return std::holds_alternative<MaterialsEdit>(edit.shape) ||
@@ -198,7 +215,8 @@ inline bool has_voxels(const EditDescriptor& edit) {
   return !std::holds_alternative<RightsEdit>(edit.shape) &&
          !std::holds_alternative<MaterialsEdit>(edit.shape) &&
          !std::holds_alternative<LibraryEdit>(edit.shape) &&
-         !std::holds_alternative<ShapesEdit>(edit.shape);
+         !std::holds_alternative<ShapesEdit>(edit.shape) &&
+         !std::holds_alternative<TextureEdit>(edit.shape);
 }
 
 /// Returns the maximum number of bytes of a descriptor of this kind.
@@ -210,12 +228,14 @@ constexpr std::size_t descriptor_bytes_max(EditKind kind) {
     return 64 + kAddedMaterialsBytesMax + kAddedLooksBytesMax;
   if (kind == EditKind::library) return 64 + kLibraryChangeBytesMax;
   if (kind == EditKind::shapes) return 64 + kGivenShapesBytesMax;
+  if (kind == EditKind::texture) return 64 + kGivenTextureBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
 // Maximum over all kinds.
 inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
 static_assert(descriptor_bytes_max(EditKind::materials_with_looks) <= kDescriptorBytesMax);
 static_assert(descriptor_bytes_max(EditKind::shapes) <= kDescriptorBytesMax);
+static_assert(descriptor_bytes_max(EditKind::texture) <= kDescriptorBytesMax);
 
 /// Fails with the first field outside its range: a position beyond the world, an empty or oversized
 /// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.

@@ -27,6 +27,8 @@ constexpr const char* name_of(EditKind kind) {
       return "library";
     case EditKind::shapes:
       return "shapes";
+    case EditKind::texture:
+      return "texture";
   }
   return "edit";
 }

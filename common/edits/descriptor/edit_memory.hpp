@@ -16,8 +16,8 @@ inline std::size_t own_bytes(const EditDescriptor& edit) {
 }
 
 /// Returns the bytes that all copies of the descriptor share: the clipboard of a paste, or at most
-/// those of a change of rights, of new materials, of shapes or of the library, otherwise 0. Cost:
-/// O(1).
+/// those of a change of rights, of new materials, of shapes, of a texture or of the library,
+/// otherwise 0. Cost: O(1).
 inline std::size_t shared_bytes(const EditDescriptor& edit) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
   if (std::holds_alternative<RightsEdit>(edit.shape)) return kRightsChangeBytesMax;
@@ -25,6 +25,8 @@ inline std::size_t shared_bytes(const EditDescriptor& edit) {
     return added->rows.size() * (sizeof(MaterialRow) + kMaterialNameBytesMax);
   if (const GivenShapes* given = given_shapes_of(edit))
     return given->rows.size() * (sizeof(GivenShape) + kShapeBoxesMax * sizeof(ShapeBox));
+  if (const GivenTexture* given = given_texture_of(edit))
+    return given->png.size() + given->uses.size() * sizeof(TextureUse);
   if (std::holds_alternative<LibraryEdit>(edit.shape))
     return sizeof(LibraryChange) + kLibraryChangeBytesMax + kBuildTagsMax * sizeof(std::string);
   return paste != nullptr && paste->clipboard ? paste->clipboard->memory_bytes() : 0;

@@ -17,7 +17,8 @@ Result<void> validate_fields(const EditRecord& record) {
   if (record.subject >= seq) return fail(ErrorCode::bad_value, "subject is not an earlier edit");
   if ((record.cause == Cause::rights) != (rights_change_of(record.edit) != nullptr) ||
       (record.cause == Cause::materials) != changes_materials(record.edit) ||
-      (record.cause == Cause::library) != (library_change_of(record.edit) != nullptr))
+      (record.cause == Cause::library) != (library_change_of(record.edit) != nullptr) ||
+      (record.cause == Cause::textures) != (given_texture_of(record.edit) != nullptr))
     return fail(ErrorCode::bad_value, "the cause is not that of the edit");
   return {};
 }

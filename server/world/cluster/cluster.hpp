@@ -50,6 +50,8 @@ class Cluster {
   std::optional<std::string> library_refusal() const { return followers_.library_refusal(); }
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const { return followers_.shapes_refusal(); }
+  /// Returns why no textures may be ordered, as a sentence without its period, or nullopt.
+  std::optional<std::string> textures_refusal() const { return followers_.textures_refusal(); }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const {

@@ -129,6 +129,15 @@ std::optional<std::string> Followers::shapes_refusal() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Followers::textures_refusal() const {
+  for (const auto& [link, follower] : all_) {
+    if (!follower.takes_textures)
+      return "a server that follows is of an older version, which cannot read textures: stop it, or "
+             "start it with this version (servers lists them)";
+  }
+  return std::nullopt;
+}
+
 void Followers::admit(Session& session, const Clocks& now) {
   const SessionId link = session.id;
   environment_.report(OperatorLogLevel::info,
@@ -146,6 +155,7 @@ void Followers::admit(Session& session, const Clocks& now) {
   follower.takes_corrections = session.has(kFeatureTimeCorrections);
   follower.takes_library = session.has(kFeatureLibrary);
   follower.takes_shapes = session.has(kFeatureShapeRecords);
+  follower.takes_textures = session.has(kFeatureTextureRecords);
   order_.feed().add(link);
   environment_.trust(link);
   environment_.opened(link);

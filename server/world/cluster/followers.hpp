@@ -29,6 +29,7 @@ struct Follower {
   bool takes_corrections = false;            // it knows a CorrectTime
   bool takes_library = false;                // it knows a LibraryChange
   bool takes_shapes = false;                 // it knows GivenShapes
+  bool takes_textures = false;               // it knows a GivenTexture
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -68,6 +69,8 @@ class Followers {
   std::optional<std::string> library_refusal() const;
   /// Returns why no shapes may be ordered, as a sentence without its period, or nullopt.
   std::optional<std::string> shapes_refusal() const;
+  /// Returns why no textures may be ordered, as a sentence without its period, or nullopt.
+  std::optional<std::string> textures_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;

@@ -5,6 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/textures/texture_hash.hpp"
 #include "protocol/rules/edit_price.hpp"
 
 namespace runstone {
@@ -208,6 +209,32 @@ Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
   const ServerEditsResult ordered = order_all(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
   return order_.newest_materials();
+}
+
+Result<Sequence, std::string> Changes::give_textures(std::span<const GivenTexturePtr> textures,
+                                                     const Clocks& now) {
+  RUNSTONE_ASSERT(!textures.empty());
+  const MaterialTable& materials = order_.materials();
+  TextureTable table = order_.textures().table();
+  std::vector<EditOffer> offers;
+  for (const GivenTexturePtr& given : textures) {
+    const auto fits = table.add(texture_entry(given->png, given->uses));
+    // The uses ascend by material.
+    if (fits && !materials.knows(given->uses.back().material))
+      return failure("the world has no material " + std::to_string(given->uses.back().material));
+    if (!fits && fits.error().code == ErrorCode::not_permitted) {
+      const auto id = static_cast<Material>(fits.error().offset);
+      return failure("a side of \"" + (materials.knows(id) ? materials[id].name : "?") +
+                     "\" has a picture already, which stays for ever");
+    }
+    if (!fits) return failure(std::string(fits.error().what));
+    const OperationId op = order_.next_own_operation(0);
+    const EditDescriptor edit{TextureEdit{given}, {}, kEmpty};
+    offers.push_back({op, Cause::textures, now.steady_us, edit, 0});
+  }
+  const ServerEditsResult ordered = order_all(offers, now);
+  if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
+  return order_.textures().newest();
 }
 
 Result<Sequence, std::string> Changes::change_library(const LibraryChange& change, AuthorId author,

@@ -85,7 +85,9 @@ void Commits::apply(const std::vector<EditRecord>& records) {
     rights_.close_refused();
     ground_.rights_changed(*ground);
   }
-  if (order_.apply_materials(records)) receipts_.send_materials_to_all();
+  const bool has_materials = order_.apply_materials(records);
+  const bool has_textures = order_.textures().apply(records);
+  if (has_materials || has_textures) receipts_.send_materials_to_all();
   order_.library().apply(records);
 }
 

@@ -1,12 +1,14 @@
 // WorldStart: what the store remembers when a server starts. The log above the checkpoint follows
 // by WorldServer::replay_onto_stack().
 #pragma once
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
+#include "common/edits/descriptor/given_texture.hpp"
 #include "common/rights/change_rules.hpp"
 #include "server/world/environment/chat_entry.hpp"
 #include "server/world/environment/library_rows.hpp"
@@ -36,6 +38,8 @@ struct WorldStart {
   AuthorId author_max = 0;           // the highest author number ever stored
   std::vector<HighWater> resolved;
   std::vector<LibraryRow> library;  // all builds, ascending
+  /// All textures, in the order of the log. A TextureTable takes all of them.
+  std::vector<std::shared_ptr<const GivenTexture>> textures;
 };
 
 }  // namespace runstone

@@ -30,6 +30,7 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
       checkpointer_(config.snapshots, start.checkpoint),
       materials_(config.materials),
       library_(config.library, start.library),
+      textures_(start.textures),
       feed_(environment, config.may_be_followed),
       durable_(start.log.last) {
   for (const auto& [key, version] : start.snapshots) chunks().set_saved(key, version);

@@ -25,6 +25,7 @@
 #include "server/world/order/ownership.hpp"
 #include "server/world/order/players.hpp"
 #include "server/world/order/world_memory.hpp"
+#include "server/world/order/world_textures.hpp"
 
 namespace runstone {
 
@@ -89,6 +90,9 @@ class Order {
   /// Returns the builds of the world. The caller applies records to it as to the materials.
   Library& library() { return library_; }
   const Library& library() const { return library_; }
+  /// Returns the textures of the world. The caller applies records to it as to the materials.
+  WorldTextures& textures() { return textures_; }
+  const WorldTextures& textures() const { return textures_; }
   /// Returns the operation of the next edit that this server makes for an author.
   OperationId next_own_operation(AuthorId author) { return {author, own_instance_, ++own_seq_}; }
 
@@ -182,6 +186,7 @@ class Order {
   Sequence materials_seq_ = 0;
   std::vector<Material> shaped_;  // at most one entry a row
   Library library_;
+  WorldTextures textures_;
   Players players_;
   NameClaims names_;
   std::vector<AuthorId> gone_authors_;

@@ -137,18 +137,28 @@ void Receipts::send_materials(Session& session, News& news) {
     }
     const auto [rows, is_new] = news.rows.try_emplace(sent.materials);
     if (is_new) rows->second = messages_of_rows(sent.materials);
-    for (const EncodedMessage& message : rows->second) {
-      if (!sessions_.send_or_close(session, message)) return;
-    }
+    if (!send_news(session, rows->second)) return;
     sent.materials = order_.materials().size();
   }
-  if (sent.shaped == order_.shaped().size() || !session.has(kFeatureShapes)) return;
-  const auto [shapes, is_new] = news.shapes.try_emplace(sent.shaped);
-  if (is_new) shapes->second = messages_of_shapes(sent.shaped);
-  for (const EncodedMessage& message : shapes->second) {
-    if (!sessions_.send_or_close(session, message)) return;
+  if (sent.shaped != order_.shaped().size() && session.has(kFeatureShapes)) {
+    const auto [shapes, is_new] = news.shapes.try_emplace(sent.shaped);
+    if (is_new) shapes->second = messages_of_shapes(sent.shaped);
+    if (!send_news(session, shapes->second)) return;
+    sent.shaped = order_.shaped().size();
   }
-  sent.shaped = order_.shaped().size();
+  const std::size_t given = order_.textures().given().size();
+  if (sent.textures != given && session.has(kFeatureTextures)) {
+    const auto [textures, is_new] = news.textures.try_emplace(sent.textures);
+    if (is_new) textures->second = messages_of_textures(sent.textures);
+    if (!send_news(session, textures->second)) return;
+    sent.textures = given;
+  }
+}
+
+bool Receipts::send_news(Session& session, const std::vector<EncodedMessage>& messages) {
+  return std::ranges::all_of(messages, [&](const EncodedMessage& message) {
+    return sessions_.send_or_close(session, message);
+  });
 }
 
 std::vector<EncodedMessage> Receipts::messages_of_rows(std::size_t known) const {
@@ -172,6 +182,26 @@ std::vector<EncodedMessage> Receipts::messages_of_shapes(std::size_t known) cons
     out.push_back(encode_message(message));
     left = left.subspan(message.given.rows.size());
   }
+  return out;
+}
+
+std::vector<EncodedMessage> Receipts::messages_of_textures(std::size_t known) const {
+  std::vector<EncodedMessage> out;
+  TexturesGiven message;
+  std::size_t uses = 0;
+  const auto finish = [&] {
+    if (!message.entries.empty()) out.push_back(encode_message(message));
+    message.entries.clear();
+    uses = 0;
+  };
+  for (const TextureEntry& entry : order_.textures().given().subspan(known)) {
+    if (message.entries.size() == kTexturesGivenMax ||
+        uses + entry.uses.size() > kTexturesGivenUsesMax)
+      finish();
+    uses += entry.uses.size();
+    message.entries.push_back(entry);
+  }
+  finish();
   return out;
 }
 

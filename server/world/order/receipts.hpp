@@ -55,9 +55,9 @@ class Receipts {
   void send_epoch_to_all();
 
   // Materials.
-  /// Sends the materials that an open session lacks, then the shapes. Closes a session without the
-  /// feature materials, and one whose queue is full. A session without the feature shapes gets
-  /// none.
+  /// Sends the materials that an open session lacks, then the shapes, then the list of textures.
+  /// Closes a session without the feature materials, and one whose queue is full. A session without
+  /// the feature shapes or textures gets none of them.
   void send_materials(Session& session);
   void send_materials_to_all();
 
@@ -68,6 +68,7 @@ class Receipts {
     bool is_read_only = false;
     std::size_t materials = 0;    // rows of the material table that it has
     std::size_t shaped = 0;       // entries of Order::shaped() that it has
+    std::size_t textures = 0;     // entries of WorldTextures::given() that it has
     Sequence awaits_durable = 0;  // of its client's last edit
     std::vector<Reject> rejects;  // that did not fit the session's queue, in order
   };
@@ -76,13 +77,17 @@ class Receipts {
   bool lacks_durable(const Session& session, const Sent& sent) const;
   /// The messages about materials, by what a session has. They are made once for all sessions.
   struct News {
-    std::map<std::size_t, std::vector<EncodedMessage>> rows, shapes;
+    std::map<std::size_t, std::vector<EncodedMessage>> rows, shapes, textures;
   };
   void send_materials(Session& session, News& news);
+  /// Sends messages. Returns false if the session is closed then.
+  bool send_news(Session& session, const std::vector<EncodedMessage>& messages);
   /// Returns the rows from `known` on, without shapes.
   std::vector<EncodedMessage> messages_of_rows(std::size_t known) const;
   /// Returns the shapes of Order::shaped() from `known` on.
   std::vector<EncodedMessage> messages_of_shapes(std::size_t known) const;
+  /// Returns the entries of WorldTextures::given() from `known` on.
+  std::vector<EncodedMessage> messages_of_textures(std::size_t known) const;
   /// Sends the watermark to sessions, in one round. If the queue of a session is full, a later call
   /// sends it. Requires ascending numbers.
   void send_durable(std::span<const SessionId> sessions);

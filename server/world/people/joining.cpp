@@ -222,6 +222,8 @@ bool Joining::close_if_old_server(Session& session) {
     why = "this world has a library of builds: start a version that can read this";
   if (!session.has(kFeatureShapeRecords) && world_.order.has_shapes())
     why = "this world has materials with shapes: start a version that can read this";
+  if (!session.has(kFeatureTextureRecords) && !world_.order.textures().table().empty())
+    why = "this world has textures: start a version that can read this";
   if (why == nullptr) return false;
   world_.sessions.close(session, GoodbyeReason::wrong_protocol, why);
   return true;

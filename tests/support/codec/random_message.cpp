@@ -125,6 +125,61 @@ GivenShapes any_given_shapes(SplitMix64& rng) {
   return given;
 }
 
+TextureHash any_texture_hash(SplitMix64& rng) {
+  TextureHash hash;
+  draw(rng, hash);
+  return hash;
+}
+
+std::vector<TextureUse> any_texture_uses(SplitMix64& rng) {
+  std::vector<TextureUse> uses;
+  Material material = kEmpty;
+  for (std::uint32_t left = 1 + rng.below(9); left != 0; --left) {
+    material = static_cast<Material>(material + 1 + rng.below(700));
+    uses.push_back({material, static_cast<std::uint8_t>(1 + rng.below(kAllTextureSides))});
+  }
+  return uses;
+}
+
+/// Returns a texture whose picture has a sound head and nothing behind it.
+GivenTexture any_given_texture(SplitMix64& rng) {
+  const auto edge = static_cast<std::uint8_t>(16U << rng.below(3));
+  GivenTexture given{{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
+                      'R',  0,   0,   0,   edge, 0,   0,    0,   edge, 8, 6, 0, 0,  0},
+                     any_texture_uses(rng)};
+  for (std::uint32_t left = rng.below(100); left != 0; --left)
+    given.png.push_back(static_cast<std::uint8_t>(rng.next()));
+  return given;
+}
+
+TexturesGiven any_textures_given(SplitMix64& rng) {
+  TexturesGiven m;
+  for (std::uint32_t left = 1 + rng.below(20); left != 0; --left) {
+    m.entries.push_back({any_texture_hash(rng),
+                         1 + rng.below(static_cast<std::uint32_t>(kTextureBytesMax)),
+                         any_texture_uses(rng)});
+  }
+  return m;
+}
+
+TexturesWanted any_textures_wanted(SplitMix64& rng) {
+  TexturesWanted m;
+  for (std::uint32_t left = 1 + rng.below(kTexturesWantedMax); left != 0; --left)
+    m.hashes.push_back(any_texture_hash(rng));
+  return m;
+}
+
+TextureParts any_texture_parts(SplitMix64& rng) {
+  TextureParts m;
+  for (std::uint32_t left = 1 + rng.below(9); left != 0; --left) {
+    TexturePart part{any_texture_hash(rng), {}};
+    part.png.resize(rng.below(2000));
+    for (std::uint8_t& byte : part.png) byte = static_cast<std::uint8_t>(rng.next());
+    m.parts.push_back(std::move(part));
+  }
+  return m;
+}
+
 MaterialTable any_materials(SplitMix64& rng, bool with_shapes = false) {
   MaterialTable table;
   const std::uint32_t count = rng.below(20);
@@ -496,7 +551,7 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
 }
 
 /// Returns a record of the log at this version. It may change voxels, rights,
-/// materials, their shapes or the library.
+/// materials, their shapes or textures, or the library.
 EditRecord any_record(SplitMix64& rng, Version version) {
   EditRecord record;
   record.version = version;
@@ -512,6 +567,8 @@ EditRecord any_record(SplitMix64& rng, Version version) {
     record.edit = materials_edit({added.first, std::move(added.rows)});
   } else if (record.cause == Cause::library) {
     record.edit = library_edit(RemoveBuild{1 + rng.below(1000)});
+  } else if (record.cause == Cause::textures) {
+    record.edit = texture_edit(any_given_texture(rng));
   } else {
     record.edit = any_edit(rng);
   }
@@ -768,6 +825,12 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_materials_added(rng);
     case kKindOf<ShapesGiven>:
       return ShapesGiven{any_given_shapes(rng)};
+    case kKindOf<TexturesGiven>:
+      return any_textures_given(rng);
+    case kKindOf<TexturesWanted>:
+      return any_textures_wanted(rng);
+    case kKindOf<TextureParts>:
+      return any_texture_parts(rng);
     case kKindOf<LogMarksRequest>:
       return any_log_marks_request(rng);
     case kKindOf<LogMarks>:

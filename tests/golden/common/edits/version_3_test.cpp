@@ -71,6 +71,20 @@ TEST_CASE("the bytes of given shapes are pinned", "[edits][golden]") {
   CHECK(static_cast<int>(EditKind::shapes) == 11);
 }
 
+TEST_CASE("the bytes of a given texture are pinned", "[edits][golden]") {
+  const Bytes png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
+                     'R',  0,   0,   0,   32,   0,    0,    0,    32, 8, 6, 0,  0,   0};
+  std::vector<std::uint8_t> bytes = {0x0c, 0x00, 0x00,  // texture, no mask, no material
+                                     0x1c};             // 29 bytes
+  bytes.insert(bytes.end(), png.begin(), png.end());
+  bytes.insert(bytes.end(), {0x01,                // two uses
+                             0x04, 0x3f,          // 5, all sides
+                             0xa6, 0x02, 0x04});  // 5 + 1 + 294, the lower side
+  check_bytes_of(texture_edit({png, {{5, 63}, {300, 4}}}), bytes);
+  CHECK(static_cast<int>(EditKind::texture) == 12);
+  CHECK(static_cast<int>(Cause::textures) == 10);
+}
+
 TEST_CASE("the cause of changes of the library has its number", "[edits][golden]") {
   CHECK(static_cast<int>(Cause::library) == 8);
   CHECK(kind_of(library_edit(RemoveBuild{1})) == EditKind::library);

@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-static_assert(kMessageKindCount == 59, "a kind that is added needs golden bytes here");
+static_assert(kMessageKindCount == 62, "a kind that is added needs golden bytes here");
 
 Builds golden_builds() {
   ListedBuild mill;
@@ -30,6 +30,13 @@ Builds golden_builds() {
   small.number = 5;
   small.info.name = "a";
   return {3, {mill, small}, true, 9, ""};
+}
+
+/// Returns the hash 1, 2, 3, ..., 32.
+TextureHash counted_hash() {
+  TextureHash hash{};
+  for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = static_cast<std::uint8_t>(i + 1);
+  return hash;
 }
 
 struct GoldenOfVersion3 {
@@ -77,6 +84,16 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
                      {301, {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}}}}}},
        "0c0000000000060008000400060000000400000013000000010001f070f00101"
        "e1b0e1020401a60200000000"},
+      {TexturesGiven{{{counted_hash(), 300, {{5, 63}, {300, 4}}}}},
+       "0c000000000006000800040006000000040000002e0000000100010203040506"
+       "0708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f202c0100000200"
+       "05003f2c01040000"},
+      {TexturesWanted{{counted_hash()}},
+       "0c00000000000600080004000600000004000000200000000102030405060708"
+       "090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f20"},
+      {TextureParts{{{counted_hash(), {7, 8, 9}}}},
+       "0c00000000000600080004000600000004000000250000000102030405060708"
+       "090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f200300070809000000"},
       {BuildAnswer{6, 100, 0, "the library is full"},
        "14000000000000000c00140004000c00000008000c000000060000000c000000"
        "640000000000000013000000746865206c6962726172792069732066756c6c00"},
@@ -92,6 +109,8 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureBuilds == 1 << 17);
   CHECK(kFeatureShapes == 1 << 18);
   CHECK(kFeatureShapeRecords == 1 << 19);
+  CHECK(kFeatureTextures == 1 << 20);
+  CHECK(kFeatureTextureRecords == 1 << 21);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
@@ -103,6 +122,9 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<BuildUpload>) == 57);
   CHECK(wire_number(kKindOf<BuildAnswer>) == 58);
   CHECK(wire_number(kKindOf<ShapesGiven>) == 59);
+  CHECK(wire_number(kKindOf<TexturesGiven>) == 60);
+  CHECK(wire_number(kKindOf<TexturesWanted>) == 61);
+  CHECK(wire_number(kKindOf<TextureParts>) == 62);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

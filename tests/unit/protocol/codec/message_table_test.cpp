@@ -96,7 +96,7 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<ShapesGiven> == kMessageKindCount - 1);
+  CHECK(kKindOf<TextureParts> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

@@ -1,0 +1,75 @@
+// Pictures that clients want: each is answered, a few times, and floods end.
+#include "server/world/library/texture_sending.hpp"
+
+#include <catch2/catch.hpp>
+#include <memory>
+
+#include "common/textures/texture_hash.hpp"
+#include "tests/support/textures/test_png.hpp"
+#include "tests/unit/server/world/commit/feature_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+struct SendingBench : FeatureBench {
+  SendingBench() {
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      Bytes png = plain_png(16, 16, {i, 0, 0, 255});
+      if (i == 3) png.resize(kTextureBytesMax);
+      hashes.push_back(texture_hash(png));
+      textures.push_back(std::make_shared<const GivenTexture>(GivenTexture{
+          std::move(png), {{1, static_cast<std::uint8_t>(1U << i)}}}));
+    }
+    REQUIRE(server.changes().give_textures(textures, now()).has_value());
+    join_with(1, 1, kFeatureMaterials | kFeatureTextures);
+  }
+  std::vector<TexturePart> parts_of(SessionId session) const {
+    std::vector<TexturePart> parts;
+    for (const TextureParts& m : environment.messages<TextureParts>(session, kEdge))
+      parts.insert(parts.end(), m.parts.begin(), m.parts.end());
+    return parts;
+  }
+  void want(const std::vector<TextureHash>& wanted) {
+    server.received(1, TexturesWanted{wanted}, now());
+  }
+
+  std::vector<TextureHash> hashes;
+  std::vector<GivenTexturePtr> textures;
+};
+
+}  // namespace
+
+TEST_CASE("every wanted hash is answered in order, unknown ones without a picture",
+          "[world][textures]") {
+  SendingBench bench;
+  bench.want({bench.hashes[2], TextureHash{9}, bench.hashes[3], bench.hashes[0]});
+  const auto parts = bench.parts_of(1);
+  REQUIRE(parts.size() == 4);
+  CHECK(parts[0].hash == bench.hashes[2]);
+  CHECK(parts[0].png == bench.textures[2]->png);
+  CHECK(parts[1].hash == TextureHash{9});
+  CHECK(parts[1].png.empty());
+  CHECK(parts[2].png.size() == kTextureBytesMax);
+  CHECK(parts[3].png == bench.textures[0]->png);
+  // The large one does not fit behind the first ones.
+  CHECK(bench.environment.messages<TextureParts>(1, kEdge).size() == 3);
+}
+
+TEST_CASE("a picture is sent a few times to a session", "[world][textures]") {
+  SendingBench bench;
+  for (int i = 0; i < kTextureAnswersMax + 2; ++i) bench.want({bench.hashes[0]});
+  const auto parts = bench.parts_of(1);
+  REQUIRE(parts.size() == kTextureAnswersMax + 2);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    CHECK(parts[i].png.empty() == (i >= kTextureAnswersMax));
+  CHECK(bench.environment.closed.empty());
+}
+
+TEST_CASE("a client that wants textures without the feature is closed", "[world][textures]") {
+  SendingBench bench;
+  bench.join_with(2, 2, kFeatureMaterials);
+  bench.server.received(2, TexturesWanted{{bench.hashes[0]}}, bench.now());
+  CHECK(bench.environment.closed.size() == 1);
+}
+
+}  // namespace runstone::test
