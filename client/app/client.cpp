@@ -142,6 +142,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     play_.follow(now_us);
     // The view names the chunks that were found.
     network_.step_cache(now_us, play_.limits().room());
+    play_.step_textures(play_settings(), now_us);
     session_.tick(now_us);
     flush();
     play_.step_previews(play_settings(), now_us);
@@ -294,7 +295,10 @@ const ClientSettings& Client::settings() const {
 
 PlaySettings Client::play_settings() const {
   const ClientSettings& now = settings();
-  return {{now.sensitivity, now.invert_y}, now.shows_previews, now.shares_previews};
+  return {{now.sensitivity, now.invert_y},
+          now.shows_previews,
+          now.shares_previews,
+          now.shows_textures && !options_.no_textures};
 }
 
 std::optional<double> Client::field_of_view() const {

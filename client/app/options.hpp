@@ -51,6 +51,7 @@ struct ClientOptions {
   std::optional<Quality> quality;     // nullopt: automatic
   std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
+  bool no_textures = false;     // the pictures of worlds are not loaded
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;  // the client ends after this time without an open world
   unsigned workers = 0;           // mesh threads, at least 1 after parsing

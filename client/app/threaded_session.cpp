@@ -37,7 +37,8 @@ std::unique_ptr<CacheThread> make_cache(const ClientOptions& options,
   }
   if (const std::string warning = (*cache)->take_warning(); !warning.empty())
     spdlog::warn("{}", warning);
-  return std::make_unique<CacheThread>(*std::move(cache), wake);
+  return std::make_unique<CacheThread>(*std::move(cache), std::make_unique<TextureCache>(folder),
+                                       wake);
 }
 
 SessionConfig session_config(const ClientOptions& options, bool has_cache) {
@@ -194,6 +195,7 @@ void ThreadedSession::flush() {
 void ThreadedSession::step_cache(TimeUs now_us, std::size_t room_bytes) {
   if (!cache_) return;
   exchange_lookups(session_, *cache_, room_bytes, now_us);
+  exchange_textures(session_.textures(), *cache_);
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     static_cast<void>(keep_chunks(cache_->room()));

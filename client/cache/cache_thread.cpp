@@ -1,12 +1,17 @@
 #include "client/cache/cache_thread.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace runstone {
 
-CacheThread::CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()> wake)
-    : cache_(std::move(cache)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+CacheThread::CacheThread(std::unique_ptr<ChunkCache> cache, std::unique_ptr<TextureCache> textures,
+                         std::function<void()> wake)
+    : cache_(std::move(cache)),
+      textures_(std::move(textures)),
+      wake_(std::move(wake)),
+      thread_([this] { run(); }) {}
 
 CacheThread::~CacheThread() { stop(); }
 
@@ -41,6 +46,28 @@ std::vector<std::vector<KeyedChunk>> CacheThread::drain_results() {
   return std::exchange(results_, {});
 }
 
+void CacheThread::look_up_textures(std::vector<TextureHash> hashes) {
+  {
+    const std::lock_guard lock(mutex_);
+    texture_lookups_.push_back(std::move(hashes));
+  }
+  has_work_.notify_one();
+}
+
+void CacheThread::keep_textures(std::vector<TexturePart> parts) {
+  if (!textures_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    std::move(parts.begin(), parts.end(), std::back_inserter(texture_parts_));
+  }
+  has_work_.notify_one();
+}
+
+std::vector<std::vector<TexturePart>> CacheThread::drain_textures() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(texture_results_, {});
+}
+
 void CacheThread::stop() {
   {
     const std::lock_guard lock(mutex_);
@@ -63,7 +90,10 @@ std::string CacheThread::take_warning() {
 void CacheThread::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    has_work_.wait(lock, [this] { return ends_ || !lookups_.empty() || !batches_.empty(); });
+    has_work_.wait(lock, [this] {
+      return ends_ || !lookups_.empty() || !texture_lookups_.empty() || !batches_.empty() ||
+             !texture_parts_.empty();
+    });
     if (!lookups_.empty()) {
       const CacheLookup lookup = std::move(lookups_.front());
       lookups_.pop_front();
@@ -73,6 +103,21 @@ void CacheThread::run() {
       results_.push_back(std::move(found));
       lock.unlock();
       wake_();
+      lock.lock();
+    } else if (!texture_lookups_.empty()) {
+      const std::vector<TextureHash> hashes = std::move(texture_lookups_.front());
+      texture_lookups_.pop_front();
+      lock.unlock();
+      auto found = textures_ ? textures_->find(hashes) : std::vector<TexturePart>();
+      lock.lock();
+      texture_results_.push_back(std::move(found));
+      lock.unlock();
+      wake_();
+      lock.lock();
+    } else if (!texture_parts_.empty()) {
+      const std::vector<TexturePart> parts = std::exchange(texture_parts_, {});
+      lock.unlock();
+      textures_->keep(parts);
       lock.lock();
     } else if (!batches_.empty()) {
       const Batch batch = std::move(batches_.front());
@@ -87,6 +132,9 @@ void CacheThread::run() {
     }
     counters_ = cache_->counters();
     if (std::string warning = cache_->take_warning(); !warning.empty())
+      warning_ = std::move(warning);
+    if (std::string warning = textures_ ? textures_->take_warning() : std::string();
+        !warning.empty())
       warning_ = std::move(warning);
   }
 }

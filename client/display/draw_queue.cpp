@@ -40,6 +40,15 @@ void DrawQueue::set_materials(const MaterialTable& materials, ShapeTablePtr shap
   changed_.notify_one();
 }
 
+void DrawQueue::set_textures(DrawnTexturesPtr textures) {
+  has_textures_ = textures != nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    work_.textures = std::move(textures);
+  }
+  changed_.notify_one();
+}
+
 void DrawQueue::upload(const ChunkKey& key, ChunkUpload upload) {
   queued_.insert(key);
   {
@@ -66,6 +75,7 @@ void DrawQueue::clear() {
     if (state_ == State::failed) throw std::runtime_error(failure_);
     done_.clear();
     for (const ChunkKey& key : queued_) work_.changes.remove(key);
+    if (std::exchange(has_textures_, false)) work_.textures = DrawnTexturesPtr();
   }
   queued_.clear();
   frame_ordered_ = false;
@@ -152,13 +162,16 @@ void DrawQueue::serve(Screen& screen) {
 
 void DrawQueue::apply_removals(Screen& screen) {
   std::optional<Materials> materials;
+  std::optional<DrawnTexturesPtr> textures;
   std::vector<ChunkKey> removals;
   {
     const std::lock_guard lock(mutex_);
     materials = std::exchange(work_.materials, std::nullopt);
+    textures = std::exchange(work_.textures, std::nullopt);
     removals = work_.changes.take_removals();
   }
   if (materials) screen.set_materials(materials->table, materials->shapes);
+  if (textures) screen.set_textures(*textures);
   for (const ChunkKey& key : removals) screen.remove(key);
 }
 

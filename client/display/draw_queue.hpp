@@ -1,10 +1,10 @@
 // DrawQueue: what the main thread hands to the screen, and what it gets back.
-//   in    changes (meshes, removals, materials), of which the newest per chunk is kept, and at most
+//   in    changes (meshes, removals, materials, textures), of which the newest per chunk is kept, and at most
 //         one frame order; bounded by the number of chunks
 //   out   completed uploads and frames, in order; bounded by the number of orders since the last
 //         take_done()
 // The content of a frame:
-//   - It shows every removal and all materials that were queued before its order.
+//   - It shows every removal, all materials and all textures that were queued before its order.
 //   - While no frame is ordered, meshes are uploaded one by one, in the order of UploadQueue. Once
 //     a frame is ordered, uploads go on until the UploadBudget is spent, but at least one is made.
 //     The rest is carried over to the next frames. So a burst of edits delays no frame by more than
@@ -82,13 +82,15 @@ class DrawQueue {
 
   /// Queues materials. `shapes` are their shapes; null: the thread that draws makes them.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes = nullptr);
+  /// Queues the textures of the world; null: none.
+  void set_textures(DrawnTexturesPtr textures);
   /// Queues new quads. They replace a queued change of the same chunk, which is then never reported
   /// as done.
   void upload(const ChunkKey& key, ChunkUpload upload);
   /// Queues a removal, which replaces a queued change of the same chunk.
   void remove(const ChunkKey& key);
   /// Drops queued work and what take_done() would return, waits for the frame in progress, and
-  /// queues the removal of every chunk. So another world can be shown. Throws as take_done().
+  /// queues the removal of every chunk and of the textures. So another world can be shown. Throws as take_done().
   void clear();
   /// Orders a frame. Requires that take_done() has returned the frame ordered before.
   void draw(FrameOrder order);
@@ -103,7 +105,7 @@ class DrawQueue {
 
   /// Reports that there is a screen, on which serve() draws from now on.
   void set_drawing(const char* screen_name);
-  /// Gives the screen the queued materials and removals, and draws the frame that is ordered. If
+  /// Gives the screen the queued materials, textures and removals, and draws the frame that is ordered. If
   /// none is, uploads for a while.
   void serve(Screen& screen);
   /// Reports that drawing has failed, and why.
@@ -126,8 +128,9 @@ class DrawQueue {
   struct Work {
     UploadQueue changes;
     std::optional<Materials> materials;
+    std::optional<DrawnTexturesPtr> textures;
     std::optional<FrameOrder> frame;
-    bool empty() const { return changes.empty() && !materials && !frame; }
+    bool empty() const { return changes.empty() && !materials && !textures && !frame; }
   };
   /// Uploads of which take_done() does not know yet, and what uploads took since the last frame.
   struct Uploads {
@@ -137,7 +140,7 @@ class DrawQueue {
   };
   enum class State : std::uint8_t { starting, drawing, failed };
 
-  /// Gives the screen the queued materials and removals.
+  /// Gives the screen the queued materials, textures and removals.
   void apply_removals(Screen& screen);
   /// Uploads while no frame is ordered.
   void upload_until_ordered(Screen& screen);
@@ -161,6 +164,7 @@ class DrawQueue {
   Uploads uploads_;             // of the side that draws
   std::int32_t edge_ = 0;       // of the newest upload, voxels; of the side that draws
   bool frame_ordered_ = false;  // of the side that queues
+  bool has_textures_ = false;   // the newest textures that were queued are some; of that side
   std::set<ChunkKey> queued_;   // chunks that are on the screen or queued for it; of that side
 };
 

@@ -49,6 +49,11 @@ class MeshPipeline {
     set_materials(materials, mesh_materials_of(materials));
   }
   const MaterialTable& materials() const { return materials_; }
+  /// Sets the textures of the world; null: none.
+  void set_textures(DrawnTexturesPtr textures) {
+    if (draw_queue_ != nullptr) draw_queue_->set_textures(std::move(textures));
+    changed_ = true;
+  }
   /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }
   void set_eye(ChunkCoord eye) {

@@ -16,6 +16,7 @@ class GlScreen final : public Screen {
   void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) override {
     renderer_.set_materials(materials, shapes);
   }
+  void set_textures(const DrawnTexturesPtr& textures) override { renderer_.set_textures(textures); }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels) override {
     renderer_.upload(key, edge, mesh, voxels);

@@ -7,6 +7,7 @@
 
 #include "client/far/tile_mesh.hpp"
 #include "client/platform/gl_context.hpp"
+#include "client/render/drawn_textures.hpp"
 #include "client/render/image.hpp"
 #include "client/render/overlay_frame.hpp"
 #include "client/render/renderer.hpp"
@@ -29,6 +30,8 @@ class Screen {
   virtual const char* name() const = 0;
   /// Passes its arguments to Renderer::set_materials().
   virtual void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) = 0;
+  /// Passes its argument to Renderer::set_textures().
+  virtual void set_textures(const DrawnTexturesPtr& textures) = 0;
   /// See Renderer::upload(), upload_tile() and remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) = 0;

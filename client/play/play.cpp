@@ -258,6 +258,18 @@ void Play::step_previews(const PlaySettings& settings, TimeUs now_us) {
   if (has_changed) pipeline_.moved();
 }
 
+void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
+  const bool is_on = settings.shows_textures && pipeline_.draws();
+  TextureExchange& textures = session_.textures();
+  textures.set_wanted(is_on);
+  if (auto drawn = textures_.step(textures, is_on, now_us))
+    pipeline_.set_textures(*std::move(drawn));
+  if (pipeline_.recent_frames().empty()) return;
+  const std::size_t left_out = pipeline_.recent_frames().back().stats.textures_left_out;
+  if (auto notice = textures_.take_notice(textures, left_out))
+    notify(*std::move(notice), NoticeKind::warning);
+}
+
 void Play::keep_pace(bool has_focus, bool is_fading, TimeUs now_us) {
   const bool is_moving = panels_.take_moved(now_us) || is_fading;
   pace_.step(pipeline_, has_focus, player_.pose(), is_moving, now_us);

@@ -35,6 +35,7 @@
 #include "client/play/view_follower.hpp"
 #include "client/play/view_limits.hpp"
 #include "client/play/world_kit.hpp"
+#include "client/play/world_textures.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/tools/tool_box.hpp"
@@ -71,6 +72,7 @@ struct PlaySettings {
   LookSettings look;
   bool shows_previews = true;   // ghosts of what other players are about to do
   bool shares_previews = true;  // others see what this player is about to do
+  bool shows_textures = true;   // the pictures that the world brings for its materials
 };
 
 /// The contents of a frame, and its size in pixels.
@@ -120,6 +122,9 @@ class Play {
   /// Shares the preview of the player's next click, and makes a bounded part of its ghosts and of
   /// the ghosts of the other players.
   void step_previews(const PlaySettings& settings, TimeUs now_us);
+  /// Gets the textures of the world and gives them to the screen, if the settings want them and
+  /// something is drawn. Call it before the tick of the session.
+  void step_textures(const PlaySettings& settings, TimeUs now_us);
   /// Makes a window draw often while something moves, see DisplayPace. `is_fading`: the interface
   /// draws something that moves.
   void keep_pace(bool has_focus, bool is_fading, TimeUs now_us);
@@ -204,6 +209,7 @@ class Play {
   ViewLimits limits_;
   WorldPanels panels_;
   OthersPreviews others_;
+  WorldTextures textures_;
   FrameScene scene_;
   DisplayPace pace_;
   ServerNotices server_notices_;

@@ -16,6 +16,7 @@ constexpr const char* kHeaderOfEs =
     "precision highp sampler2D;\n"
     "precision highp sampler3D;\n"
     "precision highp usampler2D;\n"
+    "precision highp sampler2DArray;\n"
     "precision highp sampler2DArrayShadow;\n";
 
 GLuint compile(const char* name, GLenum type, const char* source) {

@@ -12,7 +12,9 @@ namespace runstone {
 /// The corners of a quad stand in the order 0: (0, 0), 1: (1, 0), 2: (0, 1), 3: (1, 1) along u and
 /// v; a negative face reverses u, so that it has the opposite winding. `inside` is the depth below
 /// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
-/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below.
+/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below. `side` is the
+/// direction. `across` is the corner, but on such a plane its z goes from one side of the voxel to
+/// the other.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \
@@ -21,7 +23,12 @@ namespace runstone {
   "#else\n"                                                                            \
   "const int first_vertex = 0;\n"                                                      \
   "#endif\n"                                                                           \
-  "struct QuadCorner { vec3 at, normal, outward; uint material; float inside; };\n"    \
+  "struct QuadCorner {\n"                                                              \
+  "  vec3 at, normal, outward, across;\n"                                              \
+  "  uint material, side;\n"                                                           \
+  "  bool is_shape;\n"                                                                 \
+  "  float inside;\n"                                                                  \
+  "};\n"                                                                               \
   "QuadCorner quad_corner() {\n"                                                       \
   "  int number = first_vertex + gl_VertexID;\n"                                       \
   "  uvec2 quad = texelFetch(quads, texel_place(number >> 2), 0).xy;\n"                \
@@ -39,10 +46,13 @@ namespace runstone {
   "  c.normal = n * (2.0 * side - 1.0);\n"                                             \
   "  c.outward = u * (cu * 2.0 - 1.0) + v * (cv * 2.0 - 1.0);\n"                       \
   "  c.material = (hi >> 6) & 65535u;\n"                                               \
+  "  c.side = d;\n"                                                                    \
   "  c.inside = 0.5;\n"                                                                \
   "  vec3 place = vec3(side, cu * w, cv * h);\n"                                       \
   "  uint face = hi >> 22;\n"                                                          \
-  "  if (face != 0u) {\n"                                                              \
+  "  c.is_shape = face != 0u;\n"                                                       \
+  "  float across = -1.0;\n"                                                           \
+  "  if (c.is_shape) {\n"                                                              \
   "    uint first = texelFetch(shapes, texel_place(int(c.material)), 0).x;\n"          \
   "    uint f = texelFetch(shapes, texel_place(int(first + face) - 1), 0).x;\n"        \
   "    vec3 low = vec3(f & 31u, (f >> 10) & 31u, (f >> 20) & 31u) * 0.0625;\n"         \
@@ -53,9 +63,11 @@ namespace runstone {
   "    if (low.x != high.x) {\n"                                                       \
   "      c.normal = vec3(0.0, 1.0, 0.0);\n"                                            \
   "      c.inside = 0.0;\n"                                                            \
+  "      across = cv;\n"                                                               \
   "    }\n"                                                                            \
   "  }\n"                                                                              \
   "  c.at = base + n * place.x + u * place.y + v * place.z;\n"                         \
+  "  c.across = across < 0.0 ? c.at : vec3(c.at.xy, base.z + across);\n"               \
   "  return c;\n"                                                                      \
   "}\n"
 

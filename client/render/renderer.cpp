@@ -68,6 +68,10 @@ void Renderer::set_materials(const MaterialTable& materials, ShapeTablePtr shape
   state_->terrain.set_materials(materials, std::move(shapes));
 }
 
+void Renderer::set_textures(const DrawnTexturesPtr& textures) {
+  state_->terrain.set_textures(textures);
+}
+
 void Renderer::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
                       const RunChunk* voxels) {
   state_->terrain.upload(key, edge, mesh, voxels);
@@ -126,10 +130,10 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
     glBlitFramebuffer(0, 0, s.target.width(), s.target.height(), 0, 0, width, height,
                       GL_COLOR_BUFFER_BIT, GL_LINEAR);
   }
-  return {drawn.chunks_drawn,    drawn.chunks_culled,
-          drawn.quads_drawn,     s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes(), s.terrain.has_transparent() || !contents.ghosts.empty(),
-          drawn.tile_parts_drawn};
+  return {drawn.chunks_drawn,     drawn.chunks_culled,
+          drawn.quads_drawn,      s.terrain.quad_bytes(),
+          s.terrain.gpu_bytes(),  s.terrain.has_transparent() || !contents.ghosts.empty(),
+          drawn.tile_parts_drawn, static_cast<std::uint32_t>(s.terrain.textures_left_out())};
 }
 
 void Renderer::draw_overlay(const OverlayFrame& overlay) {

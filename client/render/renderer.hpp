@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "client/far/tile_mesh.hpp"
+#include "client/render/drawn_textures.hpp"
 #include "client/render/frame_contents.hpp"
 #include "client/render/gl_functions.hpp"
 #include "client/render/image.hpp"
@@ -36,11 +37,12 @@ struct RenderStats {
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;  // bodies of tiles included
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
-  std::uint64_t gpu_bytes = 0;   // those, the light field and the shadow maps
+  std::uint64_t gpu_bytes = 0;   // those, the light field, the shadow maps and the textures
   /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
   /// ghosts.
   bool is_animated = false;
-  std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
+  std::uint32_t tile_parts_drawn = 0;   // tiles that are drawn whole, and octants of the others
+  std::uint32_t textures_left_out = 0;  // see TextureArray::left_out()
 };
 
 class Renderer {
@@ -53,6 +55,8 @@ class Renderer {
 
   /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes = nullptr);
+  /// Sets the textures of the world; null: none.
+  void set_textures(const DrawnTexturesPtr& textures);
   /// Replaces the chunk's quads on the GPU. `edge` is in voxels. `voxels` are the runs that were
   /// meshed, from which light and dark corners are computed. If `voxels` is null, the chunk counts
   /// as empty there.

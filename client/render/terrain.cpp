@@ -33,6 +33,7 @@ constexpr float kSeam = 0.00006F;
 // Texture units.
 constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
 static_assert(kDepthUnit < QuadBuffer::kShapeUnit);
+constexpr GLint kTextureUnit = 14;
 
 constexpr const char* kDepthVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"
@@ -75,6 +76,15 @@ std::string variant_of(const char* shader, Quality quality, bool is_tile, bool h
   if (has_fog) out += "#define RUNSTONE_FOG\n";
   if (is_fading) out += "#define RUNSTONE_FADE\n";
   return out + shader;
+}
+
+/// Returns the definitions of texture_glsl.hpp.
+std::string texture_definitions(bool is_textured, bool has_holes, bool has_all_holes) {
+  std::string out;
+  if (is_textured) out += "#define RUNSTONE_TEXTURES\n";
+  if (has_holes || has_all_holes) out += "#define RUNSTONE_HOLES\n";
+  if (has_all_holes) out += "#define RUNSTONE_ALL_HOLES\n";
+  return out;
 }
 
 /// Return the distance of the eye from the nearest place of a cube, 0 inside it, and from the
@@ -301,9 +311,13 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
   Program& out = programs_[static_cast<std::size_t>(quality)][is_transparent ? 1 : 0][variant];
   if (!out.gl) {
     const char* fragment = is_transparent ? kTransparentFragmentShader : kTerrainFragmentShader;
+    const bool is_textured = (variant & kTextured) != 0;
+    const std::string textures =
+        texture_definitions(is_textured, (variant & kHoles) != 0, is_textured && is_transparent);
     const auto text = [&](const char* shader) {
-      return variant_of(shader, quality, (variant & kTile) != 0, (variant & kInField) != 0,
-                        (variant & kFine) != 0, (variant & kInFog) != 0, (variant & kFade) != 0);
+      return textures + variant_of(shader, quality, (variant & kTile) != 0,
+                                   (variant & kInField) != 0, (variant & kFine) != 0,
+                                   (variant & kInFog) != 0, (variant & kFade) != 0);
     };
     out.gl = link_program(is_transparent ? "transparent" : "terrain",
                           text(kTerrainVertexShader).c_str(), text(fragment).c_str());
@@ -383,6 +397,10 @@ void Terrain::add_visible(Visible body, unsigned variant, float gone) {
     // Water that is blended twice is too dark. So the finer one has the pixels that the octant lacks.
     body.variants[1] |= kFade;
     body.drawn = {0, fades_.octant_gone(body.key)};
+  }
+  if (!textures_.empty()) {
+    body.variants[0] |= body.chunk->shapes.count != 0 ? kTextured | kHoles : kTextured;
+    body.variants[1] |= kTextured;
   }
   has_variant_[0][body.variants[0]] = true;
   if (has_transparent) has_variant_[1][body.variants[1]] = true;
@@ -518,6 +536,7 @@ void Terrain::begin_pass(const FrameView& view, bool is_transparent,
     of_pass.first_vertex = quads_.bind(of_pass.gl, kQuadUnit);
     if (!is_low && (variant & kTile) == 0) shadows_.bind(of_pass.gl, kShadowUnit);
     if ((variant & kInField) != 0) field_texture_.bind(of_pass.gl, kFieldUnit, field_, view.eye);
+    if ((variant & kTextured) != 0) textures_.bind(of_pass.gl, kTextureUnit);
     set(of_pass.gl);
   }
 }
@@ -688,7 +707,7 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
 
 std::uint64_t Terrain::gpu_bytes() const {
   return quads_.used_bytes() + quads_.shape_bytes() + field_.byte_size() +
-         field_texture_.byte_size() + shadows_.byte_size();
+         field_texture_.byte_size() + shadows_.byte_size() + textures_.byte_size();
 }
 
 }  // namespace runstone

@@ -27,6 +27,7 @@
 #include "client/render/quad_buffer.hpp"
 #include "client/render/quad_spans.hpp"
 #include "client/render/shadow_maps.hpp"
+#include "client/render/texture_array.hpp"
 #include "client/render/transparent_tree.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
@@ -59,6 +60,10 @@ class Terrain {
   Terrain();
   /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
+  /// Sets the textures of the world; null: none.
+  void set_textures(const DrawnTexturesPtr& textures) { textures_.set(textures); }
+  /// Returns TextureArray::left_out().
+  std::size_t textures_left_out() const { return textures_.left_out(); }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels);
   /// Requires a key of level 1 or more.
@@ -153,12 +158,14 @@ class Terrain {
   std::uint8_t joined_sides(const ChunkKey& key, std::uint8_t octants) const;
   void find_visible_tiles(const FrameView& view, const Frustum& frustum, TerrainStats& stats);
   /// The variants of a program: bits that add what not every chunk needs.
-  static constexpr unsigned kInField = 1;  // it reads the light field
-  static constexpr unsigned kFine = 2;     // grain and joints are seen
-  static constexpr unsigned kInFog = 4;    // a part of the chunk is in the fog
-  static constexpr unsigned kTile = 8;     // it is a part of a tile, without shadows
-  static constexpr unsigned kFade = 16;    // it appears or dissolves
-  static constexpr std::size_t kVariants = 32;
+  static constexpr unsigned kInField = 1;    // it reads the light field
+  static constexpr unsigned kFine = 2;       // grain and joints are seen
+  static constexpr unsigned kInFog = 4;      // a part of the chunk is in the fog
+  static constexpr unsigned kTile = 8;       // it is a part of a tile, without shadows
+  static constexpr unsigned kFade = 16;      // it appears or dissolves
+  static constexpr unsigned kTextured = 32;  // the world has textures
+  static constexpr unsigned kHoles = 64;     // textures with holes
+  static constexpr std::size_t kVariants = 128;
   struct Program {
     GlProgram gl;
     GLint origin = -1, pattern = -1, scale = -1, drawn = -1;  // the uniforms of a chunk
@@ -177,6 +184,7 @@ class Terrain {
   std::array<std::array<std::array<Program, kVariants>, 2>, 3> programs_;  // by quality and pass
   GlProgram depth_program_, ghost_program_;
   MaterialTextures materials_;
+  TextureArray textures_;
   LightCodes light_codes_;
   LightField field_;
   LightTexture field_texture_;

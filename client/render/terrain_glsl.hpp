@@ -1,13 +1,15 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
-// fades, RUNSTONE_TILE is for parts of tiles, and RUNSTONE_FADE draws a part of the pixels.
+// fades, RUNSTONE_TILE is for parts of tiles, and RUNSTONE_FADE draws a part of the pixels. Those of
+// textures stand in texture_glsl.hpp.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
 #include "client/render/surface_glsl.hpp"
+#include "client/render/texture_glsl.hpp"
 
 namespace runstone {
 
@@ -27,7 +29,8 @@ namespace runstone {
   "void fade() {}\n"                                                         \
   "#endif\n"
 
-inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
+inline constexpr const char* kTerrainVertexShader =
+    RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL RUNSTONE_TO_TEXTURE_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
@@ -59,6 +62,9 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "#ifdef RUNSTONE_SHADOWS\n"
     "  in_shadow = to_shadow(relative, normal);\n"
     "#endif\n"
+    "#ifdef RUNSTONE_TEXTURES\n"
+    "  to_texture(c);\n"
+    "#endif\n"
     "  gl_Position = clip * vec4(relative, 1.0);\n"
     "}\n";
 
@@ -71,8 +77,8 @@ inline constexpr const char* kTerrainFragmentShader =
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
-    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL
-        RUNSTONE_SHADOW_GLSL RUNSTONE_FADE_GLSL
+    "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
+        RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL
     "float hash(ivec3 p) {\n"
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
@@ -82,6 +88,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "#endif\n"
     "void main() {\n"
     "  fade();\n"
+    "  vec4 colour = surface_colour();\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
     // detail fades out with distance before it would flicker.
     "  vec3 face = abs(normal);\n"
@@ -96,6 +103,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0)));\n"
     "  tint *= mix(1.0, shade(st, face.y), fine);\n"
     "#endif\n"
+    "  if (is_textured()) tint = 1.0;\n"
     "  float sun = max(dot(normal, sun_direction), 0.0);\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  sun *= sunlit(in_shadow);\n"
@@ -133,12 +141,13 @@ inline constexpr const char* kTransparentFragmentShader =
     "in vec3 in_shadow;\n"
     "#endif\n"
     "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
-        RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_FADE_GLSL
+        RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL
     "float distance_of(float depth) {\n"
     "  return distance_terms.x / (distance_terms.y * depth + distance_terms.z);\n"
     "}\n"
     "void main() {\n"
     "  fade();\n"
+    "  vec4 colour = surface_colour();\n"
     "#ifdef RUNSTONE_DEPTH\n"
     "  float scene = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).x;\n"
     "  if (distance_of(gl_FragCoord.z) >= distance_of(scene)) discard;\n"

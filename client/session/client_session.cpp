@@ -42,6 +42,7 @@ void ClientSession::disconnected() {
   history_.clear();
   timeline_.disconnected();
   library_.disconnected();
+  textures_.disconnected();
   chat_.disconnected();
   if (is_commanding_) {
     command_lines_ = {"the connection ended before the answer came"};
@@ -62,6 +63,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       chat_.clear();
       timeline_.clear();
       library_.clear();
+      textures_.clear();
       return replica_->reset();
     case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
@@ -122,6 +124,11 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           library_.receive(std::move(m), arrival.now_us);
         } else if constexpr (std::is_same_v<T, BuildAnswer>) {
           library_.receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, TexturesGiven>) {
+          const auto taken = textures_.receive(m);
+          if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
+        } else if constexpr (std::is_same_v<T, TextureParts>) {
+          textures_.receive(std::move(m));
         } else if constexpr (std::is_same_v<T, RestorePreview>) {
           on_restore_preview(std::move(m));
         } else if constexpr (std::is_same_v<T, ChatLines>) {
@@ -145,6 +152,7 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
   allowance_.set_clipboard_bytes((world.features & kFeatureLargeActions) != 0
                                      ? EditPrices::kClipboardBytes
                                      : EditPrices::kClipboardBytesBefore);
+  textures_.connected((world.features & kFeatureTextures) != 0, connection_.config().has_cache);
   replica_->set_view(view());
   waiting_ = replica_->open({.chunk_edge = world.chunk_edge,
                              .author = accepted.author,
@@ -173,6 +181,7 @@ void ClientSession::tick(TimeUs now_us) {
   replica_->tick(now_us);
   previews_.expire(now_us);
   connection_.request_chunks(replica_->take_requests());
+  for (Message& message : textures_.step()) connection_.send(std::move(message));
   offer_lost_edits(now_us);
   send_waiting_edits(now_us);
 }

@@ -25,6 +25,7 @@
 #include "client/session/lost_edits.hpp"
 #include "client/session/server_connection.hpp"
 #include "client/session/shared_previews.hpp"
+#include "client/session/texture_exchange.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -148,6 +149,10 @@ class ClientSession {
   /// everything that is wanted of it fails. Call it every turn.
   void step_library(TimeUs now_us);
 
+  /// Returns what this client does to get the textures of the world. tick() sends its messages.
+  TextureExchange& textures() { return textures_; }
+  const TextureExchange& textures() const { return textures_; }
+
   /// Sends a line to everybody. Fails with one line of text unless open, if the server has no chat,
   /// or as chat_text() does. The server answers with the line itself, or with one that says why
   /// not.
@@ -249,6 +254,7 @@ class ClientSession {
   std::uint64_t timeline_serial_ = 0;
 
   LibraryExchange library_;
+  TextureExchange textures_;
   ChatInbox chat_;
   SharedPreviews previews_;
 

@@ -96,6 +96,7 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"view", "radius"}, number_field(&S::view_radius, 1, kViewRadiusMax)},
         {{"view", "far_levels"}, number_field(&S::far_levels, 0, kTileLevelMax)},
         {{"view", "memory_mib"}, set_memory},
+        {{"view", "textures"}, switch_field(&S::shows_textures)},
         {{"hand", "sensitivity"}, number_field(&S::sensitivity, 0.1, 10)},
         {{"hand", "invert_y"}, switch_field(&S::invert_y)},
         {{"hand", "walks"}, switch_field(&S::walks)},
@@ -201,7 +202,9 @@ std::string to_toml(const ClientSettings& settings) {
   out +=
       fmt::format("# Memory for chunks, edits and meshes in MiB, {} to {}. 0: found by itself.\n",
                   kMemoryMibMin, kMemoryMibMax);
-  out += fmt::format("memory_mib = {}\n\n[hand]\n", s.memory_mib);
+  out += fmt::format("memory_mib = {}\n", s.memory_mib);
+  out += "# true: worlds show the pictures that they bring. false: patterns; nothing is loaded.\n";
+  out += fmt::format("textures = {}\n\n[hand]\n", s.shows_textures);
   out += "# Speed of looking with the mouse, 0.1 to 10.\n";
   out += "sensitivity = " + toml_float(s.sensitivity) + "\n";
   out += "# true: moving the mouse up looks down.\n";

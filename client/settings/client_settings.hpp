@@ -31,6 +31,7 @@ struct ClientSettings {
   /// The memory for chunks, edits and meshes, from kMemoryMibMin to kMemoryMibMax. 0: the client
   /// uses automatic_memory_mib().
   std::uint64_t memory_mib = 0;
+  bool shows_textures = true;   // the pictures that worlds bring for their materials
   double sensitivity = 1;       // of the mouse, 0.1 to 10
   bool invert_y = false;        // mouse up looks down
   double interface_scale = 1;   // of windows and text, 0.5 to 4

@@ -49,6 +49,7 @@ SettingsForm::Result SettingsForm::build(double scale) {
   if (ImGui::SliderInt("far ground", &levels, 0, int{kTileLevelMax}, "%d levels",
                        ImGuiSliderFlags_AlwaysClamp))
     s.far_levels = static_cast<std::uint8_t>(levels);
+  ImGui::Checkbox("show the textures of worlds", &s.shows_textures);
   bool is_automatic = s.memory_mib == 0;
   if (ImGui::Checkbox("find the memory to use by itself", &is_automatic))
     s.memory_mib = is_automatic ? 0 : 1024;

@@ -23,6 +23,7 @@ struct JoinOptions {
   std::uint8_t far_levels = 3;
   std::size_t memory_mib = 512;
   std::optional<Quality> quality;  // nullopt: automatic
+  bool shows_textures = true;      // the pictures that the world brings for its materials
   bool has_cache = false;          // the page keeps chunks
   /// The worlds of which the page has chunks, as their servers described them last.
   std::vector<CachedWorld> cached_worlds;

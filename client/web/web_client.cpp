@@ -60,6 +60,7 @@ WebClient::WebClient(const JoinOptions& options, Screen& screen)
       windows_(play_.input().keys()),
       hud_(play_),
       pins_kept_(options.pinned.size()) {
+  settings_.shows_textures = options.shows_textures;
   queue_.set_drawing(screen.name());
   pipeline_.set_measures_frames(false);
   pipeline_.look().set_quality(options.quality);
@@ -79,10 +80,11 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   flush(now_us);  // local edits go first
   play_.follow(now_us);
   network_.step_cache(play_.limits().room(), now_us);  // the view names the chunks that were found
+  play_.step_textures(settings_, now_us);
   session_.tick(now_us);
   if (is_joined_) network_.keep_chunks(now_us);
   flush(now_us);
-  play_.step_previews({}, now_us);
+  play_.step_previews(settings_, now_us);
   mesh_until(steady_now_us() + (is_joined_ ? kMeshUs : kJoinMeshUs));
   if (draws) {
     draw(now_us);
@@ -160,7 +162,7 @@ void WebClient::touch(int id, int phase, double x, double y) {
 void WebClient::handle_input(TimeUs now_us) {
   touch_.step(now_us);
   play_.input().push(touch_.take_events());
-  const RoutedInput routed = play_.handle_input(windows_.focus(), {}, now_us);
+  const RoutedInput routed = play_.handle_input(windows_.focus(), settings_, now_us);
   for (const Action action : routed.player.actions) act(action);
   share_mouse();  // the tool window counts a captured mouse as a click beside it
   if (!routed.for_ui.empty() && windows_.is_any_open()) {

@@ -59,6 +59,7 @@ class WebClient {
   /// See UiContext.
   std::string field_text() const { return windows_.field_text(); }
   const WebSession& network() const { return network_; }
+  WebSession& network() { return network_; }
   /// Returns the measurements so far as the JSON of ClientReport.
   std::string report_json() const;
 
@@ -99,8 +100,9 @@ class WebClient {
   std::optional<int> window_touch_;    // the touch that began on a window
   bool types_ = false;                 // the page knows that a field of a window has the keyboard
   TimeUs windows_us_ = 0;              // when the windows were made last
-  std::size_t pins_kept_ = 0;          // server keys that the page keeps
-  std::optional<TimeUs> drawn_us_;     // when the last turn began, if it drew a frame
+  PlaySettings settings_;
+  std::size_t pins_kept_ = 0;       // server keys that the page keeps
+  std::optional<TimeUs> drawn_us_;  // when the last turn began, if it drew a frame
   bool is_joined_ = false, is_over_ = false, is_exact_ = false;
 };
 

@@ -91,7 +91,8 @@ EMSCRIPTEN_KEEPALIVE void web_prepare() {
 EMSCRIPTEN_KEEPALIVE const char* web_join(const char* url, const char* name, const char* ticket,
                                           const char* seed, int is_key_kept, const char* pins,
                                           int view_radius, int far_levels, int quality,
-                                          int has_cache, const char* cached_worlds) {
+                                          int shows_textures, int has_cache,
+                                          const char* cached_worlds) {
   if (const auto checked = check_player_name(name); !checked) return kept(checked.error());
   if (const auto checked = check_ticket(ticket); !checked) return kept(checked.error());
   JoinOptions options;
@@ -105,6 +106,7 @@ EMSCRIPTEN_KEEPALIVE const char* web_join(const char* url, const char* name, con
   options.view_radius_v = static_cast<std::uint8_t>((options.view_radius + 1) / 2);
   options.far_levels = static_cast<std::uint8_t>(std::clamp(far_levels, 0, 5));
   options.quality = quality_of(quality);
+  options.shows_textures = shows_textures != 0;
   options.has_cache = has_cache != 0;
   options.cached_worlds = read_cached_worlds(cached_worlds);
   client = std::make_unique<WebClient>(options, *screen);
@@ -257,6 +259,17 @@ EMSCRIPTEN_KEEPALIVE void web_cache_dropped(int rows) {
 
 EMSCRIPTEN_KEEPALIVE void web_cache_failed() {
   if (client && client->cache() != nullptr) client->cache()->fail();
+}
+
+// The texture cache, see WebTextures.
+
+/// Gives the picture in the buffer to the oldest lookup.
+EMSCRIPTEN_KEEPALIVE void web_texture_found(int index) {
+  if (client) client->network().textures().found(static_cast<std::size_t>(index), buffered);
+}
+
+EMSCRIPTEN_KEEPALIVE void web_textures_looked_up() {
+  if (client) client->network().textures().looked_up();
 }
 
 // For tests and measurements.

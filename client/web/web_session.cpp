@@ -62,7 +62,9 @@ void WebSession::flush(TimeUs now_us) {
 }
 
 void WebSession::step_cache(std::size_t room_bytes, TimeUs now_us) {
-  if (cache_) exchange_lookups(session_, *cache_, room_bytes, now_us);
+  if (!cache_) return;
+  exchange_lookups(session_, *cache_, room_bytes, now_us);
+  exchange_textures(session_.textures(), textures_);
 }
 
 void WebSession::keep_chunks(TimeUs now_us) {

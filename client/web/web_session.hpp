@@ -9,6 +9,7 @@
 #include "client/web/join_options.hpp"
 #include "client/web/web_cache.hpp"
 #include "client/web/web_link.hpp"
+#include "client/web/web_textures.hpp"
 
 namespace runstone {
 
@@ -31,6 +32,7 @@ class WebSession final : private LinkCallbacks {
   void keep_chunks(TimeUs now_us);
   /// Returns null without a cache.
   WebCache* cache() { return cache_ ? &*cache_ : nullptr; }
+  WebTextures& textures() { return textures_; }
   /// Returns true if a world was opened, for the first time or again, since the last call.
   bool take_world_opened();
   /// Sends a goodbye to the server. Afterwards the session sends and receives no messages.
@@ -62,6 +64,7 @@ class WebSession final : private LinkCallbacks {
   FailureWords last_words_;
   SnapshotStats snapshots_;
   std::optional<WebCache> cache_;
+  WebTextures textures_;
   TimeUs keep_us_ = 0;  // when the next round begins, or the one under way began
   WebLink link_;
 };

@@ -15,7 +15,7 @@ struct KnownFile {
   const char* type;
 };
 constexpr std::string_view kPage = "client.html";
-constexpr std::array<KnownFile, 11> kFiles = {{
+constexpr std::array<KnownFile, 12> kFiles = {{
     {kPage, "text/html; charset=utf-8"},
     {"client.css", "text/css; charset=utf-8"},
     {"client.js", "text/javascript; charset=utf-8"},
@@ -23,6 +23,7 @@ constexpr std::array<KnownFile, 11> kFiles = {{
     {"typing.js", "text/javascript; charset=utf-8"},
     {"keys.js", "text/javascript; charset=utf-8"},
     {"chunks.js", "text/javascript; charset=utf-8"},
+    {"textures.js", "text/javascript; charset=utf-8"},
     {"ticker.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.js", "text/javascript; charset=utf-8"},
     {"runstone-web-client.wasm", "application/wasm"},

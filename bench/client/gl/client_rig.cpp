@@ -39,6 +39,7 @@ class ClientRig::WatchedScreen final : public Screen {
   void set_materials(const MaterialTable& materials, const ShapeTablePtr& shapes) override {
     screen_->set_materials(materials, shapes);
   }
+  void set_textures(const DrawnTexturesPtr& textures) override { screen_->set_textures(textures); }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
               const RunChunk* voxels) override {
     screen_->upload(key, edge, mesh, voxels);

@@ -84,4 +84,10 @@ mergeInto(LibraryManager.library, {
   page_cache_keep: function (world, rows, bytes) {
     Module.chunks.keep(UTF8ToString(world), HEAPU8.slice(rows, rows + bytes));
   },
+  page_textures_find: function (hashes, count) {
+    Module.textures.find(HEAPU8.slice(hashes, hashes + 32 * count));
+  },
+  page_textures_keep: function (rows, bytes) {
+    Module.textures.keep(HEAPU8.slice(rows, rows + bytes));
+  },
 });

@@ -161,7 +161,7 @@ function missing() {
 
 async function loadProgram() {
   $("step").textContent = "loading the program";
-  await Program.load({ page, chunks: Chunks }, (why) => {
+  await Program.load({ page, chunks: Chunks, textures: Textures }, (why) => {
     ticker?.terminate();
     fail("The client has failed",
       `${why}\nLoad the page again. Edits that the server has not confirmed are lost.`);
@@ -209,7 +209,7 @@ async function join(event) {
   event.preventDefault();
   const name = $("name").value.trim();
   keep("name", name);
-  for (const id of ["quality", "sight"]) keep(id, $(id).value);
+  for (const id of ["quality", "sight", "textures"]) keep(id, $(id).value);
   if (document.body.classList.contains("failed")) return location.reload();
   $("enter").disabled = true;
   $("step").textContent = "reading what this browser keeps";
@@ -221,10 +221,10 @@ async function join(event) {
   url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
   // An invite is the part after '#', which browsers do not send.
   const invite = new URLSearchParams(location.hash.slice(1)).get("invite") ?? "";
-  const [sight, quality] = ["sight", "quality"].map((id) => Number($(id).value));
+  const [sight, quality, textures] = ["sight", "quality", "textures"].map((id) => Number($(id).value));
   const FAR_LEVELS = 3;
   const why = Program.text("web_join", url.href, name, invite, keys.seed, keys.isKept ? 1 : 0,
-    keys.servers, sight, FAR_LEVELS, quality, worlds === null ? 0 : 1, worlds ?? "");
+    keys.servers, sight, FAR_LEVELS, quality, textures, worlds === null ? 0 : 1, worlds ?? "");
   if (why !== "") {
     $("step").textContent = "You cannot join like this";
     $("detail").textContent = why;
@@ -395,6 +395,7 @@ async function begin() {
   $("name").value = kept("name") ?? "";
   $("quality").value = kept("quality") ?? "-1";
   $("sight").value = kept("sight") ?? "6";
+  $("textures").value = kept("textures") ?? "1";
   $("join").addEventListener("submit", join);
   const lack = missing();
   if (lack) return fail(...lack);

@@ -191,6 +191,22 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
         Lines{all, "draw", all + " shapes " + std::to_string(shapes->serial()), "draw"});
 }
 
+TEST_CASE("textures reach the screen before the frame that needs them, and clear() removes them",
+          "[client_app][textures]") {
+  ThreadBench bench;
+  auto textures = std::make_shared<DrawnTextures>();
+  textures->table = std::make_shared<const TextureTable>();
+  textures->pictures.resize(3);
+  bench.thread.set_textures(textures);
+  bench.thread.draw(small_frame());
+  bench.take_frames(1);
+  CHECK(bench.screen_log.lines() == Lines{"textures 3", "draw"});
+  bench.thread.clear();
+  bench.thread.draw(small_frame());
+  bench.take_frames(2);
+  CHECK(bench.screen_log.lines() == Lines{"textures 3", "draw", "textures 0", "draw"});
+}
+
 TEST_CASE(
     "a screenshot shows its frame, and a file that cannot be written is named with the reason",
     "[client_app]") {

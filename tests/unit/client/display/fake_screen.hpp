@@ -100,6 +100,9 @@ class FakeScreen final : public Screen {
     log_.write("materials " + std::to_string(materials.size()) +
                (has_shapes ? " shapes " + std::to_string(shapes->serial()) : ""));
   }
+  void set_textures(const DrawnTexturesPtr& textures) override {
+    log_.write("textures " + std::to_string(textures ? textures->pictures.size() : 0));
+  }
   void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh,
               const RunChunk* /*voxels*/) override {
     log_.upload("upload " + std::to_string(key.at.x) + " quads " +

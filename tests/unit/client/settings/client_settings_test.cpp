@@ -14,6 +14,7 @@ ClientSettings unusual_settings() {
   out.view_radius = 11;
   out.far_levels = 3;
   out.memory_mib = 4096;
+  out.shows_textures = false;
   out.sensitivity = 0.35;
   out.invert_y = true;
   out.interface_scale = 2;

@@ -1,0 +1,65 @@
+#include "client/play/world_textures.hpp"
+
+#include <utility>
+
+namespace runstone {
+
+std::optional<DrawnTexturesPtr> WorldTextures::step(const TextureExchange& textures, bool is_on,
+                                                    TimeUs now_us) {
+  if (!is_on) {
+    levels_.clear();
+    serial_ = 0;
+    return take_nothing();
+  }
+  if (serial_ == textures.serial()) return std::nullopt;
+  if (has_drawn_ && textures.is_loading() && now_us - drawn_us_ < kBatchUs) return std::nullopt;
+  auto drawn = std::make_shared<DrawnTextures>();
+  drawn->table = textures.table();
+  std::map<TexturePicturePtr, TextureLevelsPtr> used;
+  std::size_t pixels = 0;
+  bool is_any = false;
+  for (const TextureEntry& entry : drawn->table->entries()) {
+    TextureLevelsPtr levels;
+    if (const TexturePicturePtr picture = textures.picture(entry.hash)) {
+      const auto known = levels_.find(picture);
+      if (known != levels_.end()) {
+        levels = known->second;
+      } else if (pixels < kPixels) {
+        levels = std::make_shared<const TextureLevels>(texture_levels(*picture));
+        pixels += std::size_t{picture->edge} * picture->edge;
+      }
+      if (levels) used.emplace(picture, levels);
+      is_any = is_any || levels;
+    }
+    drawn->pictures.push_back(std::move(levels));
+  }
+  levels_ = std::move(used);
+  // The next call prepares the rest.
+  if (pixels >= kPixels) return std::nullopt;
+  serial_ = textures.serial();
+  if (!is_any) return take_nothing();
+  has_drawn_ = true;
+  drawn_us_ = now_us;
+  return drawn;
+}
+
+std::optional<DrawnTexturesPtr> WorldTextures::take_nothing() {
+  if (!std::exchange(has_drawn_, false)) return std::nullopt;
+  return DrawnTexturesPtr();
+}
+
+std::optional<std::string> WorldTextures::take_notice(const TextureExchange& textures,
+                                                      std::size_t left_out) {
+  if (std::exchange(left_out_, left_out) < left_out)
+    return std::to_string(left_out) +
+           " textures of this world are not drawn: the graphics driver has no room for more";
+  if (textures.is_loading()) return std::nullopt;
+  const std::size_t failed = textures.failed();
+  if (std::exchange(failed_, failed) < failed)
+    return std::to_string(failed) +
+           " textures of this world are not drawn: the server sent other bytes than it announced, "
+           "or no pictures";
+  return std::nullopt;
+}
+
+}  // namespace runstone

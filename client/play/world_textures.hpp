@@ -1,0 +1,39 @@
+// WorldTextures: makes what is drawn of the textures of a session. One thread.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "client/render/drawn_textures.hpp"
+#include "client/session/texture_exchange.hpp"
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+class WorldTextures {
+ public:
+  /// While pictures arrive, they are drawn in batches that are this far apart.
+  static constexpr TimeUs kBatchUs = 250'000;
+  /// One call of step() prepares pictures with about so many pixels.
+  static constexpr std::size_t kPixels = 32 * 1024;
+
+  /// Returns the textures to draw from now on, if they changed. `is_on`: they are drawn.
+  std::optional<DrawnTexturesPtr> step(const TextureExchange& textures, bool is_on, TimeUs now_us);
+  /// Returns a line for the player if something is wrong with the textures of the world, once per
+  /// reason. `left_out`: the pictures for which the graphics driver has no room.
+  std::optional<std::string> take_notice(const TextureExchange& textures, std::size_t left_out);
+
+ private:
+  /// Returns that no textures are drawn, if some were.
+  std::optional<DrawnTexturesPtr> take_nothing();
+
+  std::map<TexturePicturePtr, TextureLevelsPtr> levels_;  // of the pictures that are drawn
+  std::uint64_t serial_ = 0;               // TextureExchange::serial() of what was returned last
+  bool has_drawn_ = false;                 // what was returned last are textures
+  TimeUs drawn_us_ = 0;                    // when it was returned
+  std::size_t failed_ = 0, left_out_ = 0;  // of which there was a notice
+};
+
+}  // namespace runstone
