@@ -23,7 +23,7 @@ std::int32_t halved(std::int32_t side) { return (side + 1) / 2; }
 class CoarserBuilder {
  public:
   CoarserBuilder(const WrittenBuild& source, BuildBuilder& out)
-      : build_(source.build), visibility_(visibility_of_cells(source)), out_(out) {}
+      : build_(source.build), visibility_(visibility_as_cubes(source)), out_(out) {}
 
   Result<void> put_all() {
     const auto count = [&](std::size_t axis) {
