@@ -24,7 +24,7 @@ Result<ModelLevels> ModelLevels::of(const WrittenBuild& source, const ModelWriti
   const WrittenBuild* finer = &source;
   while (out.coarser_.size() < writing.levels && can_be_coarser(finer->build)) {
     auto made = coarser_build(*finer, finer->build.memory_bytes() + kBuildBytesMax);
-    if (!made && made.error().code == ErrorCode::bad_value) break;  // shapes alone, none a cube
+    if (!made && made.error().code == ErrorCode::bad_value) break;  // it shows nothing
     if (!made) return failure(made.error());
     const Build& build = *made->build;
     Level level{*std::move(made), {build, source.info, {}}, {}};
