@@ -24,6 +24,7 @@ Result<std::uint64_t, std::string> write_level_files(const std::string& file,
   const FileBuild* finer = &build;
   for (unsigned level = 1; level <= levels && can_be_coarser(*finer->build); ++level) {
     auto made = coarser_level(*finer);
+    if (!made && made.error().code == ErrorCode::bad_value) break;  // it shows nothing
     if (!made) return failure(level_file(file, level) + ": " + made.error().what);
     coarser = *std::move(made);
     finer = &coarser;

@@ -14,8 +14,9 @@ WrittenBuild model_source(const FileBuild& build) {
   WrittenBuild source{*build.build, build.info, {}};
   for (const BuildMaterial& material : build.materials) {
     const MaterialRow& row = material.row;
-    source.materials.push_back({world_name_of(material), row.colour, visibility_as_cube(row),
-                                row.look ? *row.look : default_look(row.name, row.body)});
+    source.materials.push_back({world_name_of(material), row.colour, row.visibility,
+                                row.look ? *row.look : default_look(row.name, row.body), row.shape,
+                                visibility_as_cube(row)});
   }
   return source;
 }
@@ -53,8 +54,11 @@ Result<FileBuild> coarser_level(const FileBuild& build) {
       coarser_build(model_source(build), build.build->memory_bytes() + kBuildBytesMax);
   if (!made) return failure(made.error());
   FileBuild out{build.info, made->build, {}};
-  for (const std::uint16_t number : made->finer_numbers)
-    out.materials.push_back(build.materials[number - 1U]);
+  for (const std::uint16_t number : made->finer_numbers) {
+    MaterialRow& row = out.materials.emplace_back(build.materials[number - 1U]).row;
+    row.visibility = visibility_as_cube(row);
+    row.shape = {};
+  }
   const VoxelPos sides = out.build->sides();
   out.info.sides = {static_cast<std::uint32_t>(sides.x), static_cast<std::uint32_t>(sides.y),
                     static_cast<std::uint32_t>(sides.z)};

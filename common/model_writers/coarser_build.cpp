@@ -23,7 +23,7 @@ std::int32_t halved(std::int32_t side) { return (side + 1) / 2; }
 class CoarserBuilder {
  public:
   CoarserBuilder(const WrittenBuild& source, BuildBuilder& out)
-      : build_(source.build), visibility_(visibility_of_cells(source)), out_(out) {}
+      : build_(source.build), visibility_(visibility_as_cubes(source)), out_(out) {}
 
   Result<void> put_all() {
     const auto count = [&](std::size_t axis) {
@@ -94,7 +94,12 @@ Result<CoarserBuild> coarser_build(const WrittenBuild& source, std::size_t bytes
   auto build = builder->finish();
   if (!build) return failure(build.error());
   CoarserBuild out{*std::move(build), {}};
-  for (const Material number : out.build->palette()) out.finer_numbers.push_back(number);
+  bool is_shown = false;
+  for (const Material number : out.build->palette()) {
+    out.finer_numbers.push_back(number);
+    is_shown = is_shown || source.materials[number - 1U].as_cube != Visibility::empty;
+  }
+  if (!is_shown) return fail(ErrorCode::bad_value, "model: coarser build shows no cube");
   return out;
 }
 

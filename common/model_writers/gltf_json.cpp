@@ -63,7 +63,10 @@ class GltfJson {
     ((out_.text(","), out_.number(more)), ...);
     out_.text("]");
   }
-  void corner(const Corner& at) { numbers(at[0], at[1], at[2]); }
+  /// Writes a place, which is in sixteenths of a voxel, in this many of them.
+  void corner(const Corner& at, double units) {
+    numbers(at[0] / units, at[1] / units, at[2] / units);
+  }
 
   bool has_levels() const { return layout_.level_ends.size() > 1; }
   std::size_t first_region(std::size_t level) const {
@@ -161,6 +164,11 @@ class GltfJson {
     out_.number(at.z);
     out_.text(R"(","translation":)");
     numbers(at.x, at.y, at.z);
+    if (writing_.is_quantised && layout_.regions[i].is_fine) {
+      out_.text(",\"scale\":");
+      constexpr double kSixteenth = 1.0 / kShapeUnits;
+      numbers(kSixteenth, kSixteenth, kSixteenth);
+    }
     out_.text(",\"mesh\":");
     out_.number(i);
     out_.text("}");
@@ -212,12 +220,16 @@ class GltfJson {
         out_.text("]");
       }
       if (material.visibility == Visibility::transparent) out_.text(R"(,"alphaMode":"BLEND")");
+      if (material.shape.form == ShapeForm::crossed) out_.text(R"(,"doubleSided":true)");
       out_.text("}");
     }
   }
   void write_accessors(std::size_t i) {
     const GltfRegion& region = layout_.regions[i];
     const bool is_quantised = writing_.is_quantised;
+    const GltfVertex vertex = gltf_vertex(is_quantised, region.is_fine);
+    const int place_type = !is_quantised ? kGltfF32 : region.is_fine ? kGltfU16 : kGltfU8;
+    const double place_units = is_quantised && region.is_fine ? 1 : kShapeUnits;
     std::uint64_t vertices_at = 0, indices_at = 0;
     const auto accessor = [&](std::size_t view, std::uint64_t at, int type, std::uint32_t count) {
       out_.text("{\"bufferView\":");
@@ -232,18 +244,18 @@ class GltfJson {
     for (std::size_t k = 0; k < region.part_count; ++k) {
       const GltfPart& part = layout_.parts[region.first_part + k];
       out_.text(region.first_part + k == 0 ? "" : ",");
-      accessor(2 * i, vertices_at, is_quantised ? kGltfU8 : kGltfF32, part.vertices);
+      accessor(2 * i, vertices_at, place_type, part.vertices);
       out_.text(R"(,"type":"VEC3","min":)");
-      corner(part.min);
+      corner(part.min, place_units);
       out_.text(",\"max\":");
-      corner(part.max);
+      corner(part.max, place_units);
       out_.text("},");
-      accessor(2 * i, vertices_at + layout_.vertex_bytes / 2, is_quantised ? kGltfI8 : kGltfF32,
+      accessor(2 * i, vertices_at + vertex.normal_at, is_quantised ? kGltfI8 : kGltfF32,
                part.vertices);
       out_.text(is_quantised ? R"(,"normalized":true,"type":"VEC3"},)" : R"(,"type":"VEC3"},)");
       accessor(2 * i + 1, indices_at, part.index_bytes() == 2 ? kGltfU16 : kGltfU32, part.indices);
       out_.text(R"(,"type":"SCALAR"})");
-      vertices_at += std::uint64_t{part.vertices} * layout_.vertex_bytes;
+      vertices_at += std::uint64_t{part.vertices} * vertex.bytes;
       indices_at += part.indices_bytes();
     }
   }
@@ -260,7 +272,7 @@ class GltfJson {
     for (const GltfRegion& region : layout_.regions) {
       view(region.vertices_bytes);
       out_.text(",\"byteStride\":");
-      out_.number(layout_.vertex_bytes);
+      out_.number(gltf_vertex(writing_.is_quantised, region.is_fine).bytes);
       out_.text(",\"target\":");
       out_.number(kGltfArrayBuffer);
       out_.text("}");

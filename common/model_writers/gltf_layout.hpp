@@ -17,7 +17,7 @@ namespace runstone {
 struct GltfPart {
   std::uint16_t number = 0;  // cell number of the finest level
   std::uint32_t vertices = 0, indices = 0;
-  Corner min{}, max{};  // of the places of its vertices
+  Corner min{}, max{};  // of the places of its vertices, in sixteenths of a voxel
   /// Returns the bytes of an index. 65,535 is no index of a u16.
   std::uint32_t index_bytes() const { return vertices <= 65'535 ? 2 : 4; }
   /// Returns the bytes of all indices, with those that fill up the last four.
@@ -29,14 +29,25 @@ struct GltfPart {
 struct GltfRegion {
   VoxelPos origin;  // in cells of its level
   std::size_t first_part = 0, part_count = 0;
+  /// True: the places of a quantised model are sixteenths of a voxel. False: they are voxels.
+  bool is_fine = false;
   std::uint64_t vertices_bytes = 0, indices_bytes = 0;
 };
 
+/// The bytes of a vertex, and where its normal begins.
+struct GltfVertex {
+  std::uint32_t bytes = 24, normal_at = 12;
+};
+constexpr GltfVertex gltf_vertex(bool is_quantised, bool is_fine) {
+  if (!is_quantised) return {24, 12};
+  return is_fine ? GltfVertex{12, 8} : GltfVertex{8, 4};
+}
+
 struct GltfLayout {
-  /// Counts what the levels give. Fails with bad_value if the finest one gives no face.
+  /// Counts what the levels give. Fails with bad_value if the finest one gives no face, and as
+  /// ModelWalk::check() does.
   static Result<GltfLayout> of(ModelLevels& levels, bool is_quantised);
 
-  std::uint32_t vertex_bytes = 24;
   std::vector<GltfRegion> regions;      // of all levels, the finest first
   std::vector<std::size_t> level_ends;  // by level: the end of its regions
   std::vector<GltfPart> parts;

@@ -15,7 +15,7 @@ namespace runstone {
 class ModelLevels {
  public:
   /// Makes `writing.levels` levels besides the finest one, or fewer: no level follows a single
-  /// cell. Keeps a reference to the build. Fails with limit_exceeded if a level takes more memory
+  /// cell, or one of shapes of which none is a cube. Keeps a reference to the build. Fails with limit_exceeded if a level takes more memory
   /// than the finer one and kBuildBytesMax together. Requires at most kModelLevelsMax levels.
   static Result<ModelLevels> of(const WrittenBuild& source, const ModelWriting& writing);
 

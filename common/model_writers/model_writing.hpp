@@ -9,6 +9,7 @@
 #include "common/core/build_info.hpp"
 #include "common/core/material_look.hpp"
 #include "common/core/material_row.hpp"
+#include "common/core/shape.hpp"
 #include "common/core/visibility.hpp"
 
 namespace runstone {
@@ -22,6 +23,9 @@ struct WrittenMaterial {
   MaterialColour colour{0, 0, 0, 255};  // sRGB and alpha
   Visibility visibility = Visibility::opaque;
   MaterialLook look;
+  Shape shape;  // valid
+  /// The visibility of a cube in place of the shape, which coarser levels have.
+  Visibility as_cube = Visibility::opaque;
 };
 
 /// A build whose faces are written. It is borrowed for one call.
@@ -37,11 +41,12 @@ struct ModelWriting {
   /// .obj they share each equal place. False: every quad has vertices of its own.
   bool is_welded = true;
   /// True: each edge of a triangle ends where an edge of another one ends, so that no seam can show
-  /// and a solid build is a closed surface. It costs triangles and one more pass over the build.
+  /// and a solid build of cubes is a closed surface. It costs triangles and one more pass over the
+  /// build. The planes of plants are left as they are.
   /// False: a corner of a quad may lie within an edge of its neighbour.
   bool closes_t_junctions = false;
-  /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24. Readers need
-  /// KHR_mesh_quantization.
+  /// True: a .glb or .gltf has a vertex of 8 bytes instead of 24, and of 12 in regions with places
+  /// between those of voxels. Readers need KHR_mesh_quantization.
   bool is_quantised = false;
   /// The levels of detail besides the finest one, at most kModelLevelsMax. A .glb or .gltf holds
   /// them. The writers of other formats do not use it: their levels are files of their own

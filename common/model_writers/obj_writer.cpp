@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -48,10 +50,13 @@ void write_obj_comment(const WrittenBuild& source, ModelOutput& out) {
   out.text("\n");
 }
 
+/// A place in sixteenths of a voxel.
+using ObjPlace = std::array<std::int32_t, 3>;
+
 class ObjWriter {
  public:
   ObjWriter(const WrittenBuild& source, const ModelWriting& writing, const ModelSink& sink)
-      : source_(source), writing_(writing), walk_(source, writing), out_(sink) {}
+      : source_(source), writing_(writing), walk_(source, writing, PlaneSides::both), out_(sink) {}
 
   Result<void> write() {
     names_ = obj_names(source_.materials);
@@ -60,6 +65,7 @@ class ObjWriter {
       write_region(region);
       return out_.ok();
     });
+    if (const auto checked = walk_.check(); !checked) return checked;
     if (region_ == 0) return fail(ErrorCode::bad_value, "model: build shows no face");
     if (!out_.flush()) return fail(ErrorCode::io_failed, "model: cannot be written");
     return {};
@@ -78,13 +84,34 @@ class ObjWriter {
     }
     out_.text("o ");
     out_.text(obj_word(source_.info.name));
-    // By Direction.
-    out_.text("\nvn -1 0 0\nvn 1 0 0\nvn 0 -1 0\nvn 0 1 0\nvn 0 0 -1\nvn 0 0 1\n");
+    out_.text("\n");
+    for (const std::size_t axis : {0U, 1U, 2U}) {
+      for (const int sign : {-1, 1}) {
+        ModelNormal normal{};
+        normal[axis] = static_cast<std::int8_t>(sign);
+        normal_number(normal);
+      }
+    }
+  }
+
+  /// Returns the number of a normal in the file, and writes it if it is new.
+  std::size_t normal_number(const ModelNormal& normal) {
+    const auto [known, is_new] = normals_.try_emplace(normal, normals_.size() + 1);
+    if (is_new) {
+      out_.text("vn");
+      for (const double share : unit_normal(normal)) {
+        out_.text(" ");
+        out_.number(static_cast<float>(share));
+      }
+      out_.text("\n");
+    }
+    return known->second;
   }
 
   void write_region(const RegionModel& region) {
     ++region_;
     if (writing_.is_welded) in_region_.assign(kRegionPoints * kRegionPoints * kRegionPoints, 0);
+    fine_in_region_.clear();
     region_first_ = vertex_count_;
     for (const ModelPart& part : region.parts) {
       if (part.number != number_) {
@@ -98,8 +125,8 @@ class ObjWriter {
       for (const ModelVertex& vertex : vertices) of_part_.push_back(number_of(region, vertex));
       const auto indices = region.indices_of(part);
       for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const std::size_t normal = normal_number(vertices[indices[i]].normal);
         out_.text("f");
-        const auto normal = static_cast<unsigned>(vertices[indices[i]].direction) + 1;
         for (std::size_t k = i; k < i + 3; ++k) {
           out_.text(" ");
           out_.number(of_part_[indices[k]]);
@@ -113,33 +140,46 @@ class ObjWriter {
 
   /// Returns the number of a vertex in the file, and writes it if it is new.
   std::uint64_t number_of(const RegionModel& region, const ModelVertex& vertex) {
-    const VoxelPos at = {region.origin.x + vertex.x, region.origin.y + vertex.y,
-                         region.origin.z + vertex.z};
+    const VoxelPos& origin = region.origin;
+    const ObjPlace at = {origin.x * kModelUnits + vertex.x, origin.y * kModelUnits + vertex.y,
+                         origin.z * kModelUnits + vertex.z};
     if (!writing_.is_welded) return write_vertex(at);
-    const auto is_between = [](std::int32_t place) { return place % kModelRegionEdge == 0; };
-    if (is_between(at.x) || is_between(at.y) || is_between(at.z)) {
+    const bool is_between = std::any_of(at.begin(), at.end(), [](std::int32_t place) {
+      return place % kModelRegionUnits == 0;
+    });
+    if (std::any_of(at.begin(), at.end(), [](std::int32_t place) { return place % kModelUnits != 0; })) {
+      std::uint64_t& number = (is_between ? fine_between_regions_ : fine_in_region_)[at];
+      if (number == 0) number = write_vertex(at);
+      return number;
+    }
+    if (is_between) {
       // 21 bits each: a side has at most 2^20 voxels.
-      const std::uint64_t key = static_cast<std::uint64_t>(at.x) |
-                                static_cast<std::uint64_t>(at.y) << 21 |
-                                static_cast<std::uint64_t>(at.z) << 42;
+      const std::uint64_t key = static_cast<std::uint64_t>(at[0] / kModelUnits) |
+                                static_cast<std::uint64_t>(at[1] / kModelUnits) << 21 |
+                                static_cast<std::uint64_t>(at[2] / kModelUnits) << 42;
       std::uint64_t& number = between_regions_[key];
       if (number == 0) number = write_vertex(at);
       return number;
     }
+    const auto voxel = [](std::uint16_t place) { return std::size_t{place} / kModelUnits; };
     std::uint32_t& number =
-        in_region_[vertex.x + kRegionPoints * (vertex.y + kRegionPoints * vertex.z)];
+        in_region_[voxel(vertex.x) +
+                   kRegionPoints * (voxel(vertex.y) + kRegionPoints * voxel(vertex.z))];
     if (number == 0) number = static_cast<std::uint32_t>(write_vertex(at) - region_first_);
     return region_first_ + number;
   }
 
-  std::uint64_t write_vertex(VoxelPos at) {
+  std::uint64_t write_vertex(const ObjPlace& at) {
     out_.text("v");
-    for (const std::int32_t place : {at.x, at.y, at.z}) {
+    for (const std::int32_t place : at) {
       out_.text(" ");
-      if (writing_.metres_per_voxel == 1) {
-        out_.number(place);
+      const double voxels = static_cast<double>(place) / kModelUnits;
+      if (writing_.metres_per_voxel != 1) {
+        out_.number(static_cast<float>(voxels * writing_.metres_per_voxel));
+      } else if (place % kModelUnits == 0) {
+        out_.number(place / kModelUnits);
       } else {
-        out_.number(static_cast<float>(place * writing_.metres_per_voxel));
+        out_.number(voxels);
       }
     }
     out_.text("\n");
@@ -158,6 +198,9 @@ class ObjWriter {
   /// The numbers of the vertices inside of the region, after region_first_; 0: none.
   std::vector<std::uint32_t> in_region_;
   std::unordered_map<std::uint64_t, std::uint64_t> between_regions_;
+  /// The numbers of the vertices that lie between the corners of voxels.
+  std::map<ObjPlace, std::uint64_t> fine_in_region_, fine_between_regions_;
+  std::map<ModelNormal, std::size_t> normals_;
   std::vector<std::uint64_t> of_part_;
 };
 

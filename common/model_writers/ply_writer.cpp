@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "common/core/assert.hpp"
@@ -40,17 +41,20 @@ void write_ply_head(const WrittenBuild& source, const PlyCounts& counts, ModelOu
 void write_ply_vertices(const WrittenBuild& source, double scale, const RegionModel& region,
                         ModelOutput& out) {
   // The axis z of the file points up: x east, y north, z up.
-  const auto triple = [&](std::int32_t x, std::int32_t y, std::int32_t z, double factor) {
-    for (const std::int32_t v : {x, -z, y}) out.f32(static_cast<float>(v * factor));
+  const auto triple = [&](double x, double y, double z, double factor) {
+    for (const double v : {x, 0 - z, y}) out.f32(static_cast<float>(v * factor));
   };
   const VoxelPos& origin = region.origin;
+  const auto voxels = [](std::int32_t from, std::uint16_t units) {
+    return from + static_cast<double>(units) / kShapeUnits;
+  };
   for (const ModelPart& part : region.parts) {
     const MaterialColour& colour = source.materials[part.number - 1U].colour;
     for (const ModelVertex& vertex : region.vertices_of(part)) {
-      triple(origin.x + vertex.x, origin.y + vertex.y, origin.z + vertex.z, scale);
-      const int sign = is_positive(vertex.direction) ? 1 : -1;
-      const Axis axis = axis_of(vertex.direction);
-      triple(axis == Axis::x ? sign : 0, axis == Axis::y ? sign : 0, axis == Axis::z ? sign : 0, 1);
+      triple(voxels(origin.x, vertex.x), voxels(origin.y, vertex.y), voxels(origin.z, vertex.z),
+             scale);
+      const std::array<double, 3> normal = unit_normal(vertex.normal);
+      triple(normal[0], normal[1], normal[2], 1);
       out.bytes(colour);
     }
   }
@@ -61,13 +65,14 @@ void write_ply_vertices(const WrittenBuild& source, double scale, const RegionMo
 Result<void> write_ply_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink) {
   RUNSTONE_ASSERT(std::isfinite(writing.metres_per_voxel) && writing.metres_per_voxel > 0);
-  ModelWalk walk(source, writing);
+  ModelWalk walk(source, writing, PlaneSides::both);
   PlyCounts counts;
   walk.for_each_region([&](const RegionModel& region) {
     counts.vertices += region.vertices.size();
     counts.triangles += region.indices.size() / 3;
     return true;
   });
+  if (const auto checked = walk.check(); !checked) return checked;
   if (counts.triangles == 0) return fail(ErrorCode::bad_value, "model: build shows no face");
   if (counts.vertices > kPlyCountMax || counts.triangles > kPlyCountMax) {
     return fail(

@@ -30,6 +30,22 @@ VoxelBox layer_beside(VoxelBox box, Direction direction) {
   return box;
 }
 
+/// Returns the properties of the cell numbers.
+MeshMaterials materials_of_cells(const WrittenBuild& source) {
+  RUNSTONE_ASSERT(source.materials.size() == source.build.palette().size());
+  std::vector<Visibility> rows = {Visibility::empty}, cubes = rows;  // untouched cells
+  std::vector<Shape> shapes(1);
+  for (const WrittenMaterial& material : source.materials) {
+    rows.push_back(material.visibility);
+    cubes.push_back(material.shape.is_cube() ? material.visibility : Visibility::empty);
+    shapes.push_back(material.shape);
+  }
+  MeshMaterials out{VisibilityTable(rows)};
+  out.cubes = VisibilityTable(cubes);
+  out.shapes = ShapeTable(shapes);
+  return out;
+}
+
 /// Returns a number that ascends by material, direction and layer.
 std::uint64_t plane_of(Quad quad) {
   const QuadFields q = unpack(quad);
@@ -41,10 +57,10 @@ std::uint64_t plane_of(Quad quad) {
 
 }  // namespace
 
-VisibilityTable visibility_of_cells(const WrittenBuild& source) {
+VisibilityTable visibility_as_cubes(const WrittenBuild& source) {
   RUNSTONE_ASSERT(source.materials.size() == source.build.palette().size());
   std::vector<Visibility> out = {Visibility::empty};  // untouched cells
-  for (const WrittenMaterial& material : source.materials) out.push_back(material.visibility);
+  for (const WrittenMaterial& material : source.materials) out.push_back(material.as_cube);
   return VisibilityTable(out);
 }
 
@@ -60,11 +76,18 @@ VoxelBox region_box(const Build& build, ModelRegionPos at) {
   return intersect(build.box(), box_of(ChunkCoord{at.x, at.y, at.z}, kModelRegionEdge));
 }
 
-RegionMesher::RegionMesher(const WrittenBuild& source)
-    : build_(source.build), visibility_(visibility_of_cells(source)) {}
+RegionMesher::RegionMesher(const WrittenBuild& source, PlaneSides sides)
+    : build_(source.build), materials_(materials_of_cells(source)), sides_(sides) {}
 
 bool RegionMesher::is_empty(const RunChunk& cells) const {
-  return cells.is_uniform() && visibility_[cells.runs.material(0)] == Visibility::empty;
+  return cells.is_uniform() && materials_.rows[cells.runs.material(0)] == Visibility::empty;
+}
+
+/// Returns true for the quad of a plane that another one shows from the other side.
+bool RegionMesher::is_second_side(Quad quad) const {
+  const QuadFields q = unpack(quad);
+  return q.face != 0 && q.direction == Direction::neg_x &&
+         materials_.shapes[q.material].shape.form == ShapeForm::crossed;
 }
 
 const std::vector<Quad>& RegionMesher::quads_of(ModelRegionPos at) {
@@ -80,18 +103,24 @@ const std::vector<Quad>& RegionMesher::quads_of(ModelRegionPos at) {
     beside[i] = cells_in(build_, layer);
     neighbours[i] = &*beside[i];
   }
-  mesh_rdm(cells, neighbours, visibility_, scratch_, mesh_);
+  mesh_rdm(cells, neighbours, materials_.cubes, scratch_, mesh_);
+  is_complete_ = mesh_shapes(cells, neighbours, materials_.rows, materials_.shapes, shape_scratch_,
+                             mesh_.shapes) &&
+                 is_complete_;
   quads_.reserve(mesh_.quad_count());
-  const auto append = [&](const std::vector<Quad>& pass) {
+  const auto append = [&](const std::vector<Quad>& cubes, const std::vector<Quad>& shapes) {
     const auto first = static_cast<std::ptrdiff_t>(quads_.size());
-    quads_.insert(quads_.end(), pass.begin(), pass.end());
+    quads_.insert(quads_.end(), cubes.begin(), cubes.end());
+    for (const Quad quad : shapes) {
+      if (sides_ == PlaneSides::both || !is_second_side(quad)) quads_.push_back(quad);
+    }
     std::sort(quads_.begin() + first, quads_.end(), [](Quad a, Quad b) {
       const std::uint64_t of_a = plane_of(a), of_b = plane_of(b);
       return of_a != of_b ? of_a < of_b : a < b;
     });
   };
-  append(mesh_.opaque.quads);
-  append(mesh_.transparent.quads);
+  append(mesh_.opaque.quads, mesh_.shapes.opaque);
+  append(mesh_.transparent.quads, mesh_.shapes.transparent);
   return quads_;
 }
 

@@ -58,8 +58,9 @@ class ShapeWalk {
     steps_ = {0, 0, 0 - e_.f, e_.f, 0 - e_.layer(), e_.layer()};
   }
 
-  /// Adds the faces of all shapes from run `first` on.
-  void walk(std::size_t first) {
+  /// Adds the faces of all shapes from run `first` on. Returns false if the chunk has
+  /// kShapeQuadsMax and more follow.
+  bool walk(std::size_t first) {
     std::uint32_t begin = first == 0 ? 0 : runs_.end(first - 1);
     for (std::size_t run = first; run < runs_.size(); ++run) {
       const std::uint32_t end = runs_.end(run);
@@ -67,10 +68,11 @@ class ShapeWalk {
       const std::uint16_t number = shapes_.number(material);
       if (number != 0 && visibility_[material] != Visibility::empty) {
         lists_ = &state_.lists.pass(visibility_[material] == Visibility::transparent);
-        if (!add_run(run, begin, end, material, prepared_.prepare(number))) return;
+        if (!add_run(run, begin, end, material, prepared_.prepare(number))) return false;
       }
       begin = end;
     }
+    return true;
   }
 
  private:
@@ -314,11 +316,12 @@ std::size_t find_shape(Runs runs, const ShapeTable& shapes) {
 }  // namespace
 }  // namespace shape_mesh
 
-void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
+bool mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
                  const VisibilityTable& visibility, const ShapeTable& shapes, ShapeScratch& scratch,
                  ShapeQuads& out) {
   out.clear();
-  if (shapes.empty()) return;
+  if (shapes.empty()) return true;
+  bool is_complete = true;
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     const std::size_t first = shape_mesh::find_shape(runs, shapes);
     if (first == runs.size()) return;
@@ -326,10 +329,11 @@ void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
     state.by_order[static_cast<std::size_t>(chunk.order)].begin(shapes, chunk.order);
     state.beyond.begin(chunk, neighbours);
     state.lists.begin();
-    shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
+    is_complete = shape_mesh::ShapeWalk<Runs>(runs, chunk, visibility, shapes, state).walk(first);
     state.lists.finish(chunk.order, out);
     if (state.lists.capacity() > shape_mesh::kScratchQuadsMax) state.lists = {};
   });
+  return is_complete;
 }
 
 }  // namespace runstone

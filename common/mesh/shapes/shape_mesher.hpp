@@ -32,7 +32,8 @@ class ShapeScratch {
 /// faces reach, shows the first ones in the order of its runs.
 inline constexpr std::size_t kShapeQuadsMax = std::size_t{1} << 21;
 
-/// Replaces `out` by the quads of the shapes of `chunk`.
+/// Replaces `out` by the quads of the shapes of `chunk`. Returns false if the chunk has more than
+/// kShapeQuadsMax faces, of which `out` has the first ones.
 ///   - A face on the border of its voxel is hidden by an opaque cube before it, by an opaque shape
 ///     whose side fills all that the face covers, and by a voxel of its own material whose side
 ///     does. Other faces are never hidden.
@@ -48,7 +49,7 @@ inline constexpr std::size_t kShapeQuadsMax = std::size_t{1} << 21;
 ///   - O(runs) if the chunk has no shape, and O(1) if no material has one;
 ///   - otherwise O(runs + voxels of shapes x their faces), and O(runs of the lines beside them);
 ///   - for each border that shapes touch, a layer of the neighbour or O(log runs) a voxel.
-void mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
+bool mesh_shapes(const RunChunk& chunk, const MeshNeighbours& neighbours,
                  const VisibilityTable& visibility, const ShapeTable& shapes, ShapeScratch& scratch,
                  ShapeQuads& out);
 

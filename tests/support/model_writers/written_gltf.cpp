@@ -117,7 +117,7 @@ class GltfReader {
     gltf_rule(elements > 0, "an accessor is empty");
     gltf_rule(at + stride * (elements - 1) + size * count <= view_bytes, "an accessor is too long");
     gltf_rule(accessor.at("type") == (count == 3 ? "VEC3" : "SCALAR"), "type");
-    const bool is_small = type == 5120 || type == 5121;
+    const bool is_small = type >= 5120 && type <= 5123;
     if (count == 3 && is_small) {
       gltf_rule(json_.at("extensionsRequired").at(0) == "KHR_mesh_quantization", "extension");
       gltf_rule(json_.at("extensionsUsed").at(0) == "KHR_mesh_quantization", "extension");
@@ -170,10 +170,12 @@ class GltfReader {
     const Json& material = json_.at("materials").at(primitive.at("material").get<std::size_t>());
     const std::string colour = colour_of(material);
     const bool is_blended = material.value("alphaMode", "OPAQUE") == "BLEND";
+    const bool is_double_sided = material.value("doubleSided", false);
     for (std::size_t i = 0; i < indices.size(); i += 3) {
       WrittenTriangle triangle;
       triangle.colour = colour;
       triangle.is_blended = is_blended;
+      triangle.is_double_sided = is_double_sided;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto vertex = static_cast<std::size_t>(indices[i + k]);
         gltf_rule(vertex < places.size() / 3, "an index names no vertex");

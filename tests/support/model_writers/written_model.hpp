@@ -20,6 +20,7 @@ struct WrittenTriangle {
   ModelPlace normal{};
   std::string colour;  // "r g b a", sRGB
   bool is_blended = false;
+  bool is_double_sided = false;  // glTF only
 };
 
 struct WrittenModel {

@@ -247,6 +247,36 @@ TEST_CASE("no level follows a single voxel", "[model_writers]") {
   CHECK(levels_of({4000, 1, 1}) == kModelLevelsMax);
 }
 
+TEST_CASE("coarser levels take a shape for a cube if it fills half of its voxel, and else leave it out",
+          "[model_writers][shapes]") {
+  std::vector<BuildMaterial> materials = {file_material("plant", "", {10, 200, 10, 255}),
+                                          file_material("slab", "", {90, 90, 90, 255}),
+                                          file_material("stone", "", {50, 50, 50, 255})};
+  materials[0].row.shape = {ShapeForm::crossed, {{{1, 0, 1}, {15, 12, 15}}}};
+  materials[1].row.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
+  const auto number = [](VoxelPos at) {
+    return static_cast<std::uint16_t>(at.y == 1 ? 3 : at.y > 3 ? 0 : at.x < 4 ? 1 : 2);
+  };
+  const FileBuild build = file_build({9, 5, 3}, materials, number);
+  FileBuild cubes = build;
+  cubes.materials[0].row = file_material("air", "", {0, 0, 0, 0}).row;
+  cubes.materials[1].row.shape = {};
+  ModelWriting writing;
+  writing.levels = 2;
+  const WrittenModel model = gltf_levels(".glb", build, writing);
+  const WrittenModel of_cubes = gltf_levels(".glb", cubes, writing);
+  REQUIRE(model.levels.size() == 2);
+  CHECK(triangle_texts(model, 1) != triangle_texts(of_cubes, 1));
+  for (std::size_t level = 0; level < 2; ++level)
+    CHECK(triangle_texts(model.levels[level], 1) == triangle_texts(of_cubes.levels[level], 1));
+  const auto coarser = coarser_level(build);
+  REQUIRE(coarser.has_value());
+  CHECK(triangle_texts(gltf_levels(".glb", *coarser, {}), 0.5) ==
+        triangle_texts(model.levels[0], 1));
+  const FileBuild plants = file_build({4, 4, 4}, materials, [](VoxelPos) { return 1; });
+  CHECK(gltf_levels(".glb", plants, writing).levels.empty());
+}
+
 TEST_CASE("levels count for the size of a file", "[model_writers]") {
   // 300,000 separate voxels of 24 vertices, in the next level as many: 280 MB of text each.
   const FileBuild noise =
