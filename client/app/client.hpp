@@ -112,7 +112,7 @@ class Client {
   bool shows_ground_;           // the outlines of protected ground
   bool end_requested_ = false;  // by the user or a signal
   bool has_logged_antialiasing_ = false;
-  bool is_left_ = false;        // the user goes back to the title screen
+  bool is_left_ = false;  // the user goes back to the title screen
 };
 
 }  // namespace runstone

@@ -22,8 +22,9 @@ void add_night(DayLight& out, float height, double angle) {
 void add_clouds(DayLight& out) {
   out.cloud_cover = 1;
   const glm::vec3 sky = 0.5F * (out.zenith + out.horizon);
-  out.cloud_lit = 0.55F * out.ambient_up + 0.42F * out.sun_colour + 0.35F * sky;
-  out.cloud_shade = 0.45F * out.ambient_up + 0.16F * out.sun_colour + 0.30F * sky;
+  const float bright = 1 - 0.5F * out.night;
+  out.cloud_lit = bright * (0.45F * out.ambient_up + 0.75F * out.sun_colour + 0.5F * sky);
+  out.cloud_shade = bright * (0.35F * out.ambient_up + 0.30F * out.sun_colour + 0.5F * sky);
 }
 
 void add_haze(DayLight& out, float far, bool has_far_ground, float dusk) {
@@ -58,8 +59,8 @@ DayLight day_light(double time_of_day, double far, bool has_far_ground) {
   out.is_moon = is_moon;
   out.sun_colour = strength * (is_moon ? glm::vec3{0.13F, 0.16F, 0.23F} : sun);
 
-  out.zenith = glm::mix(glm::vec3{0.006F, 0.010F, 0.030F}, glm::vec3{0.10F, 0.25F, 0.60F}, day);
-  out.horizon = glm::mix(glm::vec3{0.022F, 0.032F, 0.060F}, glm::vec3{0.55F, 0.70F, 0.88F}, day);
+  out.zenith = glm::mix(glm::vec3{0.004F, 0.008F, 0.024F}, glm::vec3{0.10F, 0.25F, 0.60F}, day);
+  out.horizon = glm::mix(glm::vec3{0.014F, 0.022F, 0.044F}, glm::vec3{0.55F, 0.70F, 0.88F}, day);
   out.horizon = glm::mix(out.horizon, glm::vec3{0.85F, 0.42F, 0.20F}, 0.75F * dusk);
   out.zenith = glm::mix(out.zenith, glm::vec3{0.16F, 0.17F, 0.36F}, 0.5F * dusk);
   out.nadir = 0.75F * out.horizon;

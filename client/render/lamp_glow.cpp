@@ -31,21 +31,21 @@ float brightest(const glm::vec3& colour) { return std::max({colour.r, colour.g, 
 
 std::vector<LampGlow> lamp_glows(const RunChunk& codes) {
   std::map<std::tuple<int, int, int>, LampCell> cells;
-  for_each_light_box(codes, [&](const std::array<int, 3>& first, const std::array<int, 3>& last,
-                                LightCode code) {
-    const glm::vec3 colour = linear_emission(code);
-    if (brightest(colour) <= 0) return;
-    for (int z = first[2]; z < last[2]; ++z) {
-      for (int y = first[1]; y < last[1]; ++y) {
-        for (int x = first[0]; x < last[0]; ++x) {
-          LampCell& cell = cells[{x / kCell, y / kCell, z / kCell}];
-          cell.places += glm::vec3(x, y, z) + 0.5F;
-          cell.colours += colour;
-          ++cell.count;
+  for_each_light_box(
+      codes, [&](const std::array<int, 3>& first, const std::array<int, 3>& last, LightCode code) {
+        const glm::vec3 colour = linear_emission(code);
+        if (brightest(colour) <= 0) return;
+        for (int z = first[2]; z < last[2]; ++z) {
+          for (int y = first[1]; y < last[1]; ++y) {
+            for (int x = first[0]; x < last[0]; ++x) {
+              LampCell& cell = cells[{x / kCell, y / kCell, z / kCell}];
+              cell.places += glm::vec3(x, y, z) + 0.5F;
+              cell.colours += colour;
+              ++cell.count;
+            }
+          }
         }
-      }
-    }
-  });
+      });
   std::vector<LampGlow> out;
   for (const auto& [key, cell] : cells) {
     const auto count = static_cast<float>(cell.count);

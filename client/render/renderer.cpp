@@ -182,9 +182,12 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   s.markers.draw(contents.markers, view.eye, view.clip);
   DepthRange::reset();
   s.finish_picture(edges, width, height);
-  return {drawn.chunks_drawn,    drawn.chunks_culled,
-          drawn.quads_drawn,     s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes(), s.terrain.has_transparent() || !contents.ghosts.empty(),
+  return {drawn.chunks_drawn,
+          drawn.chunks_culled,
+          drawn.quads_drawn,
+          s.terrain.quad_bytes(),
+          s.terrain.gpu_bytes(),
+          s.terrain.has_transparent() || !contents.ghosts.empty(),
           drawn.tile_parts_drawn,
           contents.look.antialiasing == Antialiasing::msaa && edges != Antialiasing::msaa};
 }

@@ -41,7 +41,7 @@ struct RenderStats {
   /// ghosts.
   bool is_animated = false;
   std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
-  bool lacks_msaa = false;  // FXAA replaced the MSAA that was wanted
+  bool lacks_msaa = false;             // FXAA replaced the MSAA that was wanted
 };
 
 class Renderer {

@@ -12,7 +12,7 @@ namespace {
 
 /// The texture of the clouds covers this many voxels. They are at this height, or this far above an
 /// eye that is higher, and drift along x.
-constexpr double kCloudPeriod = 6'144, kCloudHeight = 320, kCloudsAboveEye = 140;
+constexpr double kCloudPeriod = 4'096, kCloudHeight = 320, kCloudsAboveEye = 140;
 constexpr double kDriftASecond = 0.8;  // voxels
 
 // One triangle covers the screen, at the far plane. The inverse of view and projection gives the
@@ -31,17 +31,16 @@ constexpr const char* kSkyVertexShader =
 constexpr const char* kSkyFragmentShader =
     "in vec3 direction;\n"
     "out vec4 fragment;\n"
-    "uniform sampler2D noise;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_DISC_GLSL RUNSTONE_STARS_GLSL
-        RUNSTONE_CLOUDS_GLSL
+    "uniform sampler2D noise;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_DISC_GLSL
+        RUNSTONE_STARS_GLSL RUNSTONE_CLOUDS_GLSL
     "void main() {\n"
     "  vec3 d = normalize(direction);\n"
     "  vec3 c = sky(d);\n"
-    "  if (stars > 0.0) c += starlight(d) * (stars * smoothstep(0.0, 0.20, d.y));\n"
-    "  c = with_disc(c, d);\n"
-    "  if (cloud_cover > 0.0) {\n"
-    "    vec4 cloud = clouds(d);\n"
-    "    c = mix(c, cloud.rgb, cloud.a);\n"
-    "  }\n"
+    "  vec4 cloud = vec4(0.0);\n"
+    "  if (cloud_cover > 0.0) cloud = clouds(d);\n"
+    "  float open = 1.0 - cloud.a;\n"
+    "  if (stars > 0.0) c += starlight(d) * (stars * open * smoothstep(0.0, 0.20, d.y));\n"
+    "  c = mix(with_disc(c, d), cloud.rgb, cloud.a);\n"
     "  fragment = vec4(display(c), 1.0);\n"
     "}\n";
 

@@ -12,10 +12,10 @@ namespace runstone {
 
 /// The view that the sky depends on.
 struct SkyView {
-  glm::mat4 clip{1};    // maps eye-relative coordinates to clip space
-  glm::dvec3 eye{0};    // world voxels
+  glm::mat4 clip{1};     // maps eye-relative coordinates to clip space
+  glm::dvec3 eye{0};     // world voxels
   double pixel = 0.002;  // the side of a pixel at distance 1
-  double seconds = 0;   // by which the clouds have drifted
+  double seconds = 0;    // by which the clouds have drifted
   bool has_clouds = true;
 };
 

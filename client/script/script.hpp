@@ -261,13 +261,13 @@ struct FileOfClipboard {
 };
 struct Quit {};
 
-using Step =
-    std::variant<Move, Walk, Roam, Look, TimeOfDay, SmoothEdges, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
-                 Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests,
-                 HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click, ShowInterface,
-                 Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback, ShowLibrary, ListBuilds,
-                 TakeBuild, AddBuild, ChooseTool, SetParameter, AimAt, Hold, UseTool, Select,
-                 SelectionEdit, SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
+using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, SmoothEdges, LookAt, Set, Box, Sphere,
+                          Stroke, Copy, Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect,
+                          Repeat, End, Burst, Digests, HistoryRequest, Say, WaitChat, Command,
+                          PressKey, Type, Click, ShowInterface, Inspect, ShowMap, ZoomMap,
+                          ShowTimeline, Rollback, ShowLibrary, ListBuilds, TakeBuild, AddBuild,
+                          ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
+                          SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
 
 }  // namespace script
 
