@@ -37,6 +37,11 @@ void add_octave(std::vector<double>& to, unsigned side, unsigned cells, double s
   }
 }
 
+/// Most values of noise are near the middle. Returns a value that is farther from it.
+std::uint8_t with_contrast(std::uint8_t value) {
+  return static_cast<std::uint8_t>(std::clamp(128 + (value - 128) * 9 / 5, 0, 255));
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> repeating_noise(unsigned side, unsigned cells, std::uint64_t seed) {
@@ -60,7 +65,7 @@ NoiseTexture::NoiseTexture() : texture_(GlTexture::make()) {
   std::vector<std::uint8_t> texels;
   texels.reserve(2 * clouds.size());
   for (std::size_t i = 0; i < clouds.size(); ++i)
-    texels.insert(texels.end(), {clouds[i], tints[i]});
+    texels.insert(texels.end(), {clouds[i], with_contrast(tints[i])});
   glBindTexture(GL_TEXTURE_2D, texture_.get());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RG8, kSide, kSide, 0, GL_RG, GL_UNSIGNED_BYTE, texels.data());

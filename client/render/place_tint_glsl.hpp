@@ -19,7 +19,7 @@ namespace runstone {
   "vec3 by_place() {\n"                                                           \
   "  float natural = look.a < 1.0 && look.b == 0.0 ? 5.0 * look.g - 0.6 : 0.0;\n" \
   "  float spot = texture(noise, voxel.xz * (scale / 2048.0)).g - 0.5;\n"         \
-  "  return 1.0 + (spot * clamp(natural, 0.0, 1.0)) * vec3(0.70, 0.34, -0.16);\n" \
+  "  return 1.0 + (spot * clamp(natural, 0.0, 1.0)) * vec3(0.95, 0.42, -0.25);\n" \
   "}\n"
 
 }  // namespace runstone

@@ -182,14 +182,16 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   s.markers.draw(contents.markers, view.eye, view.clip);
   DepthRange::reset();
   s.finish_picture(edges, width, height);
-  return {drawn.chunks_drawn,
-          drawn.chunks_culled,
-          drawn.quads_drawn,
-          s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes(),
-          s.terrain.has_transparent() || !contents.ghosts.empty(),
-          drawn.tile_parts_drawn,
-          contents.look.antialiasing == Antialiasing::msaa && edges != Antialiasing::msaa};
+  RenderStats out;
+  out.chunks_drawn = drawn.chunks_drawn;
+  out.chunks_culled = drawn.chunks_culled;
+  out.quads_drawn = drawn.quads_drawn;
+  out.quad_bytes = s.terrain.quad_bytes();
+  out.gpu_bytes = s.terrain.gpu_bytes();
+  out.is_animated = s.terrain.has_transparent() || !contents.ghosts.empty();
+  out.lacks_msaa = contents.look.antialiasing == Antialiasing::msaa && edges != Antialiasing::msaa;
+  out.tile_parts_drawn = drawn.tile_parts_drawn;
+  return out;
 }
 
 void Renderer::draw_overlay(const OverlayFrame& overlay) {

@@ -20,10 +20,8 @@ class GroundScene {
   static constexpr std::int32_t kEdge = 32;
   static constexpr int kWidth = 160, kHeight = 120;
 
-  explicit GroundScene(MaterialTable materials, ChunkCoord at = {0, 0, 0})
-      : materials_(std::move(materials)),
-        at_(at),
-        chunk_(uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy)) {
+  explicit GroundScene(MaterialTable materials)
+      : materials_(std::move(materials)), chunk_(uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy)) {
     std::string tried;
     context_ = make_egl_surfaceless_context(tried);
     if (!context_) {
@@ -31,10 +29,7 @@ class GroundScene {
       return;
     }
     use_loader(context_->loader());
-    const VoxelPos origin = origin_of(at_, kEdge);
-    camera.x = origin.x + 16;
-    camera.y = origin.y + 10;
-    camera.z = origin.z + 16;
+    place_camera();
     contents.look.quality = Quality::medium;
   }
   bool draws() const { return context_ != nullptr; }
@@ -42,6 +37,18 @@ class GroundScene {
   void use_loader(GlContextLoader loader) {
     renderer_.reset();
     renderer_ = std::make_unique<Renderer>(loader);
+    renderer_->set_materials(materials_);
+    upload();
+  }
+  /// Moves the chunk and the camera.
+  void move_to(ChunkCoord at) {
+    renderer_->remove({0, at_});
+    at_ = at;
+    place_camera();
+    upload();
+  }
+  void set_materials(MaterialTable materials) {
+    materials_ = std::move(materials);
     renderer_->set_materials(materials_);
     upload();
   }
@@ -72,6 +79,12 @@ class GroundScene {
   RenderStats stats;  // of the last picture
 
  private:
+  void place_camera() {
+    const VoxelPos origin = origin_of(at_, kEdge);
+    camera.x = origin.x + 16;
+    camera.y = origin.y + 10;
+    camera.z = origin.z + 16;
+  }
   void upload() {
     RdmScratch scratch;
     ChunkMesh mesh;
@@ -80,7 +93,7 @@ class GroundScene {
   }
 
   MaterialTable materials_;
-  ChunkCoord at_;
+  ChunkCoord at_{0, 0, 0};
   RunChunk chunk_;
   std::unique_ptr<GlContext> context_;
   std::unique_ptr<Renderer> renderer_;  // destroyed before its context
