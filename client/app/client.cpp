@@ -93,6 +93,7 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
   if (script != nullptr) runner_.emplace(*script, actions_);
   if (options_.benchmark) benchmark_.emplace(*options_.benchmark);
   pipeline_.look().set_quality(options_.quality);
+  pipeline_.look().set_antialiasing(options_.antialiasing);
   network_.start(play_.started_us());
 }
 
@@ -125,6 +126,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     handle_input(now_us);
     step_menu(now_us);
     pipeline_.take_drawn();
+    log_antialiasing();
     for (const std::string& failed : pipeline_.take_unwritten()) {
       spdlog::warn("no screenshot: {}", failed);
       hud_.notify("no picture: " + failed);
@@ -282,10 +284,20 @@ std::array<int, 2> Client::frame_size() const {
   return window_ ? window_->framebuffer_size() : std::array{options_.width, options_.height};
 }
 
-void Client::use_quality() {
-  if (menu_ == nullptr || !menu_->settings() || options_.given.quality) return;
+void Client::use_look() {
+  if (menu_ == nullptr || !menu_->settings()) return;
+  LookControl& look = pipeline_.look();
+  if (!options_.given.antialiasing) look.set_antialiasing(antialiasing_of(settings()));
   const auto quality = quality_of(settings());
-  if (quality != pipeline_.look().quality()) pipeline_.look().set_quality(quality);
+  if (!options_.given.quality && quality != look.quality()) look.set_quality(quality);
+}
+
+void Client::log_antialiasing() {
+  const auto& frames = pipeline_.recent_frames();
+  if (has_logged_antialiasing_ || frames.empty()) return;
+  if (!frames.back().stats.lacks_msaa) return;
+  has_logged_antialiasing_ = true;
+  spdlog::warn("the OpenGL driver has no MSAA: edges are smoothed by FXAA");
 }
 
 const ClientSettings& Client::settings() const {
@@ -322,7 +334,7 @@ HudScene Client::hud_scene() const {
 void Client::draw(TimeUs now_us) {
   if (window_) play_.keep_pace(window_->has_focus(), hud_.is_moving(), now_us);
   if (!pipeline_.is_frame_due(now_us)) return;
-  use_quality();
+  use_look();
   FrameOrder order =
       play_.frame({field_of_view(), !options_.headless, shows_ground_, frame_size()}, now_us);
   const bool has_menu = menu_ != nullptr && menu_->is_open();

@@ -67,8 +67,10 @@ class Client {
   /// Returns the size of a frame, in pixels.
   std::array<int, 2> frame_size() const;
   HudScene hud_scene() const;
-  /// Draws with the quality of the settings if the player changed them in this world.
-  void use_quality();
+  /// Draws as the settings say if the player changed them in this world.
+  void use_look();
+  /// Logs once that FXAA replaces an MSAA that the driver does not have.
+  void log_antialiasing();
   /// Returns the settings in force.
   const ClientSettings& settings() const;
   PlaySettings play_settings() const;
@@ -112,7 +114,8 @@ class Client {
   bool shows_players_ = false;  // the key for the list of players is held
   bool shows_ground_;           // the outlines of protected ground
   bool end_requested_ = false;  // by the user or a signal
-  bool is_left_ = false;        // the user goes back to the title screen
+  bool has_logged_antialiasing_ = false;
+  bool is_left_ = false;  // the user goes back to the title screen
 };
 
 }  // namespace runstone

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "client/display/look_control.hpp"
+#include "client/render/antialiasing.hpp"
 #include "client/session/join_check.hpp"
 #include "common/core/day_time.hpp"
 #include "common/core/tile_keys.hpp"
@@ -35,7 +36,7 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 struct RawOptions {
   std::string address, link, size, encoding = "auto", authorities, password_file;
   unsigned view = ClientOptions{}.view_radius, view_v = 0, far_levels = 0;
-  std::string time, quality = "auto", benchmark;
+  std::string time, quality = "auto", antialiasing = "auto", benchmark;
   bool no_render = false, no_cache = false, insecure = false;
 };
 
@@ -126,6 +127,9 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--quality", raw.quality,
                  "effort of the picture; auto measures frames, off screen it is high")
       ->check(CLI::IsMember({"low", "medium", "high", "auto"}));
+  app.add_option("--antialiasing", raw.antialiasing,
+                 "smooth edges; auto is msaa on a GPU, and off if the processor draws")
+      ->check(CLI::IsMember({"off", "fxaa", "msaa", "auto"}));
   app.add_option("--benchmark", raw.benchmark,
                  "fly this camera path (docs/client.md), print how long frames took, then end")
       ->check(CLI::ExistingFile);
@@ -203,7 +207,8 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
   if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);
   out.given = {app.count("--name") != 0,          app.count("--view") != 0,
                app.count("--view-vertical") != 0, app.count("--memory-mib") != 0,
-               app.count("--quality") != 0,       app.count("--far-levels") != 0};
+               app.count("--quality") != 0,       app.count("--far-levels") != 0,
+               app.count("--antialiasing") != 0};
   out.view_radius = static_cast<std::uint8_t>(raw.view);
   out.view_radius_v = static_cast<std::uint8_t>(
       app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);
@@ -221,6 +226,7 @@ void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
                                              : kEncodingsKnown;
   out.time_of_day = parse_day_time(raw.time);
   out.quality = parse_quality(raw.quality);
+  out.antialiasing = parse_antialiasing(raw.antialiasing).value_or(out.antialiasing);
   if (!raw.benchmark.empty()) {
     if (!out.render) throw CLI::ValidationError("--benchmark", "needs a renderer");
     const auto text = read_text_file(raw.benchmark, kTextFileBytesMax);

@@ -26,7 +26,7 @@ struct ClientOptions {
   /// window.
   struct {
     bool name = false, view = false, view_vertical = false, memory = false, quality = false;
-    bool far_levels = false;
+    bool far_levels = false, antialiasing = false;
   } given;
   std::optional<TlsContext> tls = TlsContext::client();  // nullopt: no encryption
   std::string name = "builder";
@@ -49,6 +49,7 @@ struct ClientOptions {
   std::string screenshot_dir = ".";
   std::optional<double> time_of_day;  // as FrameLook::time_of_day; nullopt: that of the world
   std::optional<Quality> quality;     // nullopt: automatic
+  Antialiasing antialiasing = Antialiasing::automatic;
   std::optional<FlightPath> benchmark;
   bool show_protected = false;  // outline protected boxes from the start
   bool no_textures = false;     // the pictures of worlds are not loaded

@@ -62,6 +62,11 @@ void ScriptActions::set_time_of_day(double share) {
   play_.pipeline().moved();
 }
 
+void ScriptActions::set_antialiasing(Antialiasing antialiasing) {
+  play_.pipeline().look().set_antialiasing(antialiasing);
+  play_.pipeline().moved();
+}
+
 Result<Material, std::string> ScriptActions::material(std::string_view name) const {
   const MaterialTable& materials = play_.pipeline().materials();
   std::size_t id = 0;

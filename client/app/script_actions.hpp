@@ -27,6 +27,7 @@ class ScriptActions final : public ScriptHost {
   void move_to(const WorldPos& eye) override;
   void look(double yaw, double pitch) override;
   void set_time_of_day(double share) override;
+  void set_antialiasing(Antialiasing antialiasing) override;
   Result<Material, std::string> material(std::string_view name) const override;
   std::optional<Material> shown_at(VoxelPos at) const override {
     return session_.replica().shown_at(at);

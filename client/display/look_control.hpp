@@ -33,6 +33,8 @@ class LookControl {
   /// Sets the quality. nullopt: automatic.
   void set_quality(std::optional<Quality> quality);
   std::optional<Quality> quality() const { return fixed_; }
+  void set_antialiasing(Antialiasing antialiasing) { look_.antialiasing = antialiasing; }
+  Antialiasing antialiasing() const { return look_.antialiasing; }
 
   /// Returns the name of the level that frames have now, such as "auto: medium" or "auto: low at
   /// 50 %".

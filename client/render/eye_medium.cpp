@@ -20,7 +20,8 @@ glm::vec3 linear_colour(const MaterialColour& colour) {
 void set_fog(DayLight& light, const glm::vec3& colour, float range) {
   light.zenith = light.horizon = light.nadir = colour;
   light.glow = glm::vec3{0};
-  light.fog_start = 0;
+  light.stars = light.cloud_cover = light.haze = 0;
+  light.fog_start = light.fog_fade = 0;
   light.fog_end = std::min(light.fog_end, range);
 }
 
@@ -37,6 +38,7 @@ DayLight light_inside(const MaterialInfo& material, const DayLight& outside,
         glm::mix(glm::vec3{1}, colour / std::max({colour.r, colour.g, colour.b, 0.01F}), kTint);
     out.sun_colour *= tint;
     out.ambient_up *= tint;
+    out.ambient_side *= tint;
     out.ambient_down *= tint;
   } else if (material.visibility == Visibility::opaque && material.shape.is_cube()) {
     // As bright as it is at night, whatever the hour: it is as dark as a cave.

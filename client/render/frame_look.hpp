@@ -1,4 +1,4 @@
-// FrameLook: the time of day, the effort and the resolution with which a frame is drawn.
+// FrameLook: the time of day, the effort, the edges and the resolution with which a frame is drawn.
 #pragma once
 #include <cstdint>
 
@@ -10,14 +10,22 @@ enum class Quality : std::uint8_t {
   high,    // all light, and shadows with soft edges
 };
 
+enum class Antialiasing : std::uint8_t {
+  automatic,  // MSAA on a GPU; off if the processor draws
+  off,
+  fxaa,  // the finished picture is smoothed along its edges
+  msaa,  // several samples a pixel
+};
+
 struct FrameLook {
   /// The time of day as a share of a day: 0 is midnight, 0.25 sunrise, 0.5 noon, 0.75 sunset.
   /// Values outside 0 .. 1 wrap around.
   double time_of_day = 0.4;
-  /// Seconds by which moving surfaces advance: water and the pulse of ghosts. Pictures of the same
+  /// Seconds by which moving things advance: water, clouds and the pulse of ghosts. Pictures of the same
   /// view with equal values are equal.
   double seconds = 0;
   Quality quality = Quality::high;
+  Antialiasing antialiasing = Antialiasing::off;
   /// The world is drawn with this share of the frame's width and height, and stretched. The user
   /// interface is not. 0 < scale <= 1.
   double scale = 1;

@@ -1,5 +1,5 @@
-// FrameTarget: the off-screen framebuffer of a frame. Its depth is a texture, which water reads to
-// know how deep it is.
+// FrameTarget: the off-screen framebuffer of a frame. Its depth is a texture, which water and the
+// glow of lamps read to know how deep they are, and so is its colour, which FXAA reads.
 #pragma once
 #include "client/render/gl_handle.hpp"
 
@@ -14,6 +14,7 @@ class FrameTarget {
   /// and must compare it itself.
   void bind_all() const { glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get()); }
   void bind_colour() const { glBindFramebuffer(GL_FRAMEBUFFER, colour_framebuffer_.get()); }
+  GLuint colour() const { return colour_.get(); }
   GLuint depth() const { return depth_.get(); }
   GLuint framebuffer() const { return framebuffer_.get(); }
   int width() const { return width_; }
@@ -24,8 +25,7 @@ class FrameTarget {
 
   int width_ = 0, height_ = 0;
   GlFramebuffer framebuffer_, colour_framebuffer_;
-  GlRenderbuffer colour_;
-  GlTexture depth_;
+  GlTexture colour_, depth_;
 };
 
 }  // namespace runstone

@@ -15,11 +15,18 @@ void set_light(const GlProgram& program, const DayLight& light) {
   colour("nadir", light.nadir);
   colour("glow", light.glow);
   colour("ambient_up", light.ambient_up);
+  colour("ambient_side", light.ambient_side);
   colour("ambient_down", light.ambient_down);
   colour("dark", light.dark);
-  glUniform1f(glGetUniformLocation(program.get(), "lamps"), light.lamps);
-  glUniform1f(glGetUniformLocation(program.get(), "exposure"), light.exposure);
-  glUniform2f(glGetUniformLocation(program.get(), "fog_range"), light.fog_start, light.fog_end);
+  const auto number = [&program](const char* name, float value) {
+    glUniform1f(glGetUniformLocation(program.get(), name), value);
+  };
+  number("lamps", light.lamps);
+  number("exposure", light.exposure);
+  number("night", light.night);
+  number("eye_height", light.eye_height);
+  glUniform4f(glGetUniformLocation(program.get(), "fog"), light.fog_start, light.fog_fade,
+              light.fog_end, light.haze);
 }
 
 }  // namespace runstone

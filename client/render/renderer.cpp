@@ -4,13 +4,20 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
+#include "client/render/antialiasing.hpp"
 #include "client/render/body_painter.hpp"
 #include "client/render/eye_medium.hpp"
 #include "client/render/frame_target.hpp"
+#include "client/render/fxaa_painter.hpp"
 #include "client/render/gl_handle.hpp"
+#include "client/render/glow_painter.hpp"
 #include "client/render/marker_painter.hpp"
+#include "client/render/multisample_target.hpp"
+#include "client/render/noise_texture.hpp"
 #include "client/render/overlay_painter.hpp"
 #include "client/render/sky_painter.hpp"
 #include "client/render/terrain.hpp"
@@ -35,6 +42,11 @@ glm::mat4 clip_of(const Camera& camera, const DepthRange& depth, int width, int 
   return depth.projection(camera.fov_y, static_cast<double>(width) / height) * view;
 }
 
+AntialiasingMeans antialiasing_means() {
+  const auto* const name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return {name != nullptr && is_software_renderer(name), samples_max()};
+}
+
 /// Loads the functions of OpenGL before the members of Renderer::State use them.
 struct LoadedGl {
   explicit LoadedGl(GlContextLoader loader) { load_gl(loader); }
@@ -46,12 +58,24 @@ struct Renderer::State {
   explicit State(GlContextLoader loader) : gl(loader) {}
 
   LoadedGl gl;
-  /// Returns the target that has the finished frame.
-  const FrameTarget& frame() const { return is_scaled ? stretched : target; }
+  /// Returns the antialiasing of a frame, and prepares the target with samples for it.
+  Antialiasing prepare_edges(const FrameLook& look, int width, int height);
+  /// Binds the framebuffer that the world is drawn into.
+  void bind_world() const { has_samples ? samples.bind() : target.bind_all(); }
+  /// Mixes, smooths and stretches what was drawn, and sets `finished`.
+  void finish_picture(Antialiasing edges, int width, int height);
 
-  FrameTarget target;     // of the world
+  FrameTarget target;         // of the world
+  MultisampleTarget samples;  // of the world, before it is mixed into `target`, if has_samples
+  bool has_samples = false;
+  FrameTarget smoothed;   // `target` after FXAA
   FrameTarget stretched;  // of the world, in the size of the frame, if `target` has another one
-  bool is_scaled = false;
+  const FrameTarget* finished = &target;  // the one of them that has the finished frame
+  AntialiasingMeans means = antialiasing_means();
+  std::optional<FxaaPainter> fxaa;  // made when a frame needs it
+  NoiseTexture noise;
+  GlowPainter glow_painter;
+  std::vector<GlowInView> glows;  // of the present frame
   SkyPainter sky;
   Terrain terrain;
   BodyPainter bodies;
@@ -59,6 +83,35 @@ struct Renderer::State {
   MaterialTable materials;
   OverlayPainter overlay;
 };
+
+Antialiasing Renderer::State::prepare_edges(const FrameLook& look, int width, int height) {
+  Antialiasing out = usable(look.antialiasing, look.quality, means);
+  has_samples = out == Antialiasing::msaa &&
+                samples.prepare(width, height, std::min(kSamplesWanted, means.samples_max));
+  if (out == Antialiasing::msaa && !has_samples) {
+    means.samples_max = 0;  // the driver has more than it can give
+    out = usable(look.antialiasing, look.quality, means);
+  }
+  return out;
+}
+
+void Renderer::State::finish_picture(Antialiasing edges, int width, int height) {
+  if (has_samples) samples.copy_colour(target);
+  finished = &target;
+  if (edges == Antialiasing::fxaa) {
+    if (!fxaa) fxaa.emplace();
+    smoothed.bind(target.width(), target.height());
+    fxaa->draw(target);
+    finished = &smoothed;
+  }
+  if (target.width() == width && target.height() == height) return;
+  const FrameTarget& from = *finished;
+  stretched.bind(width, height);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer());
+  glBlitFramebuffer(0, 0, from.width(), from.height(), 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                    GL_LINEAR);
+  finished = &stretched;
+}
 
 Renderer::Renderer(GlContextLoader loader) : state_(std::make_unique<State>(loader)) {}
 Renderer::~Renderer() = default;
@@ -106,38 +159,48 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
     view.light =
         light_inside(s.materials[contents.at_eye], view.light, s.terrain.light_at(view, view.eye));
   }
-  s.target.bind(scaled(width), scaled(height));
+  view.light.eye_height = static_cast<float>(camera.y);
+  const int world_width = scaled(width), world_height = scaled(height);
+  const Antialiasing edges = s.prepare_edges(contents.look, world_width, world_height);
+  s.target.bind(world_width, world_height);
+  s.bind_world();
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDisable(GL_CULL_FACE);
-  s.sky.draw(view.clip, view.light);
-  const TerrainStats drawn = s.terrain.draw_opaque(view);
+  const TerrainStats drawn = s.terrain.draw_opaque(view, s.noise);
   s.bodies.draw(contents.bodies, view.eye, view.clip, view.light,
                 [&](const glm::dvec3& at) { return s.terrain.light_at(view, at); });
-  if (s.terrain.has_transparent()) {
-    const bool reads_depth = view.look.quality != Quality::low;
-    if (reads_depth) s.target.bind_colour();
-    s.terrain.draw_transparent(view, s.target.depth());
-    s.target.bind_all();
+  const bool is_low = view.look.quality == Quality::low;
+  s.sky.draw({view.clip, view.eye, view.pixel, view.look.seconds, !is_low}, view.depth, view.light,
+             s.noise);
+  s.glows.clear();
+  if (!is_low) {
+    s.terrain.glows().find(view.eye, view.light.fog_end, GlowPainter::kGlowsMax, s.glows);
+    if (s.terrain.has_transparent() || !s.glows.empty())
+      s.has_samples ? s.samples.copy_depth(s.target) : s.target.bind_colour();
   }
+  s.terrain.draw_transparent(view, s.target.depth());
+  s.glow_painter.draw(s.glows, view.clip, view.depth, view.light, s.target.depth());
+  s.bind_world();
   s.terrain.draw_inspection(view, contents.inspection);
   s.terrain.draw_ghosts(view, contents.ghosts);
   s.markers.draw(contents.markers, view.eye, view.clip);
   DepthRange::reset();
-  s.is_scaled = s.target.width() != width || s.target.height() != height;
-  if (s.is_scaled) {
-    s.stretched.bind(width, height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, s.target.framebuffer());
-    glBlitFramebuffer(0, 0, s.target.width(), s.target.height(), 0, 0, width, height,
-                      GL_COLOR_BUFFER_BIT, GL_LINEAR);
-  }
-  return {drawn.chunks_drawn,     drawn.chunks_culled,
-          drawn.quads_drawn,      s.terrain.quad_bytes(),
-          s.terrain.gpu_bytes(),  s.terrain.has_transparent() || !contents.ghosts.empty(),
-          drawn.tile_parts_drawn, static_cast<std::uint32_t>(s.terrain.textures_left_out())};
+  s.finish_picture(edges, width, height);
+  RenderStats out;
+  out.chunks_drawn = drawn.chunks_drawn;
+  out.chunks_culled = drawn.chunks_culled;
+  out.quads_drawn = drawn.quads_drawn;
+  out.quad_bytes = s.terrain.quad_bytes();
+  out.gpu_bytes = s.terrain.gpu_bytes();
+  out.is_animated = s.terrain.has_transparent() || !contents.ghosts.empty();
+  out.lacks_msaa = contents.look.antialiasing == Antialiasing::msaa && edges != Antialiasing::msaa;
+  out.tile_parts_drawn = drawn.tile_parts_drawn;
+  out.textures_left_out = static_cast<std::uint32_t>(s.terrain.textures_left_out());
+  return out;
 }
 
 void Renderer::draw_overlay(const OverlayFrame& overlay) {
-  const FrameTarget& target = state_->frame();
+  const FrameTarget& target = *state_->finished;
   target.bind_all();
   glViewport(0, 0, target.width(), target.height());
   state_->overlay.draw(overlay, target.width(), target.height());
@@ -156,7 +219,7 @@ void Renderer::finish() {
 }
 
 Image Renderer::read_image() {
-  const FrameTarget& target = state_->frame();
+  const FrameTarget& target = *state_->finished;
   if (target.width() == 0) throw std::runtime_error("read_image before the first draw");
   Image image{target.width(), target.height(), {}};
   // OpenGL ES reads pixels with alpha only.
@@ -174,7 +237,7 @@ Image Renderer::read_image() {
 }
 
 void Renderer::present(int left, int bottom, int width, int height) {
-  const FrameTarget& target = state_->frame();
+  const FrameTarget& target = *state_->finished;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, target.width(), target.height(), left, bottom, left + width,

@@ -1,4 +1,4 @@
-// Renderer: draws chunk meshes with sun, sky and fog, and transparent materials in a blended pass.
+// Renderer: draws chunk meshes with sun, sky and haze, and transparent materials in a blended pass.
 // A quad takes 8 bytes; the vertex shader reads and unpacks it (quad_glsl.hpp). Requires OpenGL 3.3
 // core, OpenGL ES 3.0, or newer. The position of the eye is subtracted from chunk positions in
 // double precision before they become floats, so that places far from the origin do not jitter.
@@ -41,7 +41,8 @@ struct RenderStats {
   /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
   /// ghosts.
   bool is_animated = false;
-  std::uint32_t tile_parts_drawn = 0;   // tiles that are drawn whole, and octants of the others
+  bool lacks_msaa = false;  // FXAA replaced the MSAA that was wanted
+  std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
   std::uint32_t textures_left_out = 0;  // see TextureArray::left_out()
 };
 

@@ -31,7 +31,8 @@ constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
 constexpr float kSeam = 0.00006F;
 
 // Texture units.
-constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kShadowUnit = 5, kDepthUnit = 6;
+constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kNoiseUnit = 4, kShadowUnit = 5,
+                kDepthUnit = 6;
 static_assert(kDepthUnit < QuadBuffer::kShapeUnit);
 constexpr GLint kTextureUnit = 14;
 
@@ -208,9 +209,12 @@ void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& me
   cover(key, true);
   if (key.lod == 0) {
     if (voxels != nullptr) {
-      field_.set(key.at, edge, light_chunk(*voxels, light_codes_));
+      LightChunk light = light_chunk(*voxels, light_codes_);
+      glows_.set(key.at, edge, lamp_glows(light.codes));
+      field_.set(key.at, edge, std::move(light));
     } else {
       field_.remove(key.at);
+      glows_.remove(key.at);
     }
   }
   edge_ = std::max(edge_, edge);
@@ -294,7 +298,10 @@ void Terrain::remove(const ChunkKey& key) {
     tiles_.erase(tile);
     return;
   }
-  if (key.lod == 0) field_.remove(key.at);
+  if (key.lod == 0) {
+    field_.remove(key.at);
+    glows_.remove(key.at);
+  }
   const auto found = chunks_.find(key);
   if (found == chunks_.end()) return;
   const glm::dvec3 min = origin_in_world(key, found->second.edge);
@@ -561,10 +568,11 @@ void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_trans
   shadows_.use(of_chunk.gl, cascade, view.eye);
 }
 
-TerrainStats Terrain::draw_opaque(const FrameView& view) {
+TerrainStats Terrain::draw_opaque(const FrameView& view, const NoiseTexture& noise) {
   TerrainStats stats;
   find_visible(view, stats);
-  begin_pass(view, false, [](const GlProgram& program) {
+  begin_pass(view, false, [&noise](const GlProgram& program) {
+    noise.bind(program, kNoiseUnit);
     glUniform1f(glGetUniformLocation(program.get(), "seam"), kSeam);
   });
   glEnable(GL_DEPTH_TEST);

@@ -21,9 +21,11 @@
 #include "client/render/frustum.hpp"
 #include "client/render/ghost.hpp"
 #include "client/render/inspection_painter.hpp"
+#include "client/render/lamp_glow.hpp"
 #include "client/render/light_field.hpp"
 #include "client/render/light_texture.hpp"
 #include "client/render/material_textures.hpp"
+#include "client/render/noise_texture.hpp"
 #include "client/render/quad_buffer.hpp"
 #include "client/render/quad_spans.hpp"
 #include "client/render/shadow_maps.hpp"
@@ -76,7 +78,10 @@ class Terrain {
   /// Returns the light at a place in world voxels: red, green and blue of lamps (linear), and the
   /// share of the sky, 0 .. 1. Outside the light field, and at low quality, it is that of the open.
   glm::vec4 light_at(const FrameView& view, const glm::dvec3& at) const;
-  TerrainStats draw_opaque(const FrameView& view);
+  /// Returns the glows of the lamps in the chunks.
+  const LampGlows& glows() const { return glows_; }
+  /// Draws the opaque faces. `noise` tints natural ground by its place.
+  TerrainStats draw_opaque(const FrameView& view, const NoiseTexture& noise);
   /// Returns true if transparent quads are in view. Valid after draw_opaque().
   bool has_transparent() const { return has_transparent_; }
   /// Draws the transparent quads from far to near. `scene_depth` is a texture with the depth of the
@@ -187,6 +192,7 @@ class Terrain {
   TextureArray textures_;
   LightCodes light_codes_;
   LightField field_;
+  LampGlows glows_;
   LightTexture field_texture_;
   std::vector<VoxelBox> relit_;  // scratch
   QuadBuffer quads_;

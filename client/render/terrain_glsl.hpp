@@ -6,6 +6,7 @@
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
+#include "client/render/place_tint_glsl.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
 #include "client/render/surface_glsl.hpp"
@@ -83,7 +84,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
     "  h = (h ^ (h >> 13)) * 1274126177u;\n"
     "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"
-    "}\n" RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_GLOSS_GLSL
+    "}\n" RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_GLOSS_GLSL RUNSTONE_PLACE_TINT_GLSL
     "#ifdef RUNSTONE_FINE\n" RUNSTONE_PATTERN_GLSL
     "#endif\n"
     "void main() {\n"
@@ -118,7 +119,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "#else\n"
     "  vec3 light = sun_colour * sun + field_lit(vec4(0.0, 0.0, 0.0, 1.0), normal);\n"
     "#endif\n"
-    "  vec3 lit = colour.rgb * tint * (light + look.b * lamps * 1.1);\n"
+    "  vec3 lit = colour.rgb * by_place() * tint * (light + look.b * lamps * 1.1);\n"
     "  lit = gloss(lit, colour.rgb, normal, relative, sun, open);\n"
     "#ifdef RUNSTONE_FOG\n"
     "  lit = in_fog(lit, relative);\n"
@@ -199,9 +200,9 @@ inline constexpr const char* kTransparentFragmentShader =
     "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid);\n"
     "#endif\n"
     "  vec3 c = mix(body, reflection, fresnel * mix(0.53 * (1.0 - roughness()), 1.0, liquid));\n"
-    "  float fog = smoothstep(fog_range.x, fog_range.y, far);\n"
-    "  fragment = vec4(display(mix(c + colour.rgb * look.b * lamps * 1.1, sky(sight), fog)),\n"
-    "                  max(mix(deep, 1.0, fresnel), fog));\n"
+    "  float fogged = fog_share(relative, far);\n"
+    "  fragment = vec4(display(mix(c + colour.rgb * look.b * lamps * 1.1, sky(sight), fogged)),\n"
+    "                  max(mix(deep, 1.0, fresnel), fogged));\n"
     "}\n";
 
 }  // namespace runstone

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/input/key.hpp"
+#include "client/render/antialiasing.hpp"
 #include "client/script/panel_words.hpp"
 #include "client/script/script_words.hpp"
 #include "client/script/tool_words.hpp"
@@ -148,6 +149,11 @@ script::Step step_of(std::string_view verb, ScriptWords& words) {
     const auto share = parse_day_time(words.word("HH:MM"));
     if (!share) throw LineError{"expected a time of day, HH:MM"};
     return script::TimeOfDay{*share};
+  }
+  if (verb == "antialiasing") {
+    const auto antialiasing = parse_antialiasing(words.word("CHOICE"));
+    if (!antialiasing) throw LineError{"expected auto, off, fxaa or msaa"};
+    return script::SmoothEdges{*antialiasing};
   }
   if (verb == "lookat") return script::LookAt{read_position(words)};
   if (verb == "set") {

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/render/frame_look.hpp"
 #include "client/render/inspection.hpp"
 #include "client/tools/aim.hpp"
 #include "client/tools/tool_command.hpp"
@@ -55,6 +56,10 @@ struct Look {
 /// Sets the time of day of the picture.
 struct TimeOfDay {
   double share = 0;  // of the day: 0 midnight, 0.5 noon
+};
+/// Sets how the edges of the picture are smoothed.
+struct SmoothEdges {
+  Antialiasing antialiasing = Antialiasing::automatic;
 };
 struct LookAt {
   ScriptPosition at;
@@ -256,13 +261,13 @@ struct FileOfClipboard {
 };
 struct Quit {};
 
-using Step =
-    std::variant<Move, Walk, Roam, Look, TimeOfDay, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
-                 Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests,
-                 HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click, ShowInterface,
-                 Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback, ShowLibrary, ListBuilds,
-                 TakeBuild, AddBuild, ChooseTool, SetParameter, AimAt, Hold, UseTool, Select,
-                 SelectionEdit, SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
+using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, SmoothEdges, LookAt, Set, Box, Sphere,
+                          Stroke, Copy, Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect,
+                          Repeat, End, Burst, Digests, HistoryRequest, Say, WaitChat, Command,
+                          PressKey, Type, Click, ShowInterface, Inspect, ShowMap, ZoomMap,
+                          ShowTimeline, Rollback, ShowLibrary, ListBuilds, TakeBuild, AddBuild,
+                          ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
+                          SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
 
 }  // namespace script
 

@@ -36,6 +36,8 @@ class ScriptHost {
   virtual void look(double yaw, double pitch) = 0;
   /// Sets the time of day of the picture, as FrameLook::time_of_day.
   virtual void set_time_of_day(double share) = 0;
+  /// Sets how the edges of the next frames are smoothed.
+  virtual void set_antialiasing(Antialiasing antialiasing) = 0;
 
   /// Returns a material by number or, as find_material() does, by name. Fails with one line of
   /// text.

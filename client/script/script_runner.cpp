@@ -216,6 +216,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::TimeOfDay& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::SmoothEdges& c) {
+  host_.set_antialiasing(c.antialiasing);
+  return Progress::done;
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
   const auto at = resolve(c.at);
   if (!at) return Progress::stop;

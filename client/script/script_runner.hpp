@@ -49,6 +49,7 @@ class ScriptRunner {
   Progress run(const script::Roam& c);
   Progress run(const script::Look& c);
   Progress run(const script::TimeOfDay& c);
+  Progress run(const script::SmoothEdges& c);
   Progress run(const script::LookAt& c);
   Progress run(const script::Set& c);
   Progress run(const script::Box& c);

@@ -19,6 +19,9 @@ namespace {
 constexpr std::array<const char*, kQualityChoiceCount> kQualityNames = {"automatic", "low",
                                                                         "medium", "high"};
 
+constexpr std::array<const char*, kAntialiasingChoiceCount> kAntialiasingNames = {
+    "automatic", "off", "fxaa", "msaa"};
+
 /// Sets one field from a node. Returns an empty text, or what is wrong with the node.
 using SetField = std::function<std::string(const toml::node&, ClientSettings&)>;
 
@@ -73,6 +76,16 @@ std::string set_quality(const toml::node& node, ClientSettings& out) {
   return R"(must be "automatic", "low", "medium" or "high")";
 }
 
+std::string set_antialiasing(const toml::node& node, ClientSettings& out) {
+  const auto text = node.value<std::string>();
+  for (std::size_t i = 0; i < kAntialiasingNames.size(); ++i) {
+    if (text != kAntialiasingNames[i]) continue;
+    out.antialiasing = static_cast<AntialiasingChoice>(i);
+    return {};
+  }
+  return R"(must be "automatic", "off", "fxaa" or "msaa")";
+}
+
 std::string set_memory(const toml::node& node, ClientSettings& out) {
   const auto mib = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
   const bool is_automatic = mib == 0;
@@ -92,6 +105,7 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"", "name"}, set_name},
         {{"", "key_file"}, set_key_file},
         {{"view", "quality"}, set_quality},
+        {{"view", "antialiasing"}, set_antialiasing},
         {{"view", "field_of_view"}, number_field(&S::field_of_view, 30, 110)},
         {{"view", "radius"}, number_field(&S::view_radius, 1, kViewRadiusMax)},
         {{"view", "far_levels"}, number_field(&S::far_levels, 0, kTileLevelMax)},
@@ -166,6 +180,10 @@ const char* name_of(QualityChoice quality) {
   return kQualityNames.at(static_cast<std::size_t>(quality));
 }
 
+const char* name_of(AntialiasingChoice antialiasing) {
+  return kAntialiasingNames.at(static_cast<std::size_t>(antialiasing));
+}
+
 ReadSettings read_settings(std::string_view toml, const std::string& file) {
   ReadSettings out;
   Reader reader(file, out);
@@ -190,6 +208,8 @@ std::string to_toml(const ClientSettings& settings) {
   out += "key_file = " + toml_string(s.key_file) + "\n\n[view]\n";
   out += "# automatic (what keeps the frames smooth), low, medium or high.\n";
   out += "quality = " + toml_string(name_of(s.quality)) + "\n";
+  out += "# Smooth edges: automatic (msaa on a GPU), off, fxaa or msaa.\n";
+  out += "antialiasing = " + toml_string(name_of(s.antialiasing)) + "\n";
   out += "# Vertical field of view in degrees, 30 to 110.\n";
   out += "field_of_view = " + toml_float(s.field_of_view) + "\n";
   out += fmt::format("# Horizontal view radius in chunks, 1 to {}. The server may reduce it.\n",

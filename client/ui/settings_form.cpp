@@ -28,6 +28,15 @@ void quality_control(QualityChoice& quality) {
   ImGui::EndCombo();
 }
 
+void antialiasing_control(AntialiasingChoice& antialiasing) {
+  if (!ImGui::BeginCombo("smooth edges", name_of(antialiasing))) return;
+  for (std::size_t i = 0; i < kAntialiasingChoiceCount; ++i) {
+    const auto choice = static_cast<AntialiasingChoice>(i);
+    if (ImGui::Selectable(name_of(choice), choice == antialiasing)) antialiasing = choice;
+  }
+  ImGui::EndCombo();
+}
+
 }  // namespace
 
 SettingsForm::Result SettingsForm::build(double scale) {
@@ -41,6 +50,7 @@ SettingsForm::Result SettingsForm::build(double scale) {
   if (!is_file) ImGui::TextDisabled("a path that begins with /, or empty");
   ImGui::Separator();
   quality_control(s.quality);
+  antialiasing_control(s.antialiasing);
   slider("field of view", s.field_of_view, 30, 110, "%.0f degrees");
   int radius = s.view_radius, levels = s.far_levels, memory = static_cast<int>(s.memory_mib);
   if (ImGui::SliderInt("view radius", &radius, 1, int{kViewRadiusMax}, "%d chunks",

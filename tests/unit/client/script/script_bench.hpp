@@ -29,6 +29,7 @@ struct FakeScriptHost final : ScriptHost {
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};
   double yaw = 0, pitch = 0, time_of_day = 0;
+  Antialiasing antialiasing = Antialiasing::automatic;
   std::map<VoxelPos, Material> voxels;
   std::optional<RayHit> hit;
   std::vector<Submitted> edits;
@@ -49,6 +50,7 @@ struct FakeScriptHost final : ScriptHost {
   void move_to(const WorldPos& eye) override { at = eye; }
   void look(double y, double p) override { yaw = y, pitch = p; }
   void set_time_of_day(double share) override { time_of_day = share; }
+  void set_antialiasing(Antialiasing choice) override { antialiasing = choice; }
   Result<Material, std::string> material(std::string_view name) const override {
     if (name == "air" || name == "0") return kEmpty;
     if (name == "stone") return Material{5};

@@ -184,6 +184,14 @@ TEST_CASE_METHOD(ScriptBench, "an edit waits until the edit budget suffices", "[
   CHECK(runner->finished());
 }
 
+TEST_CASE_METHOD(ScriptBench, "antialiasing sets how edges are smoothed", "[bots]") {
+  run("antialiasing fxaa");
+  CHECK(host.antialiasing == Antialiasing::fxaa);
+  const auto wrong = parse_script("antialiasing smooth", "s");
+  REQUIRE_FALSE(wrong.has_value());
+  CHECK(wrong.error().message().find("expected auto, off, fxaa or msaa") != std::string::npos);
+}
+
 TEST_CASE_METHOD(ScriptBench, "time sets the time of day", "[bots]") {
   run("time 18:00");
   CHECK(host.time_of_day == 0.75);
