@@ -31,6 +31,7 @@ struct Shore {
 /// A column before plants: with the numbers that decide about its plants and trees.
 struct GroundColumn {
   std::int32_t ground, water;  // water: kDry where there is none
+  std::int32_t surface;        // of the lattice: the ground without its grain
   std::int32_t shore;          // sixteenths of a voxel to a river or lake
   LandPlace place;
   std::int32_t patch;  // noise of a wide grain, for patches of plants
@@ -124,6 +125,7 @@ class Ground {
       std::int32_t height = field(&LandSample::height);
       height += times(times(swing, off_water), wide + fine / 2);
       out.ground = (height + 128) >> 8;
+      out.surface = field(&LandSample::height) >> 8;
       out.water = kDry;
       out.is_sill = false;
       if (shore.away < 0 && shore.level > 0) {
@@ -209,6 +211,11 @@ class Ground {
   std::vector<LandSample> places_;
 };
 
+/// Tunnels keep away from water, so that none of it stands beside an empty voxel.
+bool may_have_tunnels(const GroundColumn& at) {
+  return at.ground >= 8 && at.shore >= 24 * 16 && at.water == kDry;
+}
+
 struct Cover {
   Material top, filling;
   std::uint8_t depth;
@@ -270,6 +277,7 @@ Material plant_of(const GroundColumn& at, LandCover cover, std::uint64_t random,
 LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
                          const LandChoices& choices, std::uint64_t seed, std::int32_t x,
                          std::int32_t z, std::uint32_t width, std::uint32_t depth) {
+  const Caves caves(seed);
   const std::uint64_t tree_key = mix64(seed + 31), plant_key = mix64(seed + 32);
   const auto w = static_cast<std::int32_t>(width), d = static_cast<std::int32_t>(depth);
   const Ground ground(form, seed, x - kTreeReach, z - kTreeReach, width + 2 * kTreeReach,
@@ -329,11 +337,31 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
           out.plant = kEmpty;
       }
       low_ = std::min(low_, out.ground - 1 - out.filling_depth);
-      high_ = std::max(high_, out.water + (out.plant != kEmpty ? 1 : 0));
+      std::int32_t high = out.water + (out.plant != kEmpty ? 1 : 0);
+      if (choices.has_caves && may_have_tunnels(at)) {
+        for (Tunnel tunnel : caves.at(x + i, z + k, at.surface)) {
+          tunnel.to = std::min(tunnel.to, out.ground);
+          if (tunnel.from >= tunnel.to) continue;
+          if (tunnel.to == out.ground) {
+            out.plant = kEmpty;
+            high = tunnel.from;
+          }
+          low_ = std::min(low_, tunnel.from);
+          hollows_.push_back({static_cast<std::uint32_t>(columns_.size()), tunnel});
+        }
+      }
+      high_ = std::max(high_, high);
       columns_.push_back(out);
     }
   }
 
+  const auto has_tunnel_at_ground = [&](const GroundColumn& at, std::int32_t column_x,
+                                        std::int32_t column_z) {
+    if (!choices.has_caves || !may_have_tunnels(at)) return false;
+    const auto tunnels = caves.at(column_x, column_z, at.surface);
+    return std::any_of(tunnels.begin(), tunnels.end(),
+                       [&](const Tunnel& t) { return t.from < at.ground && t.to >= at.ground; });
+  };
   if (choices.trees <= 0) return;
   std::vector<Wood> trunks;
   const std::int32_t first_z = floor_to(z - kTreeReach, kTreeSpacing);
@@ -349,7 +377,7 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
       const bool is_inside = at_x >= x - 1 && at_z >= z - 1 && at_x <= x + w && at_z <= z + d;
       const GroundColumn at = is_inside ? raw_at(at_x - x, at_z - z)
                                         : Ground::Block(ground, at_x, at_z).column(at_x, at_z);
-      if (at.water > at.ground || at.shore < 40) continue;
+      if (at.water > at.ground || at.shore < 40 || has_tunnel_at_ground(at, at_x, at_z)) continue;
       const LandCover cover = cover_of(at.place);
       const std::int32_t share = tree_share(at.place, cover);
       const auto dice = static_cast<std::int32_t>(random & (kOne - 1));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/generate/landscape/caves.hpp"
 #include "common/generate/landscape/land_form.hpp"
 #include "common/generate/landscape/land_materials.hpp"
 #include "common/generate/landscape/trees.hpp"
@@ -51,7 +52,7 @@ class LandColumns {
   /// A tunnel through a column. Its voxels are empty.
   struct Hollow {
     std::uint32_t column;
-    std::int32_t from, to;
+    Tunnel tunnel;
   };
 
   /// Makes the columns of x .. x + width and z .. z + depth. Thread: any. Cost: O(columns), about
@@ -64,7 +65,7 @@ class LandColumns {
   const std::vector<LandColumn>& columns() const { return columns_; }
   /// Ascending by column; where two overlap, the later one counts.
   const std::vector<Wood>& wood() const { return wood_; }
-  /// Ascending by column.
+  /// Ascending by column, then by height.
   const std::vector<Hollow>& hollows() const { return hollows_; }
   /// From high() up every voxel is empty. Below low() every voxel is stone.
   std::int32_t high() const { return high_; }

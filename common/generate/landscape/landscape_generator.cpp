@@ -13,22 +13,35 @@ constexpr std::size_t kRectanglesKept = 128;
 constexpr std::int32_t kCrownHeight = 6;   // of a forest from afar
 constexpr std::int32_t kForestFar = 1900;  // the share of trees from which far ground is a forest
 
-/// Appends the voxels of a column from the lowest upwards, and cuts them to a range of heights.
+/// Appends the voxels of a column from the lowest upwards. Cuts them to a range of heights, and
+/// leaves its tunnels empty.
 class ColumnWriter {
  public:
-  ColumnWriter(std::int32_t from, std::int32_t to, RunBuilder& out)
-      : at_(from), to_(to), out_(out) {}
+  using Hollows = std::span<const LandColumns::Hollow>;
+  ColumnWriter(std::int32_t from, std::int32_t to, RunBuilder& out, Hollows hollows = {})
+      : at_(from), to_(to), hollows_(hollows), out_(out) {}
   /// Appends up to height `end`.
   void until(std::int32_t end, Material material) {
+    while (!hollows_.empty() && hollows_.front().tunnel.from < end) {
+      const Tunnel tunnel = hollows_.front().tunnel;
+      hollows_ = hollows_.subspan(1);
+      append(tunnel.from, material);
+      append(tunnel.to, kEmpty);
+    }
+    append(end, material);
+  }
+  void finish() { until(to_, kEmpty); }
+
+ private:
+  void append(std::int32_t end, Material material) {
     end = std::min(end, to_);
     if (end <= at_) return;
     out_.append(static_cast<std::uint32_t>(end - at_), material);
     at_ = end;
   }
-  void finish() { until(to_, kEmpty); }
 
- private:
   std::int32_t at_, to_;
+  Hollows hollows_;
   RunBuilder& out_;
 };
 
@@ -98,7 +111,7 @@ std::shared_ptr<const LandColumns> LandscapeGenerator::columns(std::int32_t x, s
 RunChunk LandscapeGenerator::generate(VoxelPos origin, Extent extent) const {
   const std::int32_t end = origin.y + extent.y;
   if (end <= y_min_ || origin.y >= y_max()) return uniform_chunk(extent, kEmpty);
-  if (origin.y >= y_min_ && end <= sea_level_ + kLandHeightMin && !choices_.has_caves)
+  if (origin.y >= y_min_ && end <= sea_level_ + kLandHeightMin)
     return uniform_chunk(extent, materials_.stone);
 
   const auto land = columns(origin.x, origin.z, extent.x, extent.z);
@@ -109,12 +122,15 @@ RunChunk LandscapeGenerator::generate(VoxelPos origin, Extent extent) const {
   RunBuilder out(extent, AxisOrder::yxz);
   std::vector<std::int32_t> heights;
   auto wood = land->wood().begin();
+  auto hollow = land->hollows().begin();
   const std::vector<LandColumn>& all = land->columns();
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const LandColumn& column = all[i];
     const auto first = wood;
     while (wood != land->wood().end() && wood->column == i) ++wood;
-    ColumnWriter writer(origin.y - sea_level_, end - sea_level_, out);
+    const auto first_hollow = hollow;
+    while (hollow != land->hollows().end() && hollow->column == i) ++hollow;
+    ColumnWriter writer(origin.y - sea_level_, end - sea_level_, out, {first_hollow, hollow});
     writer.until(y_min_ - sea_level_, kEmpty);
     writer.until(column.ground - 1 - column.filling_depth, materials_.stone);
     writer.until(column.ground - 1, column.filling);
