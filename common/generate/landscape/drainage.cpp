@@ -78,8 +78,8 @@ std::int32_t Drainage::mountain_share(std::int32_t x, std::int32_t z, std::int32
   if (land <= kRangeLand) return 0;
   // A range follows the line where its noise is zero, in the regions that have ranges.
   const std::int32_t line = range_13_.at(x, z) * 3 / 4 + range_12_.at(x, z) / 2;
-  const std::int32_t crest = kOne - std::min(kOne, std::abs(line) * 2);
-  const std::int32_t region = ramp(ranges_14_.at(x, z), -1900, 500);
+  const std::int32_t crest = kOne - std::min(kOne, std::abs(line) * 7 / 4);
+  const std::int32_t region = ramp(ranges_14_.at(x, z), -2500, 0);
   const std::int32_t inland = ramp(land, kRangeLand, 900);
   return times(times(fade_of(crest), region), inland);
 }
@@ -100,8 +100,8 @@ Drainage::Node Drainage::node(std::int32_t i, std::int32_t k) const {
   if (land <= 0) {
     out.level = -4 - std::min(56, -land * 56 / 1600);
   } else {
-    out.level = 2 + std::min(land, 2400) * 44 / 2400 + times(mountain, 50) +
-                times(times(mountain, mountain), 130) + times(6 + times(mountain, 26), share);
+    out.level = 2 + std::min(land, 2400) * 44 / 2400 + times(mountain, 60) +
+                times(times(mountain, mountain), 190) + times(6 + times(mountain, 26), share);
   }
   return out;
 }

@@ -35,7 +35,7 @@ std::int32_t tree_share(const LandPlace& place, LandCover cover) {
 }
 
 std::int32_t pine_share(const LandPlace& place) {
-  return ramp(place.height + 2 * place.cold, 40, 150);
+  return ramp(place.height + 2 * place.cold, 70, 210);
 }
 
 }  // namespace runstone

@@ -94,7 +94,7 @@ LandSample LandForm::at(std::int32_t x, std::int32_t z) const {
   const std::int32_t hills = ramp(hills_11_.at(x, z), -1400, 1800);
   const std::int32_t ashore = ramp(land, -500, 500);
   // The slope of the sides of valleys.
-  const std::int32_t slope = 80 + times(times(hills, ashore), 1150) + times(mountain, 3200);
+  const std::int32_t slope = 120 + times(times(hills, ashore), 1350) + times(mountain, 3700);
   const std::int32_t away = std::max(0, nearest / 16 - 8);
   const std::int32_t rise = times(valley_side(away), slope) * 16;  // 256ths
   const std::int32_t off_water = ramp(away, 4, 140);

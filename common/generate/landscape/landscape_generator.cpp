@@ -10,7 +10,9 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kRectanglesKept = 128;
+constexpr std::size_t kFarKept = 64;
 constexpr std::int32_t kCrownHeight = 6;   // of a forest from afar
+constexpr std::int32_t kDeepest = 16;      // of a lake or river below the ground around it, at most
 constexpr std::int32_t kForestFar = 1900;  // the share of trees from which far ground is a forest
 
 /// Appends the voxels of a column from the lowest upwards. Cuts them to a range of heights, and
@@ -82,7 +84,8 @@ LandscapeGenerator::LandscapeGenerator(std::uint64_t seed, const LandscapeParame
       choices_{parameters.trees, parameters.plants, parameters.caves != 0},
       materials_(materials),
       form_(seed),
-      columns_(kRectanglesKept) {}
+      columns_(kRectanglesKept),
+      far_places_(kFarKept) {}
 
 Result<std::unique_ptr<Generator>> LandscapeGenerator::make(std::uint64_t seed,
                                                             const LandscapeParameters& parameters,
@@ -157,19 +160,25 @@ std::optional<RunChunk> LandscapeGenerator::coarse(VoxelPos origin, std::int32_t
   // The places are a lattice of the corners of the cells, as in terrain: the highest corner stands
   // for a cell, except that a river passes through it.
   const std::int32_t side = edge + 1, stride = 1 << level;
-  std::vector<LandSample> places;
-  places.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-  std::int32_t highest = kLandHeightMin;
-  for (std::int32_t k = 0; k < side; ++k) {
-    for (std::int32_t i = 0; i < side; ++i) {
-      places.push_back(form_.at(origin.x + i * stride, origin.z + k * stride));
-      highest = std::max(highest, places.back().height >> 8);
+  const auto places = far_places_.get({origin.x, origin.z, edge, level}, [&] {
+    FarPlaces out;
+    out.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    for (std::int32_t k = 0; k < side; ++k) {
+      for (std::int32_t i = 0; i < side; ++i)
+        out.push_back(form_.at(origin.x + i * stride, origin.z + k * stride));
     }
+    return out;
+  });
+  std::int32_t lowest = kLandHeightMax, highest = 0;  // 0: the sea
+  for (const LandSample& at : *places) {
+    lowest = std::min(lowest, at.height >> 8);
+    highest = std::max({highest, (at.height >> 8) + 1, at.shore < 0 ? at.water : 0});
   }
-  if (origin.y >= sea_level_ + highest + kCrownHeight + kLandStep)
-    return uniform_chunk(extent, kEmpty);
+  if (origin.y >= sea_level_ + highest + kCrownHeight) return uniform_chunk(extent, kEmpty);
+  if (origin.y >= y_min_ && end <= sea_level_ + lowest - kDeepest - stride)
+    return uniform_chunk(extent, materials_.stone);
   const auto place = [&](std::int32_t i, std::int32_t k) -> const LandSample& {
-    return places[static_cast<std::size_t>(i + side * k)];
+    return (*places)[static_cast<std::size_t>(i + side * k)];
   };
   const auto far_column = [&](std::int32_t i, std::int32_t k) {
     const LandSample& at = place(i, k);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common/generate/generator.hpp"
 #include "common/generate/generator_parameters.hpp"
@@ -42,6 +43,17 @@ class LandscapeGenerator final : public Generator {
       return hash_of(SquareKey{key.x, key.z}) ^ (key.width | (std::uint64_t{key.depth} << 32));
     }
   };
+  /// The corners of the cells of a tile, side by side along x.
+  using FarPlaces = std::vector<LandSample>;
+  struct TileKey {
+    std::int32_t x = 0, z = 0, edge = 0;
+    std::uint8_t level = 0;
+    friend bool operator==(const TileKey&, const TileKey&) = default;
+    friend std::uint64_t hash_of(const TileKey& key) {
+      return hash_of(SquareKey{key.x, key.z}) ^ (static_cast<std::uint32_t>(key.edge) << 8) ^
+             key.level;
+    }
+  };
   std::shared_ptr<const LandColumns> columns(std::int32_t x, std::int32_t z, std::uint32_t width,
                                              std::uint32_t depth) const;
 
@@ -52,6 +64,7 @@ class LandscapeGenerator final : public Generator {
   LandForm form_;
   // Chunks above each other have the same columns.
   mutable Recent<RectangleKey, LandColumns> columns_;
+  mutable Recent<TileKey, FarPlaces> far_places_;
 };
 
 }  // namespace runstone

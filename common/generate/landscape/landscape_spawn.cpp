@@ -64,7 +64,7 @@ std::int32_t view_of(const LandForm& form, std::int32_t x, std::int32_t z) {
       if (angle < horizon) continue;
       seen += 2;
       if (at.height < 0 || at.shore < 0) seen += away < 1500 ? 9 : 4;
-      if (away >= 1300 && at.height > 230 * 256) seen += 14;
+      if (away >= 1300 && at.roughness > 800) seen += std::clamp(angle, 0, 600) / 12;
       horizon = std::max(horizon, (height + crown - eye) * 16 / away);
     }
     out += d < kForward ? 3 * seen : seen;
