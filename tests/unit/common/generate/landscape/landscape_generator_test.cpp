@@ -16,9 +16,9 @@ using namespace runstone::test;
 
 namespace {
 
-constexpr std::int32_t kEdge = LandscapeVoxels::kEdge;
+constexpr std::int32_t kLandEdge = LandscapeVoxels::kEdge;
 
-ErrorCode code_of(std::uint64_t seed, const std::string& parameters) {
+ErrorCode landscape_error(std::uint64_t seed, const std::string& parameters) {
   const auto made = make_generator({"landscape", 1, seed, parameters}, landscape_material_table());
   return made ? ErrorCode{} : made.error().code;
 }
@@ -78,13 +78,13 @@ TEST_CASE("chunks come out alike in any order and from any thread", "[generate][
   const auto all = [&](const Generator& land) {
     std::vector<Digest> out(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i)
-      out[i] = digest_of(land.generate(origin_of(keys[i], kEdge), Extent::cube(kEdge)));
+      out[i] = digest_of(land.generate(origin_of(keys[i], kLandEdge), Extent::cube(kLandEdge)));
     return out;
   };
   const std::vector<Digest> expected = all(*landscape_of(7));
   const auto backwards = landscape_of(7);
   for (std::size_t i = keys.size(); i-- > 0;) {
-    REQUIRE(digest_of(backwards->generate(origin_of(keys[i], kEdge), Extent::cube(kEdge))) ==
+    REQUIRE(digest_of(backwards->generate(origin_of(keys[i], kLandEdge), Extent::cube(kLandEdge))) ==
             expected[i]);
   }
   const auto shared = landscape_of(7);
@@ -97,14 +97,14 @@ TEST_CASE("chunks come out alike in any order and from any thread", "[generate][
 
 TEST_CASE("high and deep chunks of a landscape are uniform", "[generate][landscape]") {
   const auto land = landscape_of(7);
-  const RunChunk air = uniform_chunk(Extent::cube(kEdge), kEmpty);
-  const RunChunk stone = uniform_chunk(Extent::cube(kEdge), named("stone"));
+  const RunChunk air = uniform_chunk(Extent::cube(kLandEdge), kEmpty);
+  const RunChunk stone = uniform_chunk(Extent::cube(kLandEdge), named("stone"));
   SplitMix64 random(1);
   for (int i = 0; i < 20; ++i) {
-    const std::int32_t x = random.between(-500, 500) * kEdge, z = random.between(-500, 500) * kEdge;
-    CHECK(land->generate({x, 832, z}, Extent::cube(kEdge)) == air);
-    CHECK(land->generate({x, -128, z}, Extent::cube(kEdge)) == stone);
-    CHECK(land->generate({x, -288, z}, Extent::cube(kEdge)) == air);
+    const std::int32_t x = random.between(-500, 500) * kLandEdge, z = random.between(-500, 500) * kLandEdge;
+    CHECK(land->generate({x, 832, z}, Extent::cube(kLandEdge)) == air);
+    CHECK(land->generate({x, -128, z}, Extent::cube(kLandEdge)) == stone);
+    CHECK(land->generate({x, -288, z}, Extent::cube(kLandEdge)) == air);
   }
 }
 
@@ -112,13 +112,13 @@ TEST_CASE("parameters of a landscape have limits", "[generate][landscape]") {
   for (const char* good : {"", "sea_level = 99000\ny_min = 98000", "sea_level = -99000\ny_min = -99096",
                            "trees = 0\nplants = 0", "trees = 200\nplants = 400\ncaves = 1"}) {
     CAPTURE(good);
-    CHECK(code_of(7, good) == ErrorCode{});
+    CHECK(landscape_error(7, good) == ErrorCode{});
   }
   for (const char* bad : {"y_min = -95", "sea_level = -200\ny_min = -256", "trees = -1",
                           "trees = 201", "plants = 401", "caves = 2", "caves = true", "rivers = 1",
                           "sea_level = 100001", "y_min = -100001"}) {
     CAPTURE(bad);
-    CHECK(code_of(7, bad) == ErrorCode::bad_value);
+    CHECK(landscape_error(7, bad) == ErrorCode::bad_value);
   }
   CHECK(make_generator({"landscape", 2, 7, ""}, landscape_material_table()).error().code ==
         ErrorCode::bad_version);
@@ -127,7 +127,7 @@ TEST_CASE("parameters of a landscape have limits", "[generate][landscape]") {
   const auto bare = landscape_of(7, "trees = 0\nplants = 0");
   for (std::int32_t x = -4; x < 4; ++x) {
     for (std::int32_t y = 0; y < 4; ++y) {
-      const RunChunk chunk = bare->generate({x * kEdge, y * kEdge, 0}, Extent::cube(kEdge));
+      const RunChunk chunk = bare->generate({x * kLandEdge, y * kLandEdge, 0}, Extent::cube(kLandEdge));
       for (const Material material : {named("leaves"), named("log"), named("tall_grass")})
         CHECK(count_of(chunk, material) == 0);
     }
@@ -138,15 +138,15 @@ TEST_CASE("a landscape works with each seed and at the ends of the world", "[gen
   for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0},
                                    std::uint64_t{1} << 63}) {
     const auto land = landscape_of(seed);
-    for (const std::int32_t x : {-kWorldLimit, 0, kWorldLimit - kEdge}) {
-      for (const std::int32_t z : {-kWorldLimit, kWorldLimit - kEdge}) {
+    for (const std::int32_t x : {-kWorldLimit, 0, kWorldLimit - kLandEdge}) {
+      for (const std::int32_t z : {-kWorldLimit, kWorldLimit - kLandEdge}) {
         const std::int32_t top = land->surface_y(x, z);
         CHECK(top > -100);
         CHECK(top < 830);
         const VoxelPos origin{x, top - 16, z};
-        CHECK(validate(land->generate(origin, Extent::cube(kEdge))).has_value());
-        const ChunkKey tile{8, chunk_of({x, 0, z}, kEdge << 8)};
-        CHECK(validate(*land->coarse(tile_origin(tile, kEdge), kEdge, 8)).has_value());
+        CHECK(validate(land->generate(origin, Extent::cube(kLandEdge))).has_value());
+        const ChunkKey tile{8, chunk_of({x, 0, z}, kLandEdge << 8)};
+        CHECK(validate(*land->coarse(tile_origin(tile, kLandEdge), kLandEdge, 8)).has_value());
       }
     }
   }
@@ -183,7 +183,7 @@ TEST_CASE("a landscape has sea, snow and forests within 16 km of its origin",
     for (std::int32_t x = -4; x < 4; ++x) {
       for (std::int32_t z = -4; z < 4; ++z) {
         for (std::int32_t y = -1; y < 1; ++y) {
-          const auto tile = land->coarse(tile_origin({7, {x, y, z}}, kEdge), kEdge, 7);
+          const auto tile = land->coarse(tile_origin({7, {x, y, z}}, kLandEdge), kLandEdge, 7);
           REQUIRE(tile.has_value());
           sea += count_of(*tile, named("water"));
           snow += count_of(*tile, named("snow"));
