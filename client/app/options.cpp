@@ -53,8 +53,9 @@ void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
                      "if there is none")
           ->excludes(connect);
   app.add_option("--generator", out.local_creation.generator,
-                 "for a new world of --local: terrain, flat or empty; default terrain")
-      ->check(CLI::IsMember({"terrain", "flat", "empty"}))
+                 "for a new world of --local: landscape, terrain, flat or empty; default "
+                 "landscape")
+      ->check(CLI::IsMember({"landscape", "terrain", "flat", "empty"}))
       ->needs(local);
   app.add_option("--seed", out.local_creation.seed,
                  "for a new world of --local: seed of the terrain; default: a random one")

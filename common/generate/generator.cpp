@@ -2,6 +2,7 @@
 
 #include "common/generate/flat_generator.hpp"
 #include "common/generate/generator_parameters.hpp"
+#include "common/generate/landscape/landscape_generator.hpp"
 #include "common/generate/scenarios/scenario_world.hpp"
 #include "common/generate/terrain_generator.hpp"
 
@@ -9,8 +10,8 @@ namespace runstone {
 
 Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
                                                   const MaterialTable& materials) {
-  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain" &&
-      pin.name != "scenario") {
+  if (pin.name != "empty" && pin.name != "flat" && pin.name != "landscape" &&
+      pin.name != "terrain" && pin.name != "scenario") {
     return fail(ErrorCode::not_found, "generator name is unknown to this build");
   }
   if (pin.version != 1)
@@ -24,6 +25,11 @@ Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
     const auto parameters = parse_flat_parameters(pin.parameters);
     if (!parameters) return failure(parameters.error());
     return FlatGenerator::make(*parameters, materials);
+  }
+  if (pin.name == "landscape") {
+    const auto parameters = parse_landscape_parameters(pin.parameters);
+    if (!parameters) return failure(parameters.error());
+    return LandscapeGenerator::make(pin.seed, *parameters, materials);
   }
   if (pin.name == "scenario") {
     const auto parameters = parse_scenario_parameters(pin.parameters);

@@ -18,7 +18,7 @@ namespace runstone {
 /// The fields that pin a generator. `parameters` is canonical TOML of that generator alone, and
 /// empty for its defaults. to_toml() in generator_parameters.hpp writes it.
 struct GeneratorPin {
-  std::string name;  // "empty", "flat", "terrain", "scenario"
+  std::string name;  // "empty", "flat", "landscape", "terrain", "scenario"
   std::uint32_t version = 1;
   std::uint64_t seed = 0;
   std::string parameters;
@@ -47,6 +47,9 @@ class Generator {
   /// Returns the highest non-empty voxel of a column + 1, where a player may stand. It makes no
   /// chunk.
   virtual std::int32_t surface_y(std::int32_t x, std::int32_t z) const = 0;
+  /// Returns the voxel in which the eyes of a new player should be, if the generator knows a good
+  /// place, otherwise nullopt. Cost: about 0.1 s.
+  virtual std::optional<VoxelPos> spawn() const { return std::nullopt; }
 };
 
 /// Makes the pinned generator. `materials` need not outlive it: rules are copied. Fails

@@ -34,6 +34,14 @@ void each_field(P& p, const TerrainParameters& d, Visit&& visit) {
 }
 
 template <class P, class Visit>
+void each_field(P& p, const LandscapeParameters& d, Visit&& visit) {
+  visit("sea_level", p.sea_level, d.sea_level, kHeightMin, kHeightMax);
+  visit("y_min", p.y_min, d.y_min, kHeightMin, kHeightMax);
+  visit("trees", p.trees, d.trees, 0, 200);
+  visit("plants", p.plants, d.plants, 0, 400);
+  visit("caves", p.caves, d.caves, 0, 1);
+}
+template <class P, class Visit>
 void each_field(P& p, const ScenarioParameters& d, Visit&& visit) {
   visit("number", p.number, d.number, 1, 37);
   visit("edge", p.edge, d.edge, 8, 128);
@@ -127,12 +135,16 @@ Result<FlatParameters> parse_flat_parameters(std::string_view toml) {
 Result<TerrainParameters> parse_terrain_parameters(std::string_view toml) {
   return parse<TerrainParameters>(toml);
 }
+Result<LandscapeParameters> parse_landscape_parameters(std::string_view toml) {
+  return parse<LandscapeParameters>(toml);
+}
 Result<ScenarioParameters> parse_scenario_parameters(std::string_view toml) {
   return parse<ScenarioParameters>(toml);
 }
 
 std::string to_toml(const FlatParameters& parameters) { return write(parameters); }
 std::string to_toml(const TerrainParameters& parameters) { return write(parameters); }
+std::string to_toml(const LandscapeParameters& parameters) { return write(parameters); }
 std::string to_toml(const ScenarioParameters& parameters) { return write(parameters); }
 
 }  // namespace runstone

@@ -41,6 +41,16 @@ struct TerrainParameters {
   friend bool operator==(const TerrainParameters&, const TerrainParameters&) = default;
 };
 
+/// "landscape": how high it lies, and how much grows on it.
+struct LandscapeParameters {
+  std::int32_t sea_level = 0;  // the y of the first voxel above the sea
+  std::int32_t y_min = -256;   // y of the lowest voxel; at least 96 below sea_level
+  std::int32_t trees = 100;    // percent, 0 .. 200
+  std::int32_t plants = 100;   // percent, 0 .. 400
+  std::int32_t caves = 0;      // 1: with caves
+  friend bool operator==(const LandscapeParameters&, const LandscapeParameters&) = default;
+};
+
 /// "scenario": one of the thesis' 37 profiling scenarios except the 5th: 3 x 3 x 3 copies of one
 /// model.
 struct ScenarioParameters {
@@ -54,11 +64,13 @@ struct ScenarioParameters {
 /// its range. Empty text gives the defaults.
 Result<FlatParameters> parse_flat_parameters(std::string_view toml);
 Result<TerrainParameters> parse_terrain_parameters(std::string_view toml);
+Result<LandscapeParameters> parse_landscape_parameters(std::string_view toml);
 Result<ScenarioParameters> parse_scenario_parameters(std::string_view toml);
 
 /// Returns the canonical text. Equal parameters have equal text, and parsing the text returns them.
 std::string to_toml(const FlatParameters& parameters);
 std::string to_toml(const TerrainParameters& parameters);
+std::string to_toml(const LandscapeParameters& parameters);
 std::string to_toml(const ScenarioParameters& parameters);
 
 }  // namespace runstone

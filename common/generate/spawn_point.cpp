@@ -61,6 +61,7 @@ bool is_origin_dry(const Generator& generator, const MaterialTable& materials) {
 }
 
 VoxelPos spawn_point(const Generator& generator, const MaterialTable& materials) {
+  if (const auto chosen = generator.spawn()) return *chosen;
   const Columns columns(generator, materials);
   if (is_origin_dry(generator, materials)) return columns.spawn_at(0, 0);
   for (std::int32_t ring = 1; ring <= kRings; ++ring) {

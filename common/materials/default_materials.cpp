@@ -1,6 +1,7 @@
 // The built-in table. Ids are frozen: worlds store them. New materials are appended.
 #include "common/core/assert.hpp"
 #include "common/materials/material_table.hpp"
+#include "common/shapes/shape_states.hpp"
 
 namespace runstone {
 namespace {
@@ -57,6 +58,32 @@ constexpr PaletteRow kPalette[] = {
     {"wool_brown", 0x6d4a2fff, kWool},
 };
 
+/// What grows in a landscape beside the materials above.
+constexpr PaletteRow kGrowth[] = {
+    {"forest_floor", 0x5c7434ff, {18, 32, 100, 0, none}},
+    {"pine_leaves", 0x2f5a3cff, {22, 42, 100, 0, none}},
+    {"birch_log", 0xd8d4c6ff, {8, 20, 95, 0, bark}},
+    {"birch_leaves", 0x79a544ff, {22, 42, 100, 0, none}},
+};
+
+struct PlantRow {
+  const char* name;
+  std::uint32_t rgba;
+  unsigned height, inset;  // sixteenths of a voxel
+};
+
+constexpr PlantRow kPlants[] = {
+    {"tall_grass", 0x76aa45ff, 12, 2}, {"fern", 0x4f8a3cff, 11, 1},
+    {"bush", 0x4a7f33ff, 15, 0},       {"reeds", 0x9cab5cff, 16, 3},
+    {"poppy", 0xcf3b30ff, 10, 4},      {"dandelion", 0xf0cb3aff, 8, 4},
+    {"cornflower", 0x5674d2ff, 10, 4},
+};
+
+std::array<std::uint8_t, 4> colour_of(std::uint32_t rgba) {
+  return {static_cast<std::uint8_t>(rgba >> 24), static_cast<std::uint8_t>(rgba >> 16),
+          static_cast<std::uint8_t>(rgba >> 8), static_cast<std::uint8_t>(rgba)};
+}
+
 /// The rows of figure 7.21 in the thesis' order. The order decides which material covers which.
 std::optional<GenerationRule> thesis_rule(std::string_view name) {
   if (name == "grass") return GenerationRule{{1, 50, 40, 0.007}, std::nullopt};
@@ -69,11 +96,24 @@ std::optional<GenerationRule> thesis_rule(std::string_view name) {
 MaterialTable make_default_table() {
   MaterialTable table;
   for (const PaletteRow& row : kPalette) {
-    const std::array<std::uint8_t, 4> colour = {
-        static_cast<std::uint8_t>(row.rgba >> 24), static_cast<std::uint8_t>(row.rgba >> 16),
-        static_cast<std::uint8_t>(row.rgba >> 8), static_cast<std::uint8_t>(row.rgba)};
-    const auto id =
-        table.add({row.name, colour, row.visibility, thesis_rule(row.name), row.body, row.look});
+    const auto id = table.add({row.name, colour_of(row.rgba), row.visibility, thesis_rule(row.name),
+                               row.body, row.look});
+    RUNSTONE_ASSERT(id.has_value());
+  }
+  return table;
+}
+
+MaterialTable make_landscape_table() {
+  MaterialTable table = make_default_table();
+  for (const PaletteRow& row : kGrowth) {
+    const auto id = table.add({row.name, colour_of(row.rgba), row.visibility, std::nullopt, row.body,
+                               row.look});
+    RUNSTONE_ASSERT(id.has_value());
+  }
+  for (const PlantRow& row : kPlants) {
+    const auto id = table.add({row.name, colour_of(row.rgba), Visibility::opaque, std::nullopt,
+                               MaterialBody::passable, MaterialLook{14, 20, 100, 0, none},
+                               plant_shape(row.height, row.inset)});
     RUNSTONE_ASSERT(id.has_value());
   }
   return table;
@@ -83,6 +123,11 @@ MaterialTable make_default_table() {
 
 const MaterialTable& default_material_table() {
   static const MaterialTable table = make_default_table();
+  return table;
+}
+
+const MaterialTable& landscape_material_table() {
+  static const MaterialTable table = make_landscape_table();
   return table;
 }
 

@@ -140,5 +140,8 @@ std::string to_toml(const MaterialTable& table);
 
 /// Returns the built-in table: air, grass, sand, dirt, stone, water and the builders' palette.
 const MaterialTable& default_material_table();
+/// Returns the built-in table and, behind it, what grows in a landscape: trees, and plants with
+/// their shapes. New worlds of the generator "landscape" have it.
+const MaterialTable& landscape_material_table();
 
 }  // namespace runstone

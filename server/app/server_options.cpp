@@ -39,7 +39,7 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   app.add_flag("--accept-losses", out.accept_losses,
                "start a world that has lost edits, players or watermarks, and log what is lost");
   app.add_option("--generator", out.creation.generator,
-                 "new world: empty, flat, terrain or scenario");
+                 "new world: landscape (the default), terrain, flat, empty or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters,
                  "new world: TOML text");
   app.add_option("--seed", out.creation.seed,

@@ -19,7 +19,7 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
     return failure("--edge " + std::to_string(creation.edge) +
                    ": chunks have an edge of 16, 32, 64 or 128");
   }
-  auto materials = read_materials(creation.materials_file);
+  auto materials = read_materials(creation.materials_file, creation.generator);
   if (!materials) return failure(materials.error());
   WorldMeta meta;
   meta.chunk_edge = creation.edge;
@@ -31,7 +31,7 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   // A seed that is drawn gives dry ground at the origin, where players then arrive, if the generator
   // has such ground at all.
   for (int i = 0; generator && !creation.seed && i < kSeedDraws; ++i) {
-    if (i > 0 && is_origin_dry(**generator, meta.materials)) break;
+    if (i > 0 && (is_origin_dry(**generator, meta.materials) || (*generator)->spawn())) break;
     // 32 bits, so that people can read it out and type it.
     meta.generator.seed = randombytes_random();
     generator = make_generator(meta.generator, meta.materials);
@@ -55,8 +55,10 @@ bool has_world(const std::string& place) {
   return std::filesystem::exists(std::filesystem::path(place) / "world.sqlite", ignored);
 }
 
-Result<MaterialTable, std::string> read_materials(const std::string& file) {
-  if (file.empty()) return default_material_table();
+Result<MaterialTable, std::string> read_materials(const std::string& file,
+                                                  const std::string& generator) {
+  if (file.empty())
+    return generator == "landscape" ? landscape_material_table() : default_material_table();
   const auto toml = read_text_file(file, kTextFileBytesMax);
   if (!toml) return failure(toml.error());
   auto table = parse_material_table(*toml, file);

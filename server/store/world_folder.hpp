@@ -15,11 +15,11 @@ namespace runstone {
 
 /// The properties of a new world. An existing world ignores them.
 struct WorldCreation {
-  std::string generator = "terrain";
+  std::string generator = "landscape";
   std::string generator_parameters;   // TOML, empty for the generator's defaults
   std::optional<std::uint64_t> seed;  // nullopt: a random one
   std::uint16_t edge = 32;            // 16, 32, 64 or 128
-  std::string materials_file;         // TOML; empty: the built-in table
+  std::string materials_file;         // TOML; empty: the built-in table of the generator
   friend bool operator==(const WorldCreation&, const WorldCreation&) = default;
 };
 
@@ -34,8 +34,9 @@ struct OpenedWorld {
 /// Returns false if the place holds no world. Returns true also if a database does not answer:
 /// opening the world then says so.
 bool has_world(const std::string& place);
-/// Reads a material table. An empty name means the built-in one.
-Result<MaterialTable, std::string> read_materials(const std::string& file);
+/// Reads the material table of a new world of a generator. An empty name means the built-in one.
+Result<MaterialTable, std::string> read_materials(const std::string& file,
+                                                  const std::string& generator);
 /// Sets a new identity: a random world id and a random server key.
 void draw_identity(WorldMeta& meta);
 /// Opens the world for writing. Creates it first if the place holds none. Fails if

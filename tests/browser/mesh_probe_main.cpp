@@ -28,7 +28,8 @@ struct ProbeWorld {
 };
 
 std::vector<ProbeWorld> worlds() {
-  std::vector<ProbeWorld> out = {{"terrain", {"terrain", 1, 7, ""}, {-3, -1, -3}, {2, 2, 2}}};
+  std::vector<ProbeWorld> out = {{"terrain", {"terrain", 1, 7, ""}, {-3, -1, -3}, {2, 2, 2}},
+                                 {"landscape", {"landscape", 1, 7, ""}, {-3, -1, -3}, {2, 3, 2}}};
   for (int number = 1; number <= 37; ++number) {
     if (number == 5) continue;  // the thesis' noise, which no generator has
     const ScenarioParameters parameters{number, 32, "stone"};
@@ -116,8 +117,8 @@ double chunk_us(const Chunks& chunks, const VisibilityTable& visibility, RdmScra
 }
 
 int probe(double seconds) {
-  const MaterialTable& materials = default_material_table();
-  const VisibilityTable visibility(visibilities(materials));
+  const MaterialTable& materials = landscape_material_table();
+  const VisibilityTable visibility(cube_visibilities(materials));
   for (const ProbeWorld& world : worlds()) {
     const auto generator = make_generator(world.pin, materials);
     if (!generator) {

@@ -56,7 +56,7 @@ export class World {
   async startServer(isNew = false) {
     const args = ["--world", join(this.folder, "world"), "--listen", `127.0.0.1:${this.server?.port ?? 0}`,
       "--gateway-socket", this.socket];
-    this.server = await start(join(this.bin, "runstone-server"), isNew ? [...args, "--create", "--seed", "1", ...this.worldFlags] : args,
+    this.server = await start(join(this.bin, "runstone-server"), isNew ? [...args, "--create", "--generator", "terrain", "--seed", "1", ...this.worldFlags] : args,
       join(this.folder, "server.port"));
   }
   async stopServer() {

@@ -8,15 +8,20 @@ using namespace runstone;
 
 namespace {
 
+/// Returns the generator. The ids of both tables agree.
+auto generator_of(const GeneratorPin& pin) {
+  return make_generator(pin, landscape_material_table());
+}
+
 Digest digest_at(const GeneratorPin& pin, VoxelPos origin, Extent extent) {
-  const auto made = make_generator(pin, default_material_table());
+  const auto made = generator_of(pin);
   REQUIRE(made.has_value());
   return digest_of((*made)->generate(origin, extent));
 }
 
 /// Returns one world digest over y = -64 .. 96 of 8 x 8 chunks of edge 32.
 Digest world_digest(const GeneratorPin& pin) {
-  const auto made = make_generator(pin, default_material_table());
+  const auto made = generator_of(pin);
   REQUIRE(made.has_value());
   Digest sum;
   for (std::int32_t z = -4; z < 4; ++z) {
@@ -56,6 +61,44 @@ TEST_CASE("coarse terrain of version 1 gives the pinned voxels", "[generate][gol
   CHECK(digest({0, 0, 0}, 32, 3) == "04481c2ae44883bd15bb2bb5498cf1dc");
   CHECK(digest({-1024, -1024, 2048}, 64, 4) == "191ffdd8eb8fb9381438e0ba046bd8dc");
   CHECK(digest({-536870912, -32768, 536838144}, 128, 8) == "09e656653db74b501813ae6e71d08093");
+}
+
+TEST_CASE("landscape version 1 gives the pinned voxels", "[generate][golden]") {
+  const GeneratorPin pin{"landscape", 1, 7, ""};
+  // Eight by eight chunks from the sea floor to the peaks, on two continents.
+  const auto region = [](const GeneratorPin& of, std::int32_t x, std::int32_t z) {
+    const auto made = generator_of(of);
+    REQUIRE(made.has_value());
+    Digest sum;
+    for (std::int32_t k = z; k < z + 8; ++k) {
+      for (std::int32_t y = -2; y < 20; ++y) {
+        for (std::int32_t i = x; i < x + 8; ++i) {
+          const RunChunk chunk = (*made)->generate(origin_of({i, y, k}, 32), Extent::cube(32));
+          sum = sum + world_digest_term({0, {i, y, k}}, digest_of(chunk));
+        }
+      }
+    }
+    return to_hex(sum);
+  };
+  CHECK(region(pin, -4, -4) == "A");
+  CHECK(region(pin, 200, 150) == "B");
+  CHECK(region(pin, 16777200, -16777216) == "C");
+  CHECK(region({"landscape", 1, 0xffffffffffffffffULL,
+                "sea_level = 20\ntrees = 150\nplants = 30\ncaves = 1"},
+               -60, 40) == "D");
+  const auto spawn = (*generator_of(pin))->spawn();
+  REQUIRE(spawn.has_value());
+  CHECK(*spawn == VoxelPos{1, 2, 3});
+}
+
+TEST_CASE("coarse landscape of version 1 gives the pinned voxels", "[generate][golden]") {
+  const auto landscape = *generator_of({"landscape", 1, 7, ""});
+  const auto digest = [&](VoxelPos origin, std::int32_t edge, std::uint8_t level) {
+    return to_hex(digest_of(*landscape->coarse(origin, edge, level)));
+  };
+  CHECK(digest({0, 0, 0}, 32, 3) == "E");
+  CHECK(digest({-1024, 0, 2048}, 64, 4) == "F");
+  CHECK(digest({-16384, -16384, -16384}, 64, 8) == "G");
 }
 
 TEST_CASE("flat version 1 gives the pinned voxels", "[generate][golden]") {

@@ -32,6 +32,7 @@ struct Evening : TitleBench {
   Evening() : world(folder / "data/runstone/worlds/home") {
     std::filesystem::create_directories(std::filesystem::path(world).parent_path());
     WorldCreation creation;
+    creation.generator = "terrain";
     creation.seed = 1;
     REQUIRE(open_or_create_world(world, creation).has_value());
   }

@@ -24,16 +24,18 @@ std::uint8_t random_side(SplitMix64& random) {
 }  // namespace
 
 TEST_CASE("a voxel is the same in every chunk that holds it", "[generate][property]") {
-  const auto name = GENERATE(as<std::string>{}, "empty", "flat", "terrain");
+  const auto name = GENERATE(as<std::string>{}, "empty", "flat", "landscape", "terrain");
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 60; ++round) {
-    const auto made = make_generator({name, 1, random.below(5), ""}, default_material_table());
+    const auto made = make_generator({name, 1, random.below(5), name == "landscape" ? "caves = 1" : ""},
+                                     landscape_material_table());
     REQUIRE(made.has_value());
     const Generator& generator = **made;
     const std::int32_t reach = round % 8 == 0 ? kWorldLimit - 200 : 500;
-    const VoxelPos at{random.between(-reach, reach),
-                      random.between(generator.y_min() - 20, generator.y_max() + 20),
-                      random.between(-reach, reach)};
+    VoxelPos at{random.between(-reach, reach),
+                random.between(generator.y_min() - 20, generator.y_max() + 20),
+                random.between(-reach, reach)};
+    if (round % 2 == 1) at.y = generator.surface_y(at.x, at.z) + random.between(-12, 4);
     const Material expected =
         voxel(generator, at, Extent::cube(32), origin_of(chunk_of(at, 32), 32));
     CAPTURE(name, at.x, at.y, at.z);
@@ -49,9 +51,9 @@ TEST_CASE("a voxel is the same in every chunk that holds it", "[generate][proper
 
 TEST_CASE("the surface is the top of the voxels, and the bounds hold them all",
           "[generate][property]") {
-  const auto name = GENERATE(as<std::string>{}, "flat", "terrain");
+  const auto name = GENERATE(as<std::string>{}, "flat", "landscape", "terrain");
   SplitMix64 random(Catch::rngSeed());
-  const auto made = make_generator({name, 1, 11, ""}, default_material_table());
+  const auto made = make_generator({name, 1, 11, ""}, landscape_material_table());
   REQUIRE(made.has_value());
   const Generator& generator = **made;
   for (int round = 0; round < 200; ++round) {

@@ -71,7 +71,7 @@ TEST_CASE(
 TEST_CASE("a local world is joined instead of a server", "[client_app]") {
   const ClientOptions options = accepted({"--local", "my world", "--headless"});
   CHECK(options.local_world == "my world");
-  CHECK(options.local_creation == NewLocalWorld{"terrain", std::nullopt});
+  CHECK(options.local_creation == NewLocalWorld{"landscape", std::nullopt});
   CHECK(accepted({"--local", "w", "--generator", "flat", "--seed", "7"}).local_creation ==
         NewLocalWorld{"flat", 7});
   CHECK(refused({"--local", "w", "--connect", "a"}) == 2);

@@ -54,7 +54,7 @@ TEST_CASE_METHOD(MenuBench, "the first button of the title makes a world if ther
   const auto made = only_action<MakeLocalWorld>();
   CHECK(made.world == "home");
   CHECK(made.name == "ana");
-  CHECK(made.generator == "terrain");
+  CHECK(made.generator == "landscape");
   CHECK(made.seed == std::nullopt);
 }
 

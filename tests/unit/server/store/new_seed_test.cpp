@@ -21,18 +21,32 @@ WorldMeta meta_of_new(const std::string& folder, const WorldCreation& creation) 
 
 TEST_CASE("worlds without a seed each draw one, which they keep", "[store][sqlite]") {
   const TempFolder folder;
+  WorldCreation terrain;
+  terrain.generator = "terrain";
   std::set<std::uint64_t> seeds;
   for (int i = 0; i < 4; ++i) {
     const std::string world = folder / std::to_string(i);
-    const WorldMeta meta = meta_of_new(world, {});
+    const WorldMeta meta = meta_of_new(world, terrain);
     seeds.insert(meta.generator.seed);
     CHECK(meta.generator.seed <= 0xffff'ffffU);
-    CHECK(meta_of_new(world, {}).generator.seed == meta.generator.seed);
+    CHECK(meta_of_new(world, terrain).generator.seed == meta.generator.seed);
     // Players arrive at the origin, also where another seed has the sea there.
     CHECK(meta.spawn.x == 0.5);
     CHECK(meta.spawn.z == 0.5);
   }
   CHECK(seeds.size() == 4);
+}
+
+TEST_CASE("a new world is a landscape with its plants, unless a generator is named",
+          "[store][sqlite]") {
+  const TempFolder folder;
+  const WorldMeta landscape = meta_of_new(folder / "landscape", {});
+  CHECK(landscape.generator.name == "landscape");
+  CHECK(landscape.generator.seed <= 0xffff'ffffU);
+  CHECK(landscape.materials == landscape_material_table());
+  WorldCreation flat;
+  flat.generator = "flat";
+  CHECK(meta_of_new(folder / "flat", flat).materials == default_material_table());
 }
 
 TEST_CASE("a world with a seed has that one", "[store][sqlite]") {
