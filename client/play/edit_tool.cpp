@@ -43,7 +43,10 @@ std::string name_of(const ToolAction& action) {
 }  // namespace
 
 std::optional<RayHit> EditTool::pick() const {
-  return runstone::pick(session_.replica(), *shapes_, player_.eye(), player_.direction(), kReach);
+  static const std::vector<bool> kNoLiquids;
+  const bool holds_liquid = player_.held() < liquids_.size() && liquids_[player_.held()];
+  return runstone::pick(session_.replica(), *shapes_, player_.eye(), player_.direction(), kReach,
+                        holds_liquid ? kNoLiquids : liquids_);
 }
 
 Aim EditTool::aim() const {

@@ -13,6 +13,8 @@ namespace runstone {
 /// v; a negative face reverses u, so that it has the opposite winding. `inside` is the depth below
 /// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
 /// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below.
+/// `top` is 1 at the upper corners of upper and lateral faces of cubes, and 0 elsewhere. A step of a
+/// liquid (kLiquidStepFace) is the upper part of a lateral face.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \
@@ -21,7 +23,7 @@ namespace runstone {
   "#else\n"                                                                            \
   "const int first_vertex = 0;\n"                                                      \
   "#endif\n"                                                                           \
-  "struct QuadCorner { vec3 at, normal, outward; uint material; float inside; };\n"    \
+  "struct QuadCorner { vec3 at, normal, outward; uint material; float inside, top; };\n"    \
   "QuadCorner quad_corner() {\n"                                                       \
   "  int number = first_vertex + gl_VertexID;\n"                                       \
   "  uvec2 quad = texelFetch(quads, texel_place(number >> 2), 0).xy;\n"                \
@@ -42,8 +44,15 @@ namespace runstone {
   "  c.inside = 0.5;\n"                                                                \
   "  vec3 place = vec3(side, cu * w, cv * h);\n"                                       \
   "  uint face = hi >> 22;\n"                                                          \
+  "  c.top = d == 3u ? 1.0 : d == 2u ? 0.0 : d < 2u ? cu : cv;\n"                      \
+  "  uint first = 0u;\n"                                                               \
   "  if (face != 0u) {\n"                                                              \
-  "    uint first = texelFetch(shapes, texel_place(int(c.material)), 0).x;\n"          \
+  "    c.top = 0.0;\n"                                                                 \
+  "    first = texelFetch(shapes, texel_place(int(c.material)), 0).x;\n"               \
+  "    vec2 low = d < 2u ? vec2(0.875, 0.0) : vec2(0.0, 0.875);\n"                     \
+  "    if (first == 0u) place.yz = mix(low, vec2(w, h), vec2(cu, cv));\n"              \
+  "  }\n"                                                                              \
+  "  if (first != 0u) {\n"                                                             \
   "    uint f = texelFetch(shapes, texel_place(int(first + face) - 1), 0).x;\n"        \
   "    vec3 low = vec3(f & 31u, (f >> 10) & 31u, (f >> 20) & 31u) * 0.0625;\n"         \
   "    vec3 high = vec3((f >> 5) & 31u, (f >> 15) & 31u, (f >> 25) & 31u) * 0.0625;\n" \

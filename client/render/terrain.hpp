@@ -161,7 +161,8 @@ class Terrain {
   static constexpr std::size_t kVariants = 32;
   struct Program {
     GlProgram gl;
-    GLint origin = -1, pattern = -1, scale = -1, drawn = -1;  // the uniforms of a chunk
+    // The uniforms of a chunk. `edge` is that of a part of a tile.
+    GLint origin = -1, pattern = -1, scale = -1, edge = -1, drawn = -1;
     GLint first_vertex = -1;                                  // as QuadBuffer::draw() takes it
     int cascade = -1;  // of the last chunk in this pass; -1: none
   };

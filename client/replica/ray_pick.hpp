@@ -3,6 +3,7 @@
 // Source: Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing".
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "client/replica/replica.hpp"
 #include "common/core/coords.hpp"
@@ -30,9 +31,10 @@ LookDirection look_direction(double yaw, double pitch);
 
 /// Walks from `eye` along `look` for at most `reach` voxels. Returns nullopt if nothing is hit, or
 /// at the first chunk that is not shown: a player cannot edit what is not visible. The planes of
-/// plants are hit by their box.
+/// plants are hit by their box. The ray goes through the materials of `passes`, by id.
 std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, const WorldPos& eye,
-                           const LookDirection& look, double reach);
+                           const LookDirection& look, double reach,
+                           const std::vector<bool>& passes = {});
 
 /// Returns the position of a voxel placed against the hit face, or nullopt if the ray started
 /// inside the hit voxel.
