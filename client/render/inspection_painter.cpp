@@ -19,8 +19,8 @@ constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_LOWE
     "uniform vec3 origin;\n"  // of the chunk or tile, minus eye
     "uniform float scale;\n"  // world units of a voxel
     "uniform sampler2D palette, looks;\n"
-    "out vec3 local;\n"       // the middle of the face's voxel, in the chunk
-    "out vec2 side;\n"        // -1 .. 1 along both sides of the quad
+    "out vec3 local;\n"  // the middle of the face's voxel, in the chunk
+    "out vec2 side;\n"   // -1 .. 1 along both sides of the quad
     "flat out vec3 normal;\n"
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"

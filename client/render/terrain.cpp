@@ -113,9 +113,9 @@ glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
 
 Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
-      ghost_program_(
-          link_program("ghost", (std::string(kLiquidVariant) + kTerrainVertexShader).c_str(),
-                       kGhostFragmentShader)),
+      ghost_program_(link_program("ghost",
+                                  (std::string(kLiquidVariant) + kTerrainVertexShader).c_str(),
+                                  kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
   set_materials(MaterialTable{}, nullptr);
 }

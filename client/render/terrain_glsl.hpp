@@ -29,8 +29,8 @@ namespace runstone {
   "void fade() {}\n"                                                         \
   "#endif\n"
 
-inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
-    RUNSTONE_LOWERED_GLSL
+inline constexpr const char* kTerrainVertexShader =
+    RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL RUNSTONE_LOWERED_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world

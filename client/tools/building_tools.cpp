@@ -279,8 +279,8 @@ class FloodTool final : public Tool {
  public:
   FloodTool()
       : Tool("flood", "fills a hollow up to a level; with depth 0 a second click gives the level",
-             {{"depth", "voxels", 0, 64, 4, {}}, {"voxels", "voxels", 1, 4'000'000, 1'000'000, {}}}) {
-  }
+             {{"depth", "voxels", 0, 64, 4, {}},
+              {"voxels", "voxels", 1, 4'000'000, 1'000'000, {}}}) {}
   std::size_t points_before() const override { return value("depth") == 0 ? 1 : 0; }
   std::string_view place_name(std::size_t i) const override {
     return i == 0 ? "place in the hollow" : "place at the level";
@@ -292,22 +292,21 @@ ToolEdits FloodTool::plan(const ToolInput& input) const {
   if (input.button == ToolButton::clear) return failure("flood with the right button");
   BasinFlood flood;
   flood.start = input.points.empty() ? input.target : input.points.front();
-  flood.level = input.points.empty() ? flood.start.y + std::max(value("depth"), 1) - 1
-                                     : input.target.y;
+  flood.level =
+      input.points.empty() ? flood.start.y + std::max(value("depth"), 1) - 1 : input.target.y;
   flood.material = input.aim.held;
   if (flood.material == kEmpty) return failure("you hold nothing to flood with");
   flood.voxels_max = static_cast<std::uint64_t>(value("voxels"));
   flood.passes = liquids(input.materials);
   if (flood.passes.size() <= flood.material) flood.passes.resize(std::size_t{flood.material} + 1);
   flood.passes[flood.material] = true;
-  auto basin = flood_basin(flood, input.replica.chunk_edge(), [&](ChunkCoord at) {
-    return input.replica.shown({0, at});
-  });
+  auto basin = flood_basin(flood, input.replica.chunk_edge(),
+                           [&](ChunkCoord at) { return input.replica.shown({0, at}); });
   if (basin) {
     // Another player may build there before the edit is ordered: then those voxels stay.
-    return paste_of_build({std::move(basin->build), basin->at, {MaskKind::only_empty, kEmpty},
-                           EmptyCells::skipped},
-                          input.replica.edit_limits());
+    return paste_of_build(
+        {std::move(basin->build), basin->at, {MaskKind::only_empty, kEmpty}, EmptyCells::skipped},
+        input.replica.edit_limits());
   }
   switch (basin.error()) {
     case BasinFault::above_level:

@@ -200,9 +200,9 @@ class BasinFiller {
       return static_cast<std::uint8_t>(high - low);
     };
     const VoxelPos origin = origin_of(at, edge_);
-    RunBuilder out({side(part.min.x, part.max.x), side(part.min.y, part.max.y),
-                    side(part.min.z, part.max.z)},
-                   AxisOrder::xyz);
+    RunBuilder out(
+        {side(part.min.x, part.max.x), side(part.min.y, part.max.y), side(part.min.z, part.max.z)},
+        AxisOrder::xyz);
     const auto width = static_cast<std::uint32_t>(part.max.x - part.min.x);
     const std::int32_t x0 = part.min.x - origin.x;
     std::uint32_t line_end = 0;

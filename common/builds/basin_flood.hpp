@@ -1,7 +1,7 @@
 // Basin flood: the voxels that a liquid would fill from one place up to a level. It spreads through
-// empty voxels, and through materials that let it pass, by steps along the axes, and never above the
-// level. It reads runs and returns runs: the lines of a chunk are stretches of voxels, and a stretch is
-// reached as a whole. Pure. One thread.
+// empty voxels, and through materials that let it pass, by steps along the axes, and never above
+// the level. It reads runs and returns runs: the lines of a chunk are stretches of voxels, and a
+// stretch is reached as a whole. Pure. One thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -18,19 +18,19 @@ namespace runstone {
 
 struct BasinFlood {
   VoxelPos start;
-  std::int32_t level = 0;       // the highest layer that is filled
-  Material material = kEmpty;   // that fills; not empty
+  std::int32_t level = 0;        // the highest layer that is filled
+  Material material = kEmpty;    // that fills; not empty
   std::uint64_t voxels_max = 0;  // of the basin, with those that are not empty
-  /// By material: the flood spreads through its voxels, and leaves them as they are. Materials without
-  /// an entry stop it. Empty voxels never do.
+  /// By material: the flood spreads through its voxels, and leaves them as they are. Materials
+  /// without an entry stop it. Empty voxels never do.
   std::vector<bool> passes;
 };
 
 /// The empty voxels of a basin as a build of the material that fills them.
 struct FloodedBasin {
   BuildPtr build;
-  VoxelPos at;                 // of the corner of the build
-  std::uint64_t voxels = 0;    // of the basin, with those that are not empty
+  VoxelPos at;               // of the corner of the build
+  std::uint64_t voxels = 0;  // of the basin, with those that are not empty
 };
 
 enum class BasinFault : std::uint8_t {
@@ -45,8 +45,9 @@ enum class BasinFault : std::uint8_t {
 using ChunkLookup = std::function<std::shared_ptr<const RunChunk>(ChunkCoord)>;
 
 /// Returns the basin around the start. The result does not depend on the axis orders of the chunks.
-/// Requires chunks of `edge` voxels a side that stay as they are during the call. Cost: O(stretches of
-/// the chunks that the basin reaches, and their runs) below the level; it stops soon after voxels_max.
+/// Requires chunks of `edge` voxels a side that stay as they are during the call. Cost: O(stretches
+/// of the chunks that the basin reaches, and their runs) below the level; it stops soon after
+/// voxels_max.
 Result<FloodedBasin, BasinFault> flood_basin(const BasinFlood& flood, std::int32_t edge,
                                              const ChunkLookup& chunk_at);
 

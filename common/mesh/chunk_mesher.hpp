@@ -24,9 +24,9 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
                 ChunkBorders* chunk_borders = nullptr);
 
 /// Meshes again the layers of cubes that an edit touched, as mesh_rdm_layers() does, and all shapes
-/// and steps of the chunk. The quads are equal to those of mesh_chunk(), in the same order. Requires what
-/// mesh_rdm_layers() does; the shapes of `mesh` are not read. Returns true if only layers of cubes
-/// were meshed.
+/// and steps of the chunk. The quads are equal to those of mesh_chunk(), in the same order.
+/// Requires what mesh_rdm_layers() does; the shapes of `mesh` are not read. Returns true if only
+/// layers of cubes were meshed.
 bool mesh_chunk_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                        const MeshBorders& borders, const MeshMaterials& materials,
                        const DirtyLayers& dirty,

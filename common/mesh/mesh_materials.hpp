@@ -28,9 +28,7 @@ struct MeshMaterials {
   ShapeTable shapes;
   /// By material: a transparent liquid, whose surface lies lower. Empty if there is none.
   std::vector<bool> liquids;
-  bool is_liquid(Material material) const {
-    return material < liquids.size() && liquids[material];
-  }
+  bool is_liquid(Material material) const { return material < liquids.size() && liquids[material]; }
 };
 
 /// Never null.

@@ -4,9 +4,8 @@
 //   bits 28..34 height - 1           faces along v
 //   bits 35..37 direction            core/coords.hpp
 //   bits 38..53 material             u16
-//   bits 54..63 face                 0: the faces fill a side of each voxel. Otherwise face - 1 is
-//                                    that of the material's shape (common/shapes/shape_faces.hpp),
-//                                    or, if the material is a cube, the face is kLiquidStepFace
+//   bits 54..63 face                 0: a side of each voxel. n: face n - 1 of the material's shape
+//                                    (shape_faces.hpp), or 1: a step of a liquid (liquid_steps.hpp)
 // (u, v) per axis are x: (y, z), y: (z, x), z: (x, y). u x v points along +axis (right-handed), so
 // a positive face winds counter-clockwise over u, v seen from outside. Coordinates are local to the
 // chunk.
@@ -27,13 +26,6 @@ struct QuadFields {
   std::uint16_t face = 0;  // 0 .. kShapeFacesMax
   friend auto operator<=>(const QuadFields&, const QuadFields&) = default;
 };
-
-/// The surface of a liquid lies so many sixteenths of a voxel lower than its cube. The renderer lowers
-/// the upper faces, and the upper edges of the lateral ones.
-inline constexpr int kLiquidDrop = 2;
-/// The face of a quad that stands for the upper kLiquidDrop sixteenths of lateral faces of a liquid
-/// (common/mesh/shapes/liquid_steps.hpp). It is one voxel high.
-inline constexpr std::uint16_t kLiquidStepFace = 1;
 
 struct Quad {
   std::uint64_t bits = 0;

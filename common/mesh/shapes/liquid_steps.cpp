@@ -91,8 +91,8 @@ class StepFinder {
     return above && (*above == liquid || visibility_[*above] == Visibility::opaque);
   }
 
-  /// Adds steps on side d of the voxels of a row that `shows` names. Equal ones that lie side by side
-  /// are joined. The row lies across y and the axis of d.
+  /// Adds steps on side d of the voxels of a row that `shows` names. Equal ones that lie side by
+  /// side are joined. The row lies across y and the axis of d.
   template <class F>
   void add_row(Place voxel, int count, Direction d, Material liquid, const F& shows) {
     const bool is_along_x = axis_of(d) == Axis::x;
@@ -146,9 +146,8 @@ void add_liquid_steps(const RunChunk& chunk, const MeshNeighbours& neighbours,
     }
   }
   if (out.size() == before) return;
-  std::stable_sort(out.begin(), out.end(), [](Quad a, Quad b) {
-    return unpack(a).direction < unpack(b).direction;
-  });
+  std::stable_sort(out.begin(), out.end(),
+                   [](Quad a, Quad b) { return unpack(a).direction < unpack(b).direction; });
 }
 
 }  // namespace runstone

@@ -1,7 +1,7 @@
 // Pinholes and dots of distant ground: pixels inside a face that show something else, near the eye,
-// far away and at the borders of levels. Chunks and tiles are drawn twice: as merged quads, and as one
-// quad for each face that can be seen. The latter have no T-junctions and none of the faces that
-// tiles have on borders which other ground covers. The hidden case [.pinholes] looks from
+// far away and at the borders of levels. Chunks and tiles are drawn twice: as merged quads, and as
+// one quad for each face that can be seen. The latter have no T-junctions and none of the faces
+// that tiles have on borders which other ground covers. The hidden case [.pinholes] looks from
 // RUNSTONE_PLACES places, 1,000 if it is not set; RUNSTONE_PICTURES names a folder for the pictures
 // with pinholes.
 #include <catch2/catch.hpp>
@@ -78,8 +78,8 @@ class FarBodies {
       for (unsigned i = 0; i < tile->octants.size(); ++i) {
         const auto bit = [i](unsigned n) { return static_cast<std::int32_t>(i >> n & 1U) * kHalf; };
         out.octants.push_back(coloured(tile->octants[i], key,
-                                       {first.x + bit(0), first.y + bit(1), first.z + bit(2)}, kHalf,
-                                       into_faces));
+                                       {first.x + bit(0), first.y + bit(1), first.z + bit(2)},
+                                       kHalf, into_faces));
       }
       renderer.upload_tile(key, kFarEdge, out);
     }
@@ -122,8 +122,8 @@ class FarBodies {
     return material_at(*found->second, local);
   }
 
-  /// Returns true if opaque ground lies on all of a face of a voxel that looks in a direction to this
-  /// voxel.
+  /// Returns true if opaque ground lies on all of a face of a voxel that looks in a direction to
+  /// this voxel.
   bool is_covered(std::uint8_t level, ChunkCoord voxel, Direction from) const {
     ChunkCoord coarse = voxel;
     for (std::uint8_t at = level; at <= tile_levels(view_); ++at) {
@@ -171,9 +171,8 @@ void look_around(GlContext& context, FarWorld& world, SplitMix64& rng, int camer
   };
   const double x = real(-4000, 4000), z = real(-4000, 4000);
   View view;
-  view.centre = chunk_of({static_cast<std::int32_t>(x), surface(x, z) + 8,
-                          static_cast<std::int32_t>(z)},
-                         kFarEdge);
+  view.centre = chunk_of(
+      {static_cast<std::int32_t>(x), surface(x, z) + 8, static_cast<std::int32_t>(z)}, kFarEdge);
   view.radius_h = 4;
   view.radius_v = 3;
   view.levels = 3;
@@ -230,7 +229,8 @@ FarScan scan(GlContext& context, int places) {
   for (int scene = 0; static_cast<int>(out.places) < places; ++scene) {
     const bool is_flat = scene % 3 == 0;
     FarWorld world(kFarEdge, default_material_table(), is_flat ? kLevels[scene / 3 % 2] : kDry,
-                   scene % 2 == 0 ? TileVeil::veiled : TileVeil::none, is_flat ? "flat" : "terrain");
+                   scene % 2 == 0 ? TileVeil::veiled : TileVeil::none,
+                   is_flat ? "flat" : "terrain");
     look_around(context, world, rng,
                 std::min(kCamerasOfScene, places - static_cast<int>(out.places)), out);
   }

@@ -32,19 +32,19 @@ struct BasinWorld {
   }
   std::map<ChunkCoord, std::shared_ptr<const RunChunk>> chunks(SplitMix64& rng) const {
     std::map<ChunkCoord, std::shared_ptr<const RunChunk>> out;
-    for_each_cell({sides.x / kBasinEdge, sides.y / kBasinEdge, sides.z / kBasinEdge},
-                  [&](VoxelPos c) {
-                    const VoxelPos first{low.x + c.x * kBasinEdge, low.y + c.y * kBasinEdge,
-                                         low.z + c.z * kBasinEdge};
-                    if (!is_known(first)) return;
-                    RunBuilder made(Extent::cube(kBasinEdge), AxisOrder::xyz);
-                    for_each_cell({kBasinEdge, kBasinEdge, kBasinEdge}, [&](VoxelPos v) {
-                      made.append(1, at({first.x + v.x, first.y + v.y, first.z + v.z}));
-                    });
-                    out.emplace(chunk_of(first, kBasinEdge),
-                                std::make_shared<const RunChunk>(reorder(
-                                    made.finish(), kAxisOrders[rng.below(kAxisOrderCount)])));
-                  });
+    for_each_cell(
+        {sides.x / kBasinEdge, sides.y / kBasinEdge, sides.z / kBasinEdge}, [&](VoxelPos c) {
+          const VoxelPos first{low.x + c.x * kBasinEdge, low.y + c.y * kBasinEdge,
+                               low.z + c.z * kBasinEdge};
+          if (!is_known(first)) return;
+          RunBuilder made(Extent::cube(kBasinEdge), AxisOrder::xyz);
+          for_each_cell({kBasinEdge, kBasinEdge, kBasinEdge}, [&](VoxelPos v) {
+            made.append(1, at({first.x + v.x, first.y + v.y, first.z + v.z}));
+          });
+          out.emplace(chunk_of(first, kBasinEdge),
+                      std::make_shared<const RunChunk>(
+                          reorder(made.finish(), kAxisOrders[rng.below(kAxisOrderCount)])));
+        });
     return out;
   }
 };
@@ -68,9 +68,9 @@ BasinWorld random_basins(SplitMix64& rng) {
     const auto place = [&](std::int32_t from, std::int32_t along) {
       return from + static_cast<std::int32_t>(rng.below(static_cast<std::uint64_t>(along)));
     };
-    out.missing.insert(chunk_of({place(out.low.x, sides.x), place(out.low.y, sides.y),
-                                 place(out.low.z, sides.z)},
-                                kBasinEdge));
+    out.missing.insert(
+        chunk_of({place(out.low.x, sides.x), place(out.low.y, sides.y), place(out.low.z, sides.z)},
+                 kBasinEdge));
   }
   return out;
 }
@@ -171,8 +171,8 @@ TEST_CASE("a basin in runs has the voxels of a flood voxel by voxel", "[builds][
     });
     REQUIRE(got == cells);
     // A flood that stops one layer earlier is another one, unless the layer is full of rock.
-    const bool has_top = std::any_of(cells.begin(), cells.end(),
-                                     [&](VoxelPos at) { return at.y == flood.level; });
+    const bool has_top =
+        std::any_of(cells.begin(), cells.end(), [&](VoxelPos at) { return at.y == flood.level; });
     --flood.level;
     CHECK((dense_flood(world, flood).voxels != expected.voxels || !has_top));
   }
@@ -181,7 +181,8 @@ TEST_CASE("a basin in runs has the voxels of a flood voxel by voxel", "[builds][
 }
 
 TEST_CASE("a basin of many chunks stops at its limit of voxels", "[builds]") {
-  const auto air = std::make_shared<const RunChunk>(uniform_chunk(Extent::cube(kBasinEdge), kEmpty));
+  const auto air =
+      std::make_shared<const RunChunk>(uniform_chunk(Extent::cube(kBasinEdge), kEmpty));
   std::size_t asked = 0;
   const auto everywhere = [&](ChunkCoord) {
     ++asked;

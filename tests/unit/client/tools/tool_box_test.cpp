@@ -138,10 +138,10 @@ TEST_CASE_METHOD(FlatBench, "flood fills a hollow up to a level, with all of it 
   predict(*made);
   CHECK(at({-4, -5, 4}) == 2);
   CHECK(at({4, -3, 4}) == 2);
-  CHECK(at({4, -2, 4}) == kEmpty);    // above the level
-  CHECK(at({0, -4, 0}) == 1);         // the pillar
-  CHECK(at({-4, -5, -4}) == 3);       // the pond
-  CHECK(at({-4, -4, -4}) == 2);       // over it
+  CHECK(at({4, -2, 4}) == kEmpty);  // above the level
+  CHECK(at({0, -4, 0}) == 1);       // the pillar
+  CHECK(at({-4, -5, -4}) == 3);     // the pond
+  CHECK(at({-4, -4, -4}) == 2);     // over it
   CHECK(refusal({2, -6, 2}, ToolButton::clear) == "flood with the right button");
   // The level of a second click.
   REQUIRE(box.set_parameter("depth", 0));
@@ -152,9 +152,10 @@ TEST_CASE_METHOD(FlatBench, "flood fills a hollow up to a level, with all of it 
   // Over the rim it would flood the world.
   REQUIRE(box.set_parameter("depth", 1));
   REQUIRE(box.set_parameter("voxels", 500));
-  CHECK(refusal({7, -1, 7}, ToolButton::place) ==
-        "up to that level the hollow has more than 500 voxels: it may be open to a side, or needs a "
-        "higher limit");
+  CHECK(
+      refusal({7, -1, 7}, ToolButton::place) ==
+      "up to that level the hollow has more than 500 voxels: it may be open to a side, or needs a "
+      "higher limit");
   REQUIRE(box.set_parameter("voxels", 1'000'000));
   CHECK(refusal({7, -1, 7}, ToolButton::place) == "the hollow reaches ground that is not loaded");
 }
