@@ -21,7 +21,6 @@
 #include "client/tools/tool_command.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
-#include "common/materials/material_table.hpp"
 #include "common/shapes/shape_table.hpp"
 
 namespace runstone {
@@ -41,11 +40,8 @@ class EditTool {
         on_refused_(std::move(on_refused)) {}
 
   const Replica& replica() const { return session_.replica(); }
-  /// Sets the world's materials and their shapes, which pick() hits.
-  void set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
-    liquids_ = liquids(materials);
-    shapes_ = std::move(shapes);
-  }
+  /// Sets the shapes of the world's materials, which pick() hits.
+  void set_shapes(ShapeTablePtr shapes) { shapes_ = std::move(shapes); }
   const ShapeTable& shapes() const { return *shapes_; }
   ToolBox& box() { return box_; }
   const ToolBox& box() const { return box_; }
@@ -130,7 +126,6 @@ class EditTool {
   ToolBox& box_;
   const OnRefused on_refused_;
   ShapeTablePtr shapes_ = std::make_shared<const ShapeTable>();
-  std::vector<bool> liquids_;  // by material
   std::optional<FixedAim> fixed_aim_;
   std::unique_ptr<ActionSender> sender_;  // of the action under way, or null
   std::string build_name_;

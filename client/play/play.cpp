@@ -81,7 +81,7 @@ void Play::set_materials(const MaterialTable& materials) {
   const MeshMaterialsPtr meshed = mesh_materials_of(materials);
   pipeline_.set_materials(materials, meshed);
   motion_.set_materials(materials, shapes_in(meshed));
-  tool_.set_materials(materials, shapes_in(meshed));
+  tool_.set_shapes(shapes_in(meshed));
   panels_.set_materials(materials, meshed);
   others_.set_materials(meshed);
   const std::string lost = tool_.box().set_materials(materials, meshed);

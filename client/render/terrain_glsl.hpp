@@ -59,14 +59,13 @@ inline constexpr const char* kTerrainVertexShader =
     "  vec3 outward = c.outward;\n"
     "#ifdef RUNSTONE_TILE\n"
     // The faces on the border of a part are drawn also where the ground of the next part covers
-    // them. There the growth would show them as dots: above flat ground, and on cliffs. So these
-    // faces do not grow at the ends of the part, walls do not grow upward, and all of them lie a
-    // little farther than they are, walls more than the others. Pixels stay, depths change by less
-    // than a voxel.
+    // them. There the growth would show them as dots: above flat ground, and on cliffs. So walls
+    // grow neither upward nor at the ends of the part, and all of these faces lie a little farther
+    // than they are, walls more than the others. Pixels stay, depths change by less than a voxel.
     "  vec3 end = vec3(equal(abs(c.at - 0.5 * edge), vec3(0.5 * edge)));\n"
     "  float on_border = dot(end, abs(c.normal));\n"
     "  float is_wall = on_border * (1.0 - abs(c.normal.y));\n"
-    "  outward *= 1.0 - on_border * end;\n"
+    "  outward *= 1.0 - is_wall * end;\n"
     "  outward.y = min(outward.y, 1.0 - is_wall);\n"
     "  float far = sqrt(d2);\n"
     "  float behind = seam * (10.0 + 1.5 * far / max(abs(relative.y), 0.25));\n"
@@ -212,6 +211,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "  float s = max(dot(mirrored, sun_direction), 0.0);\n"
     "  float s8 = s * s; s8 *= s8; s8 *= s8; float s64 = s8 * s8; s64 *= s64; s64 *= s64;\n"
     "  reflection += sun_colour * (s64 * s64 * 2.0 * lit_by_sun);\n"
+    "  body = mix(body, ambient_up * 1.4 + sun_colour * (0.25 * lit_by_sun), below);\n"
     "  float deep = colour.a;\n"
     "#ifdef RUNSTONE_DEPTH\n"
     // Both distances are along the view axis.
@@ -219,7 +219,8 @@ inline constexpr const char* kTransparentFragmentShader =
     "  float path = (1.0 - below) * max(distance_of(scene) - here, 0.0) * far / here;\n"
     "  float absorbed = 1.0 - exp(-0.16 * path);\n"
     "  deep = mix(deep, mix(0.35, 0.96, absorbed), liquid);\n"
-    "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid);\n"
+    "  deep = mix(deep, 0.6, below);\n"
+    "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid - below);\n"
     "#endif\n"
     "  vec3 c = mix(body, reflection, fresnel * mix(0.53 * (1.0 - roughness()), 1.0, liquid));\n"
     "  float fog = smoothstep(fog_range.x, fog_range.y, far);\n"

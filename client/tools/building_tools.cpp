@@ -11,6 +11,7 @@
 #include "client/tools/surface_flood.hpp"
 #include "client/tools/voxel_joins.hpp"
 #include "common/builds/basin_flood.hpp"
+#include "common/materials/liquids.hpp"
 
 namespace runstone {
 namespace {

@@ -178,14 +178,6 @@ std::vector<Visibility> half_filled_visibilities(const MaterialTable& table) {
   return out;
 }
 
-std::vector<bool> liquids(const MaterialTable& table) {
-  std::vector<bool> out;
-  out.reserve(table.size());
-  for (const MaterialInfo& row : table.rows())
-    out.push_back(row.body == MaterialBody::liquid && row.visibility != Visibility::empty);
-  return out;
-}
-
 std::vector<Shape> shapes_of(const MaterialTable& table) {
   std::vector<Shape> out;
   out.reserve(table.size());

@@ -112,9 +112,6 @@ std::vector<Visibility> cube_visibilities(const MaterialTable& table);
 /// O(boxes of the materials).
 std::vector<Visibility> half_filled_visibilities(const MaterialTable& table);
 
-/// Returns by id which materials are liquids that are not empty.
-std::vector<bool> liquids(const MaterialTable& table);
-
 /// Returns the shape of each material by id, as ShapeTable takes them.
 std::vector<Shape> shapes_of(const MaterialTable& table);
 

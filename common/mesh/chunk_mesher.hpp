@@ -4,7 +4,6 @@
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/mesh_materials.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/shapes/liquid_steps.hpp"
 #include "common/mesh/shapes/shape_mesher.hpp"
 
 namespace runstone {
@@ -13,7 +12,6 @@ namespace runstone {
 struct ChunkMeshScratch {
   RdmScratch cubes;
   ShapeScratch shapes;
-  LiquidScratch liquids;
 };
 
 /// Replaces `out` by the mesh of `chunk`. Requires what mesh_rdm() with kept borders does; borders

@@ -4,8 +4,8 @@
 //   bits 28..34 height - 1           faces along v
 //   bits 35..37 direction            core/coords.hpp
 //   bits 38..53 material             u16
-//   bits 54..63 face                 0: a side of each voxel. n: face n - 1 of the material's shape
-//                                    (shape_faces.hpp), or 1: a step of a liquid (liquid_steps.hpp)
+//   bits 54..63 face                 0: the faces fill a side of each voxel. Otherwise face - 1 is
+//                                    that of the material's shape (common/shapes/shape_faces.hpp)
 // (u, v) per axis are x: (y, z), y: (z, x), z: (x, y). u x v points along +axis (right-handed), so
 // a positive face winds counter-clockwise over u, v seen from outside. Coordinates are local to the
 // chunk.

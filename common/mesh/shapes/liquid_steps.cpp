@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
+#include "common/mesh/shapes/beyond_border.hpp"
+#include "common/mesh/shapes/face_lists.hpp"
 
 namespace runstone {
 namespace {
@@ -21,13 +23,9 @@ using Place = std::array<int, 3>;
 class StepFinder {
  public:
   StepFinder(const RunChunk& chunk, const MeshNeighbours& neighbours,
-             const MeshMaterials& materials, shape_mesh::BeyondBorder& beyond,
-             std::vector<Quad>& out)
-      : chunk_(chunk),
-        neighbours_(neighbours),
-        visibility_(materials.cubes),
-        beyond_(beyond),
-        out_(out) {
+             const MeshMaterials& materials, std::vector<Quad>& out)
+      : chunk_(chunk), neighbours_(neighbours), visibility_(materials.cubes), out_(out) {
+    beyond_.begin(chunk, neighbours);
     for (std::size_t axis = 0; axis < 3; ++axis) sides_[axis] = chunk.extent.sides()[axis];
   }
 
@@ -120,7 +118,7 @@ class StepFinder {
   const RunChunk& chunk_;
   const MeshNeighbours& neighbours_;
   const VisibilityTable& visibility_;
-  shape_mesh::BeyondBorder& beyond_;
+  shape_mesh::BeyondBorder beyond_;
   std::vector<Quad>& out_;
   std::array<int, 3> sides_{};
 };
@@ -128,21 +126,19 @@ class StepFinder {
 }  // namespace
 
 void add_liquid_steps(const RunChunk& chunk, const MeshNeighbours& neighbours,
-                      const MeshMaterials& materials, LiquidScratch& scratch, ChunkMesh& mesh) {
+                      const MeshMaterials& materials, ChunkMesh& mesh) {
   if (materials.liquids.empty() || mesh.transparent.quads.empty()) return;
   std::vector<Quad>& out = mesh.shapes.transparent;
   const std::size_t before = out.size();
-  StepFinder finder(chunk, neighbours, materials, scratch.beyond, out);
-  bool has_begun = false;
+  std::optional<StepFinder> finder;  // made for the first liquid
   for (const Quad quad : mesh.transparent.quads) {
     const QuadFields face = unpack(quad);
     if (!materials.is_liquid(face.material) || face.direction == Direction::neg_y) continue;
-    if (!has_begun) scratch.beyond.begin(chunk, neighbours);
-    has_begun = true;
+    if (!finder) finder.emplace(chunk, neighbours, materials, out);
     if (face.direction == Direction::pos_y) {
-      finder.add_around(face);
+      finder->add_around(face);
     } else {
-      finder.add_above(face);
+      finder->add_above(face);
     }
   }
   if (out.size() == before) return;

@@ -8,7 +8,6 @@
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/mesh_materials.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/shapes/beyond_border.hpp"
 
 namespace runstone {
 
@@ -17,11 +16,6 @@ inline constexpr int kLiquidDrop = 2;
 /// The face of a quad that stands for the upper kLiquidDrop sixteenths of lateral faces of a
 /// liquid. It is one voxel high.
 inline constexpr std::uint16_t kLiquidStepFace = 1;
-
-/// The buffers that calls reuse. Callers do not use its contents.
-struct LiquidScratch {
-  shape_mesh::BeyondBorder beyond;
-};
 
 /// Appends the steps of the liquids (MeshMaterials::liquids) to the transparent quads of shapes,
 /// which ascend by direction afterwards. `mesh` is the mesh of the chunk. A voxel is *covered* if
@@ -35,6 +29,6 @@ struct LiquidScratch {
 /// order and the joins of quads. Cost: O(1) if no material is a liquid; otherwise O(transparent
 /// quads + log runs for each voxel at the sides of the quads of liquids).
 void add_liquid_steps(const RunChunk& chunk, const MeshNeighbours& neighbours,
-                      const MeshMaterials& materials, LiquidScratch& scratch, ChunkMesh& mesh);
+                      const MeshMaterials& materials, ChunkMesh& mesh);
 
 }  // namespace runstone

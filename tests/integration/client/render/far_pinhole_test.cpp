@@ -180,8 +180,9 @@ void look_around(GlContext& context, FarWorld& world, SplitMix64& rng, int camer
   std::vector<Camera> looks;
   for (int i = 0; i < cameras; ++i) {
     Camera camera;
-    camera.x = x + real(-12, 12);
-    camera.z = z + real(-12, 12);
+    // The middle of a view is the chunk of the eye.
+    camera.x = kFarEdge * (view.centre.x + real(0, 1));
+    camera.z = kFarEdge * (view.centre.z + real(0, 1));
     camera.y = surface(camera.x, camera.z) + (i % 3 == 0 ? real(1.5, 4) : real(4, 60));
     camera.yaw = real(0, 6.28);
     camera.pitch = i % 2 == 0 ? real(-0.15, 0.02) : real(-1.2, -0.1);

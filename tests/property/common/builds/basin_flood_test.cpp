@@ -60,8 +60,8 @@ BasinWorld random_basins(SplitMix64& rng) {
     const bool is_shell = c.x == 0 || c.z == 0 || c.y == 0 || c.x + 1 == sides.x ||
                           c.y + 1 == sides.y || c.z + 1 == sides.z;
     const std::uint64_t draw = rng.below(100);
-    Material m = draw < (is_solid ? 60U : 25U) ? kRock : draw < 70 ? kEmpty : kPool;
-    if (!is_solid && is_shell && rng.below(40) != 0) m = kRock;
+    Material m = draw < (is_solid ? 60U : 25U) ? kRock : draw < 85 ? kEmpty : kPool;
+    if (is_shell && rng.below(200) != 0) m = kRock;
     out.cells.set(c, m);
   });
   if (rng.below(4) == 0) {
@@ -118,8 +118,11 @@ TEST_CASE("a basin in runs has the voxels of a flood voxel by voxel", "[builds][
       return from + static_cast<std::int32_t>(rng.below(static_cast<std::uint64_t>(along)));
     };
     BasinFlood flood;
-    flood.start = {place(world.low.x, world.sides.x), place(world.low.y, world.sides.y),
-                   place(world.low.z, world.sides.z)};
+    for (int tries = 0; tries < 5; ++tries) {
+      flood.start = {place(world.low.x, world.sides.x), place(world.low.y, world.sides.y),
+                     place(world.low.z, world.sides.z)};
+      if (world.at(flood.start) != kRock) break;
+    }
     flood.level = flood.start.y + static_cast<std::int32_t>(rng.below(7)) - 1;
     flood.material = kFilling;
     if (rng.below(2) == 0) flood.passes = {false, false, true};

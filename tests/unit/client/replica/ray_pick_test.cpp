@@ -140,7 +140,7 @@ TEST_CASE("a ray goes through the materials that it passes", "[replica]") {
   replica.set_view({1, {0, 0, 0}, 0, 0});
   static_cast<void>(replica.open({kRayEdge, 1, 1, 1, 0, 0, 0}));
   replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
-  const std::vector<bool> passes = {false, false, false, true};
+  const auto passes = [](Material material) { return material == 3; };
   const WorldPos outside{5.5, 5.5, 1}, inside{5.5, 5.5, 4.5};
   for (const WorldPos& eye : {outside, inside}) {
     const auto hit = pick(replica, ShapeTable{}, eye, look_direction(0, 0), 8, passes);

@@ -64,8 +64,7 @@ struct SceneVoxels {
   }
   bool is_covered(int x, int y, int z) const {
     const auto above = at(x, y + 1, z);
-    return above == std::optional<Material>(kWater) || above == std::optional<Material>(kStone) ||
-           above == std::optional<Material>(kDirt);
+    return above && (*above == kWater || mesh_visibility()[*above] == Visibility::opaque);
   }
 };
 
