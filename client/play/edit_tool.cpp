@@ -43,7 +43,12 @@ std::string name_of(const ToolAction& action) {
 }  // namespace
 
 std::optional<RayHit> EditTool::pick() const {
-  return runstone::pick(session_.replica(), *shapes_, player_.eye(), player_.direction(), kReach);
+  const MaterialTable& materials = box_.materials();
+  const auto is_liquid = [&materials](Material material) {
+    return materials.knows(material) && materials[material].body == MaterialBody::liquid;
+  };
+  return runstone::pick(session_.replica(), *shapes_, player_.eye(), player_.direction(), kReach,
+                        is_liquid(player_.held()) ? MaterialPredicate() : is_liquid);
 }
 
 Aim EditTool::aim() const {

@@ -8,6 +8,7 @@
 #include "client/display/ground_marker.hpp"
 #include "client/display/player_body.hpp"
 #include "client/far/far_reach.hpp"
+#include "client/render/liquid_surface.hpp"
 
 namespace runstone {
 namespace {
@@ -48,7 +49,7 @@ Camera FrameScene::camera(std::optional<double> field_of_view) const {
 
 FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   FrameContents out;
-  out.at_eye = session_.replica().shown_at(player_.voxel()).value_or(kEmpty);
+  out.at_eye = material_at_eye();
   add_bodies(out.bodies);
   if (shows_ground) add_ground(out.markers);
   if (outlines_aim) add_aim(out.markers);
@@ -57,6 +58,21 @@ FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
     out.ghosts.insert(out.ghosts.end(), ghosts.begin(), ghosts.end());
   others_.append_ghosts(out.ghosts);
   return out;
+}
+
+Material FrameScene::material_at_eye() const {
+  VoxelPos at = player_.voxel();
+  const Material material = session_.replica().shown_at(at).value_or(kEmpty);
+  const MaterialTable& materials = tool_.box().materials();
+  if (!materials.knows(material) || !has_lowered_surface(materials[material])) return material;
+  if (player_.eye().y - at.y < 1 - kLiquidDrop / 16.0) return material;
+  // The eye may be above the surface, in the part of the voxel that is not filled.
+  ++at.y;
+  const Material above = session_.replica().shown_at(at).value_or(kEmpty);
+  const bool is_covered = above == material || (materials.knows(above) &&
+                                                materials[above].visibility == Visibility::opaque &&
+                                                materials[above].shape.is_cube());
+  return is_covered ? material : kEmpty;
 }
 
 void FrameScene::add_bodies(std::vector<Body>& bodies) const {

@@ -39,6 +39,8 @@ class FrameScene {
 
  private:
   double draw_distance() const;  // of chunks, voxels
+  /// Returns the material around the eye. Above the surface of a liquid it is kEmpty.
+  Material material_at_eye() const;
   void add_bodies(std::vector<Body>& bodies) const;
   void add_ground(std::vector<Marker>& markers) const;
   void add_aim(std::vector<Marker>& markers) const;

@@ -4,21 +4,23 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "client/render/liquid_surface.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/texel_store.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr GLint kInspectedQuadUnit = 0, kRunStartUnit = 1;
+constexpr GLint kInspectedQuadUnit = 0, kRunStartUnit = 1, kInspectedMaterialUnit = 2;
 constexpr std::uint32_t kRunWordsAtFirst = 1U << 16;
 
-constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL
+constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_LOWERED_GLSL
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"  // of the chunk or tile, minus eye
     "uniform float scale;\n"  // world units of a voxel
-    "out vec3 local;\n"       // the middle of the face's voxel, in the chunk
-    "out vec2 side;\n"        // -1 .. 1 along both sides of the quad
+    "uniform sampler2D palette, looks;\n"
+    "out vec3 local;\n"  // the middle of the face's voxel, in the chunk
+    "out vec2 side;\n"   // -1 .. 1 along both sides of the quad
     "flat out vec3 normal;\n"
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
@@ -26,7 +28,10 @@ constexpr const char* kInspectionVertexShader = RUNSTONE_QUAD_GLSL
     "  side = vec2(dot(c.outward, n.zxy), dot(c.outward, n.yzx));\n"
     "  local = c.at - c.normal * 0.5;\n"
     "  normal = c.normal;\n"
-    "  gl_Position = clip * vec4(origin + scale * c.at, 1.0);\n"
+    "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
+    "  vec3 at = origin + scale * c.at;\n"
+    "  at.y -= lowered(c, texelFetch(palette, row, 0), texelFetch(looks, row, 0));\n"
+    "  gl_Position = clip * vec4(at, 1.0);\n"
     "}\n";
 
 constexpr const char* kInspectionFragmentShader =
@@ -144,7 +149,8 @@ void InspectionPainter::update_bits(bool exact) {
 }
 
 void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& clip,
-                              const DepthRange& depth, const QuadBuffer& quads, bool exact) {
+                              const DepthRange& depth, const QuadBuffer& quads,
+                              const MaterialTextures& materials, bool exact) {
   shown_ = &inspection;
   update_bits(exact);
   glUseProgram(program_.get());
@@ -153,6 +159,7 @@ void InspectionPainter::begin(const Inspection& inspection, const glm::mat4& cli
   glActiveTexture(GL_TEXTURE0 + kRunStartUnit);
   glBindTexture(GL_TEXTURE_2D, bits_.texture());
   glUniform1i(at("run_starts"), kRunStartUnit);
+  materials.bind(program_, kInspectedMaterialUnit);
   first_vertex_ = quads.bind(program_, kInspectedQuadUnit);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);

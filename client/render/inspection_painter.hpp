@@ -10,6 +10,7 @@
 #include "client/render/depth_range.hpp"
 #include "client/render/gl_handle.hpp"
 #include "client/render/inspection.hpp"
+#include "client/render/material_textures.hpp"
 #include "client/render/quad_buffer.hpp"
 #include "client/render/texel_store.hpp"
 
@@ -24,7 +25,7 @@ class InspectionPainter {
   /// must outlive the pass. The starts of runs are uploaded for at most kUploadsMax chunks, or for
   /// all with `exact`.
   void begin(const Inspection& inspection, const glm::mat4& clip, const DepthRange& depth,
-             const QuadBuffer& quads, bool exact);
+             const QuadBuffer& quads, const MaterialTextures& materials, bool exact);
   /// Sets the chunk, tile or octant whose quads are drawn next. `origin` is relative to the eye,
   /// `edge` in voxels, and `scale` the width of a voxel. Returns false if nothing is shown of it.
   bool place(const ChunkKey& key, const glm::vec3& origin, std::int32_t edge, float scale);

@@ -12,9 +12,10 @@ namespace runstone {
 /// The corners of a quad stand in the order 0: (0, 0), 1: (1, 0), 2: (0, 1), 3: (1, 1) along u and
 /// v; a negative face reverses u, so that it has the opposite winding. `inside` is the depth below
 /// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
-/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below. `side` is the
-/// direction. `across` is the corner, but on such a plane its z goes from one side of the voxel to
-/// the other.
+/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below. `side`
+/// is the direction. `across` is the corner, but on such a plane its z goes from one side of the
+/// voxel to the other. `top` is 1 at the upper corners of upper and lateral faces of cubes, and 0
+/// elsewhere. A step of a liquid (kLiquidStepFace) is the upper part of a lateral face.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \
@@ -27,7 +28,7 @@ namespace runstone {
   "  vec3 at, normal, outward, across;\n"                                              \
   "  uint material, side;\n"                                                           \
   "  bool is_shape;\n"                                                                 \
-  "  float inside;\n"                                                                  \
+  "  float inside, top;\n"                                                             \
   "};\n"                                                                               \
   "QuadCorner quad_corner() {\n"                                                       \
   "  int number = first_vertex + gl_VertexID;\n"                                       \
@@ -50,10 +51,17 @@ namespace runstone {
   "  c.inside = 0.5;\n"                                                                \
   "  vec3 place = vec3(side, cu * w, cv * h);\n"                                       \
   "  uint face = hi >> 22;\n"                                                          \
-  "  c.is_shape = face != 0u;\n"                                                       \
+  "  c.top = d == 3u ? 1.0 : d == 2u ? 0.0 : d < 2u ? cu : cv;\n"                      \
+  "  uint first = 0u;\n"                                                               \
+  "  if (face != 0u) {\n"                                                              \
+  "    c.top = 0.0;\n"                                                                 \
+  "    first = texelFetch(shapes, texel_place(int(c.material)), 0).x;\n"               \
+  "    vec2 low = d < 2u ? vec2(0.875, 0.0) : vec2(0.0, 0.875);\n"                     \
+  "    if (first == 0u) place.yz = mix(low, vec2(w, h), vec2(cu, cv));\n"              \
+  "  }\n"                                                                              \
+  "  c.is_shape = first != 0u;\n"                                                      \
   "  float across = -1.0;\n"                                                           \
   "  if (c.is_shape) {\n"                                                              \
-  "    uint first = texelFetch(shapes, texel_place(int(c.material)), 0).x;\n"          \
   "    uint f = texelFetch(shapes, texel_place(int(first + face) - 1), 0).x;\n"        \
   "    vec3 low = vec3(f & 31u, (f >> 10) & 31u, (f >> 20) & 31u) * 0.0625;\n"         \
   "    vec3 high = vec3((f >> 5) & 31u, (f >> 15) & 31u, (f >> 25) & 31u) * 0.0625;\n" \

@@ -20,7 +20,6 @@ std::uint32_t texel_of(const ShapeFace& face) {
 }  // namespace
 
 std::vector<std::uint32_t> shape_texels(const ShapeTable& shapes) {
-  if (shapes.empty()) return std::vector<std::uint32_t>(kTexelRow);
   std::vector<std::uint32_t> out(kMaterialCountMax);
   std::vector<std::uint32_t> first;
   for (const ShapeTable::Entry& entry : shapes.shapes()) {

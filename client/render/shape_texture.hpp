@@ -12,7 +12,7 @@
 namespace runstone {
 
 /// Returns the texels, whole rows of kTexelRow. A face has five bits each, from the lowest bit on:
-/// depth, far_depth, u0, u1, v0 and v1. A table of cubes has one row. Cost: O(materials + faces).
+/// depth, far_depth, u0, u1, v0 and v1. Cost: O(materials + faces).
 std::vector<std::uint32_t> shape_texels(const ShapeTable& shapes);
 
 class ShapeTexture {

@@ -66,9 +66,12 @@ constexpr const char* kGhostFragmentShader =
     "  fragment = vec4(c + 0.25 * rim, opaque);\n"
     "}\n";
 
-std::string variant_of(const char* shader, Quality quality, bool is_tile, bool has_field,
-                       bool is_fine, bool has_fog, bool is_fading) {
+constexpr const char* kLiquidVariant = "#define RUNSTONE_LIQUID\n";
+
+std::string variant_of(const char* shader, Quality quality, bool is_transparent, bool is_tile,
+                       bool has_field, bool is_fine, bool has_fog, bool is_fading) {
   std::string out;
+  if (is_transparent) out += kLiquidVariant;
   if (quality != Quality::low) out += "#define RUNSTONE_DEPTH\n";
   if (quality != Quality::low && !is_tile) out += "#define RUNSTONE_SHADOWS\n";
   if (is_tile) out += "#define RUNSTONE_TILE\n";
@@ -121,7 +124,9 @@ glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
 
 Terrain::Terrain()
     : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
-      ghost_program_(link_program("ghost", kTerrainVertexShader, kGhostFragmentShader)),
+      ghost_program_(link_program("ghost",
+                                  (std::string(kLiquidVariant) + kTerrainVertexShader).c_str(),
+                                  kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
   set_materials(MaterialTable{}, nullptr);
 }
@@ -322,7 +327,7 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
     const std::string textures =
         texture_definitions(is_textured, (variant & kHoles) != 0, is_textured && is_transparent);
     const auto text = [&](const char* shader) {
-      return textures + variant_of(shader, quality, (variant & kTile) != 0,
+      return textures + variant_of(shader, quality, is_transparent, (variant & kTile) != 0,
                                    (variant & kInField) != 0, (variant & kFine) != 0,
                                    (variant & kInFog) != 0, (variant & kFade) != 0);
     };
@@ -331,6 +336,7 @@ Terrain::Program& Terrain::program(Quality quality, bool is_transparent, unsigne
     out.origin = glGetUniformLocation(out.gl.get(), "origin");
     out.pattern = glGetUniformLocation(out.gl.get(), "pattern");
     out.scale = glGetUniformLocation(out.gl.get(), "scale");
+    out.edge = glGetUniformLocation(out.gl.get(), "edge");
     out.drawn = glGetUniformLocation(out.gl.get(), "drawn");
   }
   return out;
@@ -558,6 +564,7 @@ void Terrain::use_for(const Visible& chunk, const FrameView& view, bool is_trans
   glUniform3fv(of_chunk.origin, 1, glm::value_ptr(chunk.origin));
   glUniform3fv(of_chunk.pattern, 1, glm::value_ptr(chunk.pattern));
   glUniform1f(of_chunk.scale, chunk.scale);
+  if ((variant & kTile) != 0) glUniform1f(of_chunk.edge, static_cast<float>(chunk.chunk->edge));
   if ((variant & kFade) != 0) glUniform2fv(of_chunk.drawn, 1, glm::value_ptr(chunk.drawn));
   if (view.look.quality == Quality::low || (variant & kTile) != 0) return;
   const double half = 0.5 * chunk.chunk->edge;
@@ -629,7 +636,7 @@ void Terrain::draw_transparent(const FrameView& view, GLuint scene_depth) {
 void Terrain::draw_inspection(const FrameView& view, const Inspection& inspection) {
   if (!inspection.modes.any()) return inspection_.reset();
   if (!inspection_) inspection_.emplace();
-  inspection_->begin(inspection, view.clip, view.depth, quads_, view.look.exact);
+  inspection_->begin(inspection, view.clip, view.depth, quads_, materials_, view.look.exact);
   for (const Visible& chunk : visible_) {
     spans_.clear();
     chunk.chunk->append_opaque(chunk.eye, spans_);

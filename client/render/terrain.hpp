@@ -173,9 +173,10 @@ class Terrain {
   static constexpr std::size_t kVariants = 128;
   struct Program {
     GlProgram gl;
-    GLint origin = -1, pattern = -1, scale = -1, drawn = -1;  // the uniforms of a chunk
-    GLint first_vertex = -1;                                  // as QuadBuffer::draw() takes it
-    int cascade = -1;  // of the last chunk in this pass; -1: none
+    // The uniforms of a chunk. `edge` is that of a part of a tile.
+    GLint origin = -1, pattern = -1, scale = -1, edge = -1, drawn = -1;
+    GLint first_vertex = -1;  // as QuadBuffer::draw() takes it
+    int cascade = -1;         // of the last chunk in this pass; -1: none
   };
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
   void begin_pass(const FrameView& view, bool is_transparent,

@@ -1,11 +1,12 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
-// fades, RUNSTONE_TILE is for parts of tiles, and RUNSTONE_FADE draws a part of the pixels. Those of
-// textures stand in texture_glsl.hpp.
+// fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids, and
+// RUNSTONE_FADE draws a part of the pixels. Those of textures stand in texture_glsl.hpp.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
+#include "client/render/liquid_surface.hpp"
 #include "client/render/place_tint_glsl.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
@@ -31,13 +32,16 @@ namespace runstone {
   "#endif\n"
 
 inline constexpr const char* kTerrainVertexShader =
-    RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL RUNSTONE_TO_TEXTURE_GLSL
+    RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_LOWERED_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
     "uniform float scale;\n"   // the side of a voxel
     "uniform sampler2D palette, looks;\n"
     "uniform float seam;\n"  // growth of a quad as a share of the distance
+    "#ifdef RUNSTONE_TILE\n"
+    "uniform float edge;\n"  // of the part of a tile, in its voxels
+    "#endif\n"
     "out vec3 relative;\n"
     "out vec3 voxel;\n"
     "flat out vec3 normal;\n"
@@ -54,12 +58,33 @@ inline constexpr const char* kTerrainVertexShader =
     // an axis of length 1 is seen with the length sqrt(q) / distance^2.
     "  float d2 = dot(relative, relative);\n"
     "  vec3 q = max(d2 - relative * relative, 0.0004 * d2);\n"
-    "  relative += c.outward * (seam * d2 * inversesqrt(q));\n"
+    "  vec3 outward = c.outward;\n"
+    "#ifdef RUNSTONE_TILE\n"
+    // The faces on the border of a part are drawn also where the ground of the next part covers
+    // them. There the growth would show them as dots: above flat ground, and on cliffs. So walls
+    // grow neither upward nor at the ends of the part, and all of these faces lie a little farther
+    // than they are, walls more than the others. Pixels stay, depths change by less than a voxel.
+    "  vec3 end = vec3(equal(abs(c.at - 0.5 * edge), vec3(0.5 * edge)));\n"
+    "  float on_border = dot(end, abs(c.normal));\n"
+    "  float is_wall = on_border * (1.0 - abs(c.normal.y));\n"
+    "  outward *= 1.0 - is_wall * end;\n"
+    "  outward.y = min(outward.y, 1.0 - is_wall);\n"
+    "  float far = sqrt(d2);\n"
+    "  float behind = seam * (10.0 + 1.5 * far / max(abs(relative.y), 0.25));\n"
+    "  float bias = (on_border + is_wall) * min(behind, 0.45 * scale / far);\n"
+    "#endif\n"
+    "  relative += outward * (seam * d2 * inversesqrt(q));\n"
+    "#ifdef RUNSTONE_TILE\n"
+    "  relative *= 1.0 + bias;\n"
+    "#endif\n"
     "  voxel = pattern + c.at - c.normal * c.inside;\n"
     "  normal = c.normal;\n"
     "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
     "  colour = texelFetch(palette, row, 0);\n"
     "  look = texelFetch(looks, row, 0);\n"
+    "#ifdef RUNSTONE_LIQUID\n"
+    "  relative.y -= lowered(c, colour, look);\n"
+    "#endif\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  in_shadow = to_shadow(relative, normal);\n"
     "#endif\n"
@@ -157,6 +182,9 @@ inline constexpr const char* kTransparentFragmentShader =
     "  vec3 sight = relative / far;\n"
     "  vec3 n = dot(normal, sight) > 0.0 ? -normal : normal;\n"
     "  float liquid = is_liquid() ? 1.0 : 0.0;\n"
+    // The surface of a liquid from below: it shows what is above where the sight is steep, and
+    // mirrors the liquid elsewhere.
+    "  float below = n.y < -0.5 && normal.y > 0.5 ? liquid : 0.0;\n"
     "#ifdef RUNSTONE_TILE\n"
     // The waterline where levels meet looks like the surface.
     "  if (liquid > 0.5 && abs(n.y) < 0.5) n = vec3(0.0, 1.0, 0.0);\n"
@@ -172,6 +200,7 @@ inline constexpr const char* kTransparentFragmentShader =
     "  float facing = clamp(-dot(sight, wave), 0.0, 1.0);\n"
     "  float f = 1.0 - facing;\n"
     "  float fresnel = 0.03 + 0.75 * f * f * f * f;\n"
+    "  fresnel = mix(fresnel, 1.0 - smoothstep(0.45, 0.75, facing), below);\n"
     "  float sun = max(dot(n, sun_direction), 0.0);\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  float lit_by_sun = sunlit(in_shadow);\n"
@@ -190,14 +219,16 @@ inline constexpr const char* kTransparentFragmentShader =
     "  float s = max(dot(mirrored, sun_direction), 0.0);\n"
     "  float s8 = s * s; s8 *= s8; s8 *= s8; float s64 = s8 * s8; s64 *= s64; s64 *= s64;\n"
     "  reflection += sun_colour * (s64 * s64 * 2.0 * lit_by_sun);\n"
+    "  body = mix(body, ambient_up * 1.4 + sun_colour * (0.25 * lit_by_sun), below);\n"
     "  float deep = colour.a;\n"
     "#ifdef RUNSTONE_DEPTH\n"
     // Both distances are along the view axis.
     "  float here = distance_of(gl_FragCoord.z);\n"
-    "  float path = max(distance_of(scene) - here, 0.0) * far / here;\n"
+    "  float path = (1.0 - below) * max(distance_of(scene) - here, 0.0) * far / here;\n"
     "  float absorbed = 1.0 - exp(-0.16 * path);\n"
     "  deep = mix(deep, mix(0.35, 0.96, absorbed), liquid);\n"
-    "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid);\n"
+    "  deep = mix(deep, 0.6, below);\n"
+    "  body = mix(body, body * mix(1.25, 0.55, absorbed), liquid - below);\n"
     "#endif\n"
     "  vec3 c = mix(body, reflection, fresnel * mix(0.53 * (1.0 - roughness()), 1.0, liquid));\n"
     "  float fogged = fog_share(relative, far);\n"

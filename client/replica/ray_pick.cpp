@@ -109,7 +109,8 @@ LookDirection look_direction(double yaw, double pitch) {
 }
 
 std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, const WorldPos& eye,
-                           const LookDirection& look, double reach) {
+                           const LookDirection& look, double reach,
+                           const MaterialPredicate& passes) {
   if (!replica.opened() || !inside_world(eye)) return std::nullopt;
   std::array<AxisWalk, 3> walk = {AxisWalk{eye.x, look.x}, AxisWalk{eye.y, look.y},
                                   AxisWalk{eye.z, look.z}};
@@ -121,8 +122,9 @@ std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, con
     const VoxelPos at{walk[0].voxel, walk[1].voxel, walk[2].voxel};
     const auto material = reader.at(at);
     if (!material) return std::nullopt;
-    if (shapes.is_cube(*material)) {
-      if (*material != kEmpty) return RayHit{at, *material, face, distance};
+    const bool is_passed = *material != kEmpty && passes && passes(*material);
+    if (is_passed || shapes.is_cube(*material)) {
+      if (!is_passed && *material != kEmpty) return RayHit{at, *material, face, distance};
     } else if (const auto entry = entry_of(eye, look, at, shapes[*material].shape);
                entry && entry->distance <= reach) {
       return RayHit{at, *material, entry->face, entry->distance};

@@ -2,6 +2,7 @@
 // Cost: O(log runs) a step, and the boxes of the shapes on the way.
 // Source: Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing".
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "client/replica/replica.hpp"
@@ -28,11 +29,15 @@ struct LookDirection {
 /// upward. Both are in radians.
 LookDirection look_direction(double yaw, double pitch);
 
+using MaterialPredicate = std::function<bool(Material)>;
+
 /// Walks from `eye` along `look` for at most `reach` voxels. Returns nullopt if nothing is hit, or
 /// at the first chunk that is not shown: a player cannot edit what is not visible. The planes of
-/// plants are hit by their box.
+/// plants are hit by their box. The ray goes through the materials for which `passes`
+/// returns true; null: through none.
 std::optional<RayHit> pick(const Replica& replica, const ShapeTable& shapes, const WorldPos& eye,
-                           const LookDirection& look, double reach);
+                           const LookDirection& look, double reach,
+                           const MaterialPredicate& passes = nullptr);
 
 /// Returns the position of a voxel placed against the hit face, or nullopt if the ray started
 /// inside the hit voxel.

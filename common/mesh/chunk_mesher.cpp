@@ -1,5 +1,7 @@
 #include "common/mesh/chunk_mesher.hpp"
 
+#include "common/mesh/shapes/liquid_steps.hpp"
+
 namespace runstone {
 
 void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
@@ -7,6 +9,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
                 ChunkBorders* chunk_borders) {
   mesh_rdm(chunk, neighbours, borders, materials.cubes, scratch.cubes, out, chunk_borders);
   mesh_shapes(chunk, neighbours, materials.rows, materials.shapes, scratch.shapes, out.shapes);
+  add_liquid_steps(chunk, neighbours, materials, out);
 }
 
 bool mesh_chunk_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
@@ -17,6 +20,7 @@ bool mesh_chunk_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
   const bool layers_only = mesh_rdm_layers(chunk, neighbours, borders, materials.cubes, dirty,
                                            beyond, scratch.cubes, mesh);
   mesh_shapes(chunk, neighbours, materials.rows, materials.shapes, scratch.shapes, mesh.shapes);
+  add_liquid_steps(chunk, neighbours, materials, mesh);
   return layers_only;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "common/mesh/visibility.hpp"
 #include "common/shapes/shape_table.hpp"
@@ -25,6 +26,9 @@ struct MeshMaterials {
   /// shape counts as a cube if it fills at least half of its voxel, and is empty otherwise.
   VisibilityTable tiles;
   ShapeTable shapes;
+  /// By material: a transparent liquid, whose surface lies lower. Empty if there is none.
+  std::vector<bool> liquids;
+  bool is_liquid(Material material) const { return material < liquids.size() && liquids[material]; }
 };
 
 /// Never null.

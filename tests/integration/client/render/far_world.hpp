@@ -26,14 +26,14 @@ enum class TileVeil { veiled, none };
 
 class FarWorld {
  public:
-  /// `parameters` are those of the terrain generator.
+  /// `parameters` are those of the generator.
   FarWorld(std::int32_t edge, const MaterialTable& materials, const std::string& parameters,
-           TileVeil veil = TileVeil::veiled)
+           TileVeil veil = TileVeil::veiled, const std::string& generator = "terrain")
       : edge_(edge),
         veil_(veil),
         materials_(materials),
         visibility_(visibilities(materials)),
-        generator_(*make_generator({"terrain", 1, 7, parameters}, materials)) {}
+        generator_(*make_generator({generator, 1, 7, parameters}, materials)) {}
 
   std::int32_t edge() const { return edge_; }
   const MaterialTable& materials() const { return materials_; }

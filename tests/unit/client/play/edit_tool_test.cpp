@@ -128,6 +128,26 @@ TEST_CASE_METHOD(Fixture, "a voxel is placed on the ground in sight, but not whe
   REQUIRE(session.replica().local_edits().all().size() == 1);
 }
 
+TEST_CASE_METHOD(Fixture, "the look goes through water, unless the player holds water",
+                 "[client_app]") {
+  const Material water = *default_material_table().find("water");
+  box.set_materials(default_material_table());
+  runstone::test::AuthorityModel world(16);
+  static_cast<void>(world.commit({9, 1, 1}, {FillBox{{{0, 0, 0}, {4, 3, 4}}}, {}, water}));
+  for (const int y : {-1, 0}) receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.look(0, -std::numbers::pi / 2);
+  for (const double y : {5.5, 1.5}) {  // above the water, and in it
+    player.move_to({0.5, y, 0.5});
+    player.hold(1);
+    REQUIRE(tool.pick());
+    CHECK(tool.pick()->voxel == VoxelPos{0, -1, 0});
+    CHECK(tool.pick()->face == Direction::pos_y);
+    player.hold(water);
+    REQUIRE(tool.pick());
+    CHECK(tool.pick()->material == water);
+  }
+}
+
 TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection", "[client_app]") {
   runstone::test::AuthorityModel world(16);
   receive(runstone::test::chunks_of(world.snapshot({0, -1, 0})));

@@ -131,3 +131,24 @@ TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   CHECK_FALSE(pick(replica, ShapeTable{}, {NAN, 5.5, 1}, look_direction(0, 0), 10));
   CHECK_FALSE(pick(Replica{}, ShapeTable{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
 }
+
+TEST_CASE("a ray goes through the materials that it passes", "[replica]") {
+  Replica replica;
+  runstone::test::AuthorityModel world(kRayEdge);
+  static_cast<void>(world.commit({9, 1, 1}, {FillBox{{{3, 3, 3}, {9, 8, 9}}}, {}, 3}));
+  static_cast<void>(world.commit({9, 1, 2}, {SetVoxel{{5, 5, 6}}, {}, 4}));
+  replica.set_view({1, {0, 0, 0}, 0, 0});
+  static_cast<void>(replica.open({kRayEdge, 1, 1, 1, 0, 0, 0}));
+  replica.receive(test::chunks_of(world.snapshot({0, 0, 0})), {});
+  const auto passes = [](Material material) { return material == 3; };
+  const WorldPos outside{5.5, 5.5, 1}, inside{5.5, 5.5, 4.5};
+  for (const WorldPos& eye : {outside, inside}) {
+    const auto hit = pick(replica, ShapeTable{}, eye, look_direction(0, 0), 8, passes);
+    REQUIRE(hit);
+    CHECK(hit->voxel == VoxelPos{5, 5, 6});
+    CHECK(hit->face == Direction::neg_z);
+    CHECK(hit->distance == Approx(6 - eye.z));
+  }
+  CHECK(pick(replica, ShapeTable{}, outside, look_direction(0, 0), 8)->voxel == VoxelPos{5, 5, 3});
+  CHECK_FALSE(pick(replica, ShapeTable{}, {5.5, 4.5, 1}, look_direction(0, 0), 8, passes));
+}

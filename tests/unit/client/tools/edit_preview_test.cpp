@@ -106,7 +106,7 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
   REQUIRE(bench.box.copy(bench.replica, true));
   SplitMix64& rng = bench.rng;
   std::size_t changed = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 77; ++round) {
     const auto& tools = bench.box.tools();
     const Tool& tool = *tools[static_cast<std::size_t>(round) % tools.size()];
     if (tool.selects()) continue;

@@ -114,6 +114,52 @@ TEST_CASE_METHOD(FlatBench, "fill changes the connected surface of one material,
   CHECK(at({14, -1, 12}) == 1);
 }
 
+TEST_CASE_METHOD(FlatBench, "flood fills a hollow up to a level, with all of it as one action",
+                 "[tools]") {
+  // A pit of 9 x 5 x 9 voxels over four chunks, with a pillar, and a pond of another material.
+  predict({{FillBox{{{-4, -5, -4}, {5, 0, 5}}}, {}, kEmpty},
+           {FillBox{{{0, -5, 0}, {1, 0, 1}}}, {}, 1},
+           {FillBox{{{-4, -5, -4}, {5, -4, -3}}}, {}, 3}});
+  MaterialTable table;
+  for (const char* name : {"stone", "water", "swamp"}) {
+    MaterialInfo row;
+    row.name = name;
+    if (row.name != "stone") row.body = MaterialBody::liquid;
+    REQUIRE(table.add(std::move(row)));
+  }
+  box.set_materials(table);
+  REQUIRE(box.choose("flood"));
+  REQUIRE(box.set_parameter("depth", 3));
+  const auto made = box.press(replica, aim_at({2, -6, 2}, Direction::pos_y), ToolButton::place);
+  REQUIRE(made);
+  CHECK(is_small(*made, replica.edit_limits()));
+  REQUIRE(made->edits.size() == 1);
+  CHECK(made->edits.front().mask == Mask{MaskKind::only_empty, kEmpty});
+  predict(*made);
+  CHECK(at({-4, -5, 4}) == 2);
+  CHECK(at({4, -3, 4}) == 2);
+  CHECK(at({4, -2, 4}) == kEmpty);  // above the level
+  CHECK(at({0, -4, 0}) == 1);       // the pillar
+  CHECK(at({-4, -5, -4}) == 3);     // the pond
+  CHECK(at({-4, -4, -4}) == 2);     // over it
+  CHECK(refusal({2, -6, 2}, ToolButton::clear) == "flood with the right button");
+  // The level of a second click.
+  REQUIRE(box.set_parameter("depth", 0));
+  CHECK(press({2, -4, 2}) == 0);
+  CHECK(press({7, -2, 7}) == 1);
+  CHECK(at({4, -1, 4}) == 2);
+  CHECK(at({5, 0, 5}) == kEmpty);
+  // Over the rim it would flood the world.
+  REQUIRE(box.set_parameter("depth", 1));
+  REQUIRE(box.set_parameter("voxels", 500));
+  CHECK(
+      refusal({7, -1, 7}, ToolButton::place) ==
+      "up to that level the hollow has more than 500 voxels: it may be open to a side, or needs a "
+      "higher limit");
+  REQUIRE(box.set_parameter("voxels", 1'000'000));
+  CHECK(refusal({7, -1, 7}, ToolButton::place) == "the hollow reaches ground that is not loaded");
+}
+
 TEST_CASE_METHOD(FlatBench, "replace changes one material in a sphere, a cube or the selection",
                  "[tools]") {
   predict({{FillBox{{{0, -3, 0}, {8, 0, 8}}}, {}, 3}});

@@ -106,7 +106,7 @@ TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click 
     y = found_y + 5;
   }
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == box.tools()[i]->name());
-  CHECK(box.tool().name() == "paste");
+  CHECK(box.tool().name() == "flood");
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within its range",
