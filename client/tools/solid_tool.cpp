@@ -44,8 +44,7 @@ ToolEdits SolidTool::plan(const ToolInput& input) const {
       return failure("no voxel's centre lies in so small a solid");
     return failure(words_of(build.error()));
   }
-  return paste_of_build({*build, box.min, mask(), EmptyCells::pasted},
-                        input.replica.edit_limits());
+  return paste_of_build({*build, box.min, mask(), EmptyCells::pasted}, input.replica.edit_limits());
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
   while ((high + 1) * edge < box.max.y && is_shown(high + 1)) ++high;
   box.min.y = std::max(box.min.y, low * edge);
   box.max.y = std::min(box.max.y, (high + 1) * edge);
-  auto columns = GroundColumns::read(
-      box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
+  auto columns =
+      GroundColumns::read(box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
   if (!columns) return failure(std::string(columns.error().what) + ": make a shorter stroke");
   return *std::move(columns);
 }
@@ -80,8 +80,7 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   const auto columns = read_shown(input.replica, brush_box(brush, places), places.front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
-  const auto placed =
-      build_of_changes(*columns, brush_changes(*columns, materials, brush, places));
+  const auto placed = build_of_changes(*columns, brush_changes(*columns, materials, brush, places));
   if (!placed) return failure(words_of(placed.error()));
   if (!placed->build) return failure("there is no ground to change here");
   return paste_of_build({placed->build, placed->at, mask(), EmptyCells::pasted},

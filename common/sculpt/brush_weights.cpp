@@ -56,9 +56,9 @@ std::vector<std::int32_t> brush_weights(const VoxelBox& box, std::span<const Vox
         if (square >= reach * reach) continue;
         const auto weight = static_cast<std::int32_t>(
             std::lround(share(std::sqrt(square) / reach, falloff) * kFullWeight));
-        auto& present = out[static_cast<std::size_t>(x - box.min.x) +
-                            static_cast<std::size_t>(width) *
-                                static_cast<std::size_t>(z - box.min.z)];
+        auto& present =
+            out[static_cast<std::size_t>(x - box.min.x) +
+                static_cast<std::size_t>(width) * static_cast<std::size_t>(z - box.min.z)];
         present = std::max(present, weight);
       }
     }

@@ -90,10 +90,10 @@ class SurfaceMove {
   ColumnWriter& column_;
   const std::int32_t from_;
   const GroundMaterials& materials_;
-  std::int32_t skin_ = 0;           // voxels of ground that move with the surface, at least 1
-  Material below_skin_ = kEmpty;    // fills the gap where the ground rises
-  Material above_ = kEmpty;         // on the surface
-  bool has_plant_ = false;          // `above_` is one voxel high and moves with the surface
+  std::int32_t skin_ = 0;         // voxels of ground that move with the surface, at least 1
+  Material below_skin_ = kEmpty;  // fills the gap where the ground rises
+  Material above_ = kEmpty;       // on the surface
+  bool has_plant_ = false;        // `above_` is one voxel high and moves with the surface
 };
 
 /// Returns the box of the changes. Requires at least one.
@@ -153,10 +153,10 @@ class SectionMaker {
     for (std::uint32_t z = 0; z + 1 < cuts[2].size(); ++z) {
       for (std::uint32_t y = 0; y + 1 < cuts[1].size(); ++y) {
         for (std::uint32_t x = 0; x + 1 < cuts[0].size(); ++x) {
-          auto cells = make(
-              {box_.min.x + cuts[0][x], box_.min.y + cuts[1][y], box_.min.z + cuts[2][z]},
-              {box_.min.x + cuts[0][x + 1], box_.min.y + cuts[1][y + 1],
-               box_.min.z + cuts[2][z + 1]});
+          auto cells =
+              make({box_.min.x + cuts[0][x], box_.min.y + cuts[1][y], box_.min.z + cuts[2][z]},
+                   {box_.min.x + cuts[0][x + 1], box_.min.y + cuts[1][y + 1],
+                    box_.min.z + cuts[2][z + 1]});
           if (!cells) return failure(cells.error());
           if (!*cells) continue;
           if (const auto put = builder_.put({x, y, z}, std::move(**cells)); !put)
@@ -209,10 +209,10 @@ void set_layers(const GroundColumns& columns, std::size_t column, std::int32_t s
 Result<PlacedBuild> build_of_changes(const GroundColumns& columns, const ColumnChanges& changes) {
   if (changes.empty()) return PlacedBuild{};
   const VoxelBox box = box_of_changes(columns, changes);
-  auto builder = BuildBuilder::of(
-      {grid_cuts(box.max.x - box.min.x, kPasteBlockEdge, grid_offset(box.min.x)),
-       grid_cuts(box.max.y - box.min.y, kPasteBlockEdge, grid_offset(box.min.y)),
-       grid_cuts(box.max.z - box.min.z, kPasteBlockEdge, grid_offset(box.min.z))});
+  auto builder =
+      BuildBuilder::of({grid_cuts(box.max.x - box.min.x, kPasteBlockEdge, grid_offset(box.min.x)),
+                        grid_cuts(box.max.y - box.min.y, kPasteBlockEdge, grid_offset(box.min.y)),
+                        grid_cuts(box.max.z - box.min.z, kPasteBlockEdge, grid_offset(box.min.z))});
   if (!builder) return failure(builder.error());
   SectionMaker maker(columns, changes, box, *builder);
   if (const auto put = maker.put_all(); !put) return failure(put.error());

@@ -47,8 +47,7 @@ Result<GroundColumns> GroundColumns::read(const VoxelBox& box, std::int32_t chun
     return fail(ErrorCode::limit_exceeded, "the area has more than 1,048,576 columns");
   out.spans_.resize(static_cast<std::size_t>(columns));
   const ChunkCoord low = chunk_of(box.min, chunk_edge);
-  const ChunkCoord high =
-      chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, chunk_edge);
+  const ChunkCoord high = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, chunk_edge);
   for (std::int32_t z = low.z; z <= high.z; ++z) {
     for (std::int32_t x = low.x; x <= high.x; ++x) out.read_stack(x, z, chunk_edge, chunks);
   }

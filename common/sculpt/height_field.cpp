@@ -85,9 +85,9 @@ HeightField eroded(const HeightField& field, std::span<const std::int32_t> weigh
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (weights[i] == 0 || !out.has_surface[i]) continue;
       const std::size_t x = i % width;
-      const std::array<std::size_t, 4> beside = {
-          x > 0 ? i - 1 : i, x + 1 < width ? i + 1 : i, i >= width ? i - width : i,
-          i + width < out.size() ? i + width : i};
+      const std::array<std::size_t, 4> beside = {x > 0 ? i - 1 : i, x + 1 < width ? i + 1 : i,
+                                                 i >= width ? i - width : i,
+                                                 i + width < out.size() ? i + width : i};
       std::array<std::int64_t, 4> excess{};
       std::int64_t sum = 0, most = 0;
       for (std::size_t n = 0; n < beside.size(); ++n) {

@@ -15,7 +15,7 @@ namespace runstone {
 inline constexpr std::int64_t kHeightUnit = 256;
 
 struct HeightField {
-  std::int32_t width = 0;            // columns along x
+  std::int32_t width = 0;             // columns along x
   std::vector<std::int64_t> heights;  // in parts of a voxel
   std::vector<bool> has_surface;
 

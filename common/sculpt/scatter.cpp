@@ -8,8 +8,8 @@ namespace runstone {
 namespace {
 
 std::uint64_t hash_of_cell(std::uint64_t seed, std::int32_t x, std::int32_t z) {
-  const std::uint64_t cell = (std::uint64_t{static_cast<std::uint32_t>(x)} << 32) |
-                             static_cast<std::uint32_t>(z);
+  const std::uint64_t cell =
+      (std::uint64_t{static_cast<std::uint32_t>(x)} << 32) | static_cast<std::uint32_t>(z);
   return mix64(mix64(seed) ^ cell);
 }
 

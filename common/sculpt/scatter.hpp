@@ -21,7 +21,7 @@ struct Scattering {
 };
 
 struct ScatteredSpot {
-  VoxelPos ground;       // the highest voxel of ground
+  VoxelPos ground;            // the highest voxel of ground
   std::uint8_t quarters = 0;  // a turn at random, 0 .. 3
   friend bool operator==(const ScatteredSpot&, const ScatteredSpot&) = default;
 };

@@ -74,8 +74,7 @@ class UprightSolid {
     if (half_width) add(within(*half_width), out);
   }
   void add_ring(double v, double w, std::vector<Stretch>& out) const {
-    const double tube =
-        std::min(0.5, static_cast<double>(sides_.y) / std::min(sides_.x, sides_.z));
+    const double tube = std::min(0.5, static_cast<double>(sides_.y) / std::min(sides_.x, sides_.z));
     const auto spread = root(1 - v * v);
     if (!spread) return;
     const double outer = 1 - tube + tube * *spread, inner = 1 - tube - tube * *spread;
@@ -86,7 +85,8 @@ class UprightSolid {
     const double square = inner * inner - w * w;
     if (inner <= 0 || square <= 0) return add(all, out);
     const double reach = std::sqrt(square) * sides_.x;
-    const auto low = static_cast<std::int32_t>(std::floor((sides_.x - 1 - reach) / 2 + kRounding)) + 1;
+    const auto low =
+        static_cast<std::int32_t>(std::floor((sides_.x - 1 - reach) / 2 + kRounding)) + 1;
     if (low >= sides_.x - low) return add(all, out);
     add({all.low, low}, out);
     add({sides_.x - low, all.high}, out);
@@ -159,7 +159,8 @@ Result<BuildPtr> solid_build(const Solid& solid, VoxelPos sides, Material materi
     for (std::uint32_t sy = 0; sy + 1 < cuts[1].size(); ++sy) {
       // The rows of a line of sections are made once for all of them.
       std::vector<std::optional<RunBuilder>> sections(cuts[0].size() - 1);
-      const std::int32_t height = cuts[1][sy + 1] - cuts[1][sy], depth = cuts[2][sz + 1] - cuts[2][sz];
+      const std::int32_t height = cuts[1][sy + 1] - cuts[1][sy],
+                         depth = cuts[2][sz + 1] - cuts[2][sz];
       for (std::int32_t z = 0; z < depth; ++z) {
         for (std::int32_t y = 0; y < height; ++y) {
           row.clear();
@@ -177,8 +178,7 @@ Result<BuildPtr> solid_build(const Solid& solid, VoxelPos sides, Material materi
                     std::array{static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(height),
                                static_cast<std::uint8_t>(depth)},
                     solid.axis);
-                sections[sx].emplace(Extent{extent[0], extent[1], extent[2]},
-                                     order_of(solid.axis));
+                sections[sx].emplace(Extent{extent[0], extent[1], extent[2]}, order_of(solid.axis));
               }
               const auto start = static_cast<std::uint32_t>(side * (y + height * z));
               sections[sx]->append_to(start + static_cast<std::uint32_t>(from - low), 0);

@@ -34,7 +34,8 @@ struct Solid {
   SolidKind kind = SolidKind::ellipsoid;
   SolidFill fill = SolidFill::solid;
   std::int32_t wall = 1;  // voxels, of `hollow` and `walls`
-  Axis axis = Axis::y;    // of the cylinder, cone, pyramid, dome and torus; the tip is at its high end
+  Axis axis =
+      Axis::y;  // of the cylinder, cone, pyramid, dome and torus; the tip is at its high end
 };
 
 /// Returns the solid that fills a box of these sides. A voxel belongs to it if its centre does. The

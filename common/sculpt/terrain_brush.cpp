@@ -91,8 +91,8 @@ VoxelBox brush_box(const TerrainBrush& brush, std::span<const VoxelPos> places) 
   const std::int32_t up = kSlopeRoom + brush.strength;
   const VoxelBox wide{{box.min.x - side, box.min.y - up, box.min.z - side},
                       {box.max.x + side + 1, box.max.y + up + 1, box.max.z + side + 1}};
-  return intersect(wide, {{-kWorldLimit, -kWorldLimit, -kWorldLimit},
-                          {kWorldLimit, kWorldLimit, kWorldLimit}});
+  return intersect(
+      wide, {{-kWorldLimit, -kWorldLimit, -kWorldLimit}, {kWorldLimit, kWorldLimit, kWorldLimit}});
 }
 
 ColumnChanges brush_changes(const GroundColumns& columns, const GroundMaterials& materials,
@@ -107,14 +107,12 @@ ColumnChanges brush_changes(const GroundColumns& columns, const GroundMaterials&
             ? common_layers(columns, surface, weights, materials)
             : std::vector<Material>(static_cast<std::size_t>(brush.strength), brush.material);
     for (std::size_t i = 0; i < surface.size(); ++i) {
-      if (weights[i] * 2 >= kFullWeight)
-        set_layers(columns, i, surface[i], layers, materials, out);
+      if (weights[i] * 2 >= kFullWeight) set_layers(columns, i, surface[i], layers, materials, out);
     }
     return out;
   }
   const HeightField before = height_field(surface, columns.width());
-  const HeightField after =
-      shaped_heights(before, weights, box, brush, places.front().y);
+  const HeightField after = shaped_heights(before, weights, box, brush, places.front().y);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     if (weights[i] != 0 && surface[i] != kNoSurface)
       move_surface(columns, i, surface[i], after.rounded(i), materials, out);

@@ -39,9 +39,9 @@ inline constexpr std::int32_t kBrushStrengthMax = 64;
 struct TerrainBrush {
   BrushMode mode = BrushMode::raise;
   BrushFalloff falloff = BrushFalloff::smooth;
-  std::int32_t radius = 8;    // voxels, 1 .. kBrushRadiusMax
-  std::int32_t strength = 4;  // 1 .. kBrushStrengthMax; its unit depends on the mode
-  bool lowers = false;        // `raise` sinks, and the hills of `noise` become hollows
+  std::int32_t radius = 8;     // voxels, 1 .. kBrushRadiusMax
+  std::int32_t strength = 4;   // 1 .. kBrushStrengthMax; its unit depends on the mode
+  bool lowers = false;         // `raise` sinks, and the hills of `noise` become hollows
   Material material = kEmpty;  // for `overlay`
   std::uint64_t seed = 1;      // of `noise`
 };

@@ -17,9 +17,9 @@ struct RandomWorld {
     for (std::int32_t x = -2; x < 2; ++x) {
       for (std::int32_t y = -2; y < 2; ++y) {
         for (std::int32_t z = -2; z < 2; ++z) {
-          chunks[{x, y, z}] = std::make_shared<RunChunk>(random_chunk(
-              rng, Extent::cube(kEdge), random_order(rng), 4,
-              rng.below(2) == 0 ? ChunkShape::boxes : ChunkShape::spheres));
+          chunks[{x, y, z}] = std::make_shared<RunChunk>(
+              random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4,
+                           rng.below(2) == 0 ? ChunkShape::boxes : ChunkShape::spheres));
         }
       }
     }
@@ -50,8 +50,7 @@ TEST_CASE("columns hold the voxels of their chunks, in every axis order", "[scul
       }
       for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
         const VoxelPos at{x, y, z};
-        const Material real =
-            material_at(*world(chunk_of(at, kEdge)), local_of(at, kEdge));
+        const Material real = material_at(*world(chunk_of(at, kEdge)), local_of(at, kEdge));
         if (material_in_column(column, y) != real) FAIL_CHECK(x << " " << y << " " << z);
       }
     }

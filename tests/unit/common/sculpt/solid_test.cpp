@@ -1,8 +1,8 @@
 #include "common/sculpt/solid.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 
 namespace runstone::test {
@@ -64,8 +64,7 @@ TEST_CASE("solids equal the rule for each voxel", "[sculpt]") {
         std::array<std::int32_t, 3> at{x, y, z}, box{sides.x, sides.y, sides.z};
         std::swap(at[1], at[static_cast<std::size_t>(axis)]);
         std::swap(box[1], box[static_cast<std::size_t>(axis)]);
-        const bool expected =
-            belongs(solid, {at[0], at[1], at[2]}, {box[0], box[1], box[2]});
+        const bool expected = belongs(solid, {at[0], at[1], at[2]}, {box[0], box[1], box[2]});
         count += expected ? 1U : 0U;
         if (!build) continue;
         const auto cell = (*build)->at({x, y, z});

@@ -1,7 +1,7 @@
 #include "common/sculpt/terrain_brush.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -34,7 +34,8 @@ class Hills {
     flower = *table.add(info);
   }
   std::int32_t height(std::int32_t x, std::int32_t z) const {
-    return 6 + static_cast<std::int32_t>(std::lround(7 * std::sin(x * 0.21) + 5 * std::cos(z * 0.17 + x * 0.05)));
+    return 6 + static_cast<std::int32_t>(
+                   std::lround(7 * std::sin(x * 0.21) + 5 * std::cos(z * 0.17 + x * 0.05)));
   }
   Material at(VoxelPos p) const {
     const std::int32_t top = height(p.x, p.z);
@@ -94,7 +95,8 @@ std::int32_t weight(const TerrainBrush& brush, const std::vector<VoxelPos>& plac
                     std::int32_t z) {
   double nearest = 1e9;
   for (std::size_t i = 0; i + 1 < std::max<std::size_t>(2, places.size()); ++i)
-    nearest = std::min(nearest, distance(x, z, places[i], places[std::min(i + 1, places.size() - 1)]));
+    nearest =
+        std::min(nearest, distance(x, z, places[i], places[std::min(i + 1, places.size() - 1)]));
   const double t = nearest / (brush.radius + 0.5);
   if (t >= 1) return 0;
   const double share = brush.falloff == BrushFalloff::none     ? 1.0
@@ -123,7 +125,8 @@ std::int64_t mean(const Hills& hills, const VoxelBox& box, std::int32_t x, std::
       }
     }
   }
-  return static_cast<std::int64_t>(std::floor(static_cast<double>(sum) / static_cast<double>(count)));
+  return static_cast<std::int64_t>(
+      std::floor(static_cast<double>(sum) / static_cast<double>(count)));
 }
 
 struct Stroke {
@@ -137,8 +140,7 @@ Stroke stroke(const Hills& hills, const TerrainBrush& brush, const std::vector<V
   box.max.y = std::min(box.max.y, Hills::kHigh);
   auto columns = GroundColumns::read(box, kHillEdge, hills);
   REQUIRE(columns);
-  const auto changes =
-      brush_changes(*columns, GroundMaterials::of(hills.table), brush, places);
+  const auto changes = brush_changes(*columns, GroundMaterials::of(hills.table), brush, places);
   auto placed = build_of_changes(*columns, changes);
   REQUIRE(placed);
   return {*std::move(columns), *std::move(placed)};
@@ -224,7 +226,8 @@ TEST_CASE("smooth moves the surface to the mean of the heights around", "[sculpt
 TEST_CASE("erosion lowers steep steps, and keeps the sum of the heights", "[sculpt]") {
   constexpr std::int32_t kSide = 24;
   std::vector<std::int32_t> heights(kSide * kSide);
-  for (std::int32_t i = 0; i < kSide * kSide; ++i) heights[std::size_t(i)] = i % kSide < 12 ? 20 : 0;
+  for (std::int32_t i = 0; i < kSide * kSide; ++i)
+    heights[std::size_t(i)] = i % kSide < 12 ? 20 : 0;
   heights[0] = kNoSurface;
   std::vector<std::int32_t> weights(heights.size(), kFullWeight);
   for (std::size_t i = 0; i < kSide; ++i) weights[i * kSide + 23] = 0;
