@@ -290,6 +290,7 @@ std::vector<std::unique_ptr<Tool>> make_tools() {
   out.push_back(std::make_unique<PasteTool>());
   out.push_back(make_solid_tool());
   out.push_back(make_terrain_tool());
+  out.push_back(make_path_tool());
   out.push_back(make_scatter_tool());
   return out;
 }

@@ -9,6 +9,7 @@
 #include "client/tools/build_words.hpp"
 #include "client/tools/turned_materials.hpp"
 #include "common/builds/build_transforms.hpp"
+#include "common/sculpt/path_brush.hpp"
 #include "common/sculpt/scatter.hpp"
 #include "common/sculpt/terrain_brush.hpp"
 
@@ -40,6 +41,16 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
       GroundColumns::read(box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
   if (!columns) return failure(std::string(columns.error().what) + ": make a shorter stroke");
   return *std::move(columns);
+}
+
+/// Returns the changes as an action. Fails with words for the player if there are none.
+ToolEdits action_of(const GroundColumns& columns, const ColumnChanges& changes, Mask mask,
+                    const ToolInput& input) {
+  const auto placed = build_of_changes(columns, changes);
+  if (!placed) return failure(words_of(placed.error()));
+  if (!placed->build) return failure("there is no ground to change here");
+  return paste_of_build({placed->build, placed->at, mask, EmptyCells::pasted},
+                        input.replica.edit_limits());
 }
 
 class TerrainTool final : public Tool {
@@ -157,6 +168,7 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
 }  // namespace
 
 std::unique_ptr<Tool> make_terrain_tool() { return std::make_unique<TerrainTool>(); }
+std::unique_ptr<Tool> make_path_tool() { return std::make_unique<PathTool>(); }
 std::unique_ptr<Tool> make_scatter_tool() { return std::make_unique<ScatterTool>(); }
 
 }  // namespace runstone

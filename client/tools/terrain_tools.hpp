@@ -1,4 +1,4 @@
-// Terrain tools: brushes that shape the shown ground, and one that scatters the clipboard on it.
+// Terrain tools: brushes that shape the shown ground, lay ways on it and scatter the clipboard.
 #pragma once
 #include <memory>
 
@@ -8,6 +8,9 @@ namespace runstone {
 
 /// Returns the tool that shapes ground along a stroke (common/sculpt/terrain_brush.hpp).
 std::unique_ptr<Tool> make_terrain_tool();
+
+/// Returns the tool that lays a way along a curve (common/sculpt/path_brush.hpp).
+std::unique_ptr<Tool> make_path_tool();
 
 /// Returns the tool that puts copies of the clipboard on the ground along a stroke.
 std::unique_ptr<Tool> make_scatter_tool();
