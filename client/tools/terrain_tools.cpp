@@ -91,11 +91,35 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   const auto columns = read_shown(input.replica, brush_box(brush, places), places.front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
-  const auto placed = build_of_changes(*columns, brush_changes(*columns, materials, brush, places));
-  if (!placed) return failure(words_of(placed.error()));
-  if (!placed->build) return failure("there is no ground to change here");
-  return paste_of_build({placed->build, placed->at, mask(), EmptyCells::pasted},
-                        input.replica.edit_limits());
+  return action_of(*columns, brush_changes(*columns, materials, brush, places), mask(), input);
+}
+
+class PathTool final : public Tool {
+ public:
+  PathTool()
+      : Tool("path", "a way along a curve, as long as the button is held",
+             {{"width", "voxels", 1, kPathWidthMax, 3, {}},
+              {"height", "", 0, 1, 0, {"ground", "even"}},
+              mask_parameter()}) {}
+  bool is_drawn() const override { return true; }
+  bool chooses_solid() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits PathTool::plan(const ToolInput& input) const {
+  if (input.button == ToolButton::clear) return failure("lay a way with the right button");
+  PathBrush brush;
+  brush.width = value("width");
+  brush.height = static_cast<PathHeight>(value("height"));
+  brush.material = input.aim.held;
+  if (brush.material == kEmpty) return failure("hold a material for the way");
+  const std::vector<VoxelPos> places = stroke_of(input);
+  const auto curve = curve_through(places);
+  const auto columns = read_shown(input.replica, path_box(brush, curve), places.front());
+  if (!columns) return failure(columns.error());
+  const GroundMaterials materials = GroundMaterials::of(input.materials);
+  return action_of(*columns, path_changes(*columns, materials, brush, curve), mask(), input);
 }
 
 class ScatterTool final : public Tool {
