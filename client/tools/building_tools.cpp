@@ -8,7 +8,9 @@
 #include "client/tools/cell_list.hpp"
 #include "client/tools/placed_material.hpp"
 #include "client/tools/shown_voxels.hpp"
+#include "client/tools/solid_tool.hpp"
 #include "client/tools/surface_flood.hpp"
+#include "client/tools/terrain_tools.hpp"
 #include "client/tools/voxel_joins.hpp"
 #include "common/builds/basin_flood.hpp"
 #include "common/materials/liquids.hpp"
@@ -344,6 +346,10 @@ std::vector<std::unique_ptr<Tool>> make_tools() {
   out.push_back(std::make_unique<SelectTool>());
   out.push_back(std::make_unique<PasteTool>());
   out.push_back(std::make_unique<FloodTool>());
+  out.push_back(make_solid_tool());
+  out.push_back(make_terrain_tool());
+  out.push_back(make_path_tool());
+  out.push_back(make_scatter_tool());
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Building tools: the ten tools with which a player builds, from the single voxel to the paste.
+// Building tools: the tools with which a player builds, from the single voxel to brushes for terrain.
 #pragma once
 #include <memory>
 #include <vector>

@@ -1,0 +1,198 @@
+#include "client/tools/terrain_tools.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "client/tools/action_source.hpp"
+#include "client/tools/build_words.hpp"
+#include "client/tools/turned_materials.hpp"
+#include "common/builds/build_transforms.hpp"
+#include "common/sculpt/path_brush.hpp"
+#include "common/sculpt/scatter.hpp"
+#include "common/sculpt/terrain_brush.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns the places of a stroke: those over which the button was held, or the target of a click.
+std::vector<VoxelPos> stroke_of(const ToolInput& input) {
+  if (input.points.empty()) return {input.target};
+  return {input.points.begin(), input.points.end()};
+}
+
+/// Reads the shown columns of a box, as high and as low as chunks are shown at `place`. Fails with
+/// words for the player.
+Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox box,
+                                              VoxelPos place) {
+  const std::int32_t edge = replica.chunk_edge();
+  const ChunkCoord middle = chunk_of(place, edge);
+  const auto is_shown = [&](std::int32_t y) {
+    return replica.shown({0, {middle.x, y, middle.z}}) != nullptr;
+  };
+  if (!is_shown(middle.y)) return failure("the ground is not loaded here");
+  std::int32_t low = middle.y, high = middle.y;
+  while (low * edge > box.min.y && is_shown(low - 1)) --low;
+  while ((high + 1) * edge < box.max.y && is_shown(high + 1)) ++high;
+  box.min.y = std::max(box.min.y, low * edge);
+  box.max.y = std::min(box.max.y, (high + 1) * edge);
+  auto columns =
+      GroundColumns::read(box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
+  if (!columns) return failure(std::string(columns.error().what) + ": make a shorter stroke");
+  return *std::move(columns);
+}
+
+/// Returns the changes as an action. Fails with words for the player if there are none.
+ToolEdits action_of(const GroundColumns& columns, const ColumnChanges& changes, Mask mask,
+                    const ToolInput& input) {
+  const auto placed = build_of_changes(columns, changes);
+  if (!placed) return failure(words_of(placed.error()));
+  if (!placed->build) return failure("there is no ground to change here");
+  return paste_of_build({placed->build, placed->at, mask, EmptyCells::pasted},
+                        input.replica.edit_limits());
+}
+
+class TerrainTool final : public Tool {
+ public:
+  TerrainTool()
+      : Tool("terrain", "shapes the ground, as long as the button is held",
+             {{"radius", "voxels", 1, kBrushRadiusMax, 8, {}},
+              {"mode",
+               "",
+               0,
+               kBrushModeCount - 1,
+               0,
+               {"raise", "flatten", "smooth", "erode", "noise", "naturalise", "overlay"}},
+              {"strength", "", 1, kBrushStrengthMax, 4, {}},
+              {"falloff", "", 0, kBrushFalloffCount - 1, 0, {"smooth", "linear", "round", "none"}},
+              {"seed", "", 0, 9999, 1, {}},
+              mask_parameter()}) {}
+  bool is_drawn() const override { return true; }
+  bool chooses_solid() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits TerrainTool::plan(const ToolInput& input) const {
+  TerrainBrush brush;
+  brush.mode = static_cast<BrushMode>(value("mode"));
+  brush.falloff = static_cast<BrushFalloff>(value("falloff"));
+  brush.radius = value("radius");
+  brush.strength = value("strength");
+  brush.lowers = input.button == ToolButton::clear;
+  brush.material = input.aim.held;
+  brush.seed = static_cast<std::uint64_t>(value("seed"));
+  if (brush.mode == BrushMode::overlay) {
+    if (brush.lowers) return failure("overlay with the right button");
+    if (brush.material == kEmpty) return failure("hold a material to overlay");
+  }
+  const std::vector<VoxelPos> places = stroke_of(input);
+  const auto columns = read_shown(input.replica, brush_box(brush, places), places.front());
+  if (!columns) return failure(columns.error());
+  const GroundMaterials materials = GroundMaterials::of(input.materials);
+  return action_of(*columns, brush_changes(*columns, materials, brush, places), mask(), input);
+}
+
+class PathTool final : public Tool {
+ public:
+  PathTool()
+      : Tool("path", "a way along a curve, as long as the button is held",
+             {{"width", "voxels", 1, kPathWidthMax, 3, {}},
+              {"height", "", 0, 1, 0, {"ground", "even"}},
+              mask_parameter()}) {}
+  bool is_drawn() const override { return true; }
+  bool chooses_solid() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
+  ToolEdits plan(const ToolInput& input) const override;
+};
+
+ToolEdits PathTool::plan(const ToolInput& input) const {
+  if (input.button == ToolButton::clear) return failure("lay a way with the right button");
+  PathBrush brush;
+  brush.width = value("width");
+  brush.height = static_cast<PathHeight>(value("height"));
+  brush.material = input.aim.held;
+  if (brush.material == kEmpty) return failure("hold a material for the way");
+  const std::vector<VoxelPos> places = stroke_of(input);
+  const auto curve = curve_through(places);
+  const auto columns = read_shown(input.replica, path_box(brush, curve), places.front());
+  if (!columns) return failure(columns.error());
+  const GroundMaterials materials = GroundMaterials::of(input.materials);
+  return action_of(*columns, path_changes(*columns, materials, brush, curve), mask(), input);
+}
+
+class ScatterTool final : public Tool {
+ public:
+  ScatterTool()
+      : Tool("scatter", "puts copies of the clipboard on the ground",
+             {{"radius", "voxels", 1, kBrushRadiusMax, 16, {}},
+              {"spacing", "voxels", 1, 128, 6, {}},
+              {"turn", "", 0, 1, 1, {"none", "random"}},
+              {"seed", "", 0, 9999, 1, {}},
+              mask_parameter()}) {}
+  bool is_drawn() const override { return true; }
+  bool chooses_solid() const override { return true; }
+  std::string_view place_name(std::size_t) const override { return "place"; }
+  ToolEdits plan(const ToolInput& input) const override;
+
+ private:
+  using Turns = std::array<BuildPtr, 4>;
+  static Result<Turns> turns_of(const ToolInput& input);
+};
+
+Result<ScatterTool::Turns> ScatterTool::turns_of(const ToolInput& input) {
+  Turns out;
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    const Orientation orientation = Orientation{}.rotated_about_y(quarters);
+    auto made = turned(*input.clipboard.build, orientation);
+    if (!made) return failure(made.error());
+    const TurnedMaterials materials =
+        turned_materials((*made)->palette(), orientation, input.materials);
+    if (materials.is_changed) made = with_materials(**made, materials.ids);
+    if (!made) return failure(made.error());
+    out[static_cast<std::size_t>(quarters)] = *std::move(made);
+  }
+  return out;
+}
+
+ToolEdits ScatterTool::plan(const ToolInput& input) const {
+  if (!input.clipboard.build) return failure("copy what to scatter first");
+  if (input.button == ToolButton::clear) return failure("scatter with the right button");
+  Scattering scattering;
+  scattering.radius = value("radius");
+  scattering.spacing = value("spacing");
+  scattering.seed = static_cast<std::uint64_t>(value("seed"));
+  const std::vector<VoxelPos> places = stroke_of(input);
+  const auto columns = read_shown(input.replica, scatter_box(scattering, places), places.front());
+  if (!columns) return failure(columns.error());
+  const auto spots =
+      scattered_spots(*columns, GroundMaterials::of(input.materials), scattering, places);
+  if (spots.empty()) return failure("there is no ground for a copy here");
+  if (spots.size() > kScatteredMax)
+    return failure("more than " + std::to_string(kScatteredMax) +
+                   " copies: choose a wider spacing or a smaller radius");
+  const auto turns = turns_of(input);
+  if (!turns) return failure("cannot turn the clipboard: " + words_of(turns.error()));
+  ToolAction out;
+  for (const ScatteredSpot& spot : spots) {
+    const BuildPtr& build = (*turns)[value("turn") == 1 ? spot.quarters : 0U];
+    const VoxelPos sides = build->sides();
+    const VoxelPos at{spot.ground.x - sides.x / 2, spot.ground.y + 1, spot.ground.z - sides.z / 2};
+    if (!is_in_world(at, sides)) continue;
+    ToolAction copy =
+        paste_of_build({build, at, mask(), EmptyCells::skipped}, input.replica.edit_limits());
+    std::move(copy.pastes.begin(), copy.pastes.end(), std::back_inserter(out.pastes));
+    std::move(copy.edits.begin(), copy.edits.end(), std::back_inserter(out.edits));
+  }
+  if (out.empty()) return failure("the copies reach outside the world there");
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<Tool> make_terrain_tool() { return std::make_unique<TerrainTool>(); }
+std::unique_ptr<Tool> make_path_tool() { return std::make_unique<PathTool>(); }
+std::unique_ptr<Tool> make_scatter_tool() { return std::make_unique<ScatterTool>(); }
+
+}  // namespace runstone

@@ -1,0 +1,297 @@
+#include "common/sculpt/terrain_brush.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "common/core/hash.hpp"
+#include "common/runs/reorder.hpp"
+#include "common/runs/run_builder.hpp"
+#include "common/sculpt/brush_weights.hpp"
+#include "common/sculpt/height_field.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr std::int32_t kHillEdge = 32, kWater = 4;
+
+/// Hills with soil, water in the valleys and plants, as a grid.
+class Hills {
+ public:
+  static constexpr std::int32_t kLow = -64, kHigh = 64;
+
+  Hills() {
+    grass = *table.find("grass");
+    dirt = *table.find("dirt");
+    stone = *table.find("stone");
+    water = *table.find("water");
+    MaterialInfo info;
+    info.name = "flower";
+    info.visibility = Visibility::transparent;
+    info.body = MaterialBody::passable;
+    flower = *table.add(info);
+  }
+  std::int32_t height(std::int32_t x, std::int32_t z) const {
+    return 6 + static_cast<std::int32_t>(
+                   std::lround(7 * std::sin(x * 0.21) + 5 * std::cos(z * 0.17 + x * 0.05)));
+  }
+  Material at(VoxelPos p) const {
+    const std::int32_t top = height(p.x, p.z);
+    if (p.y > top) {
+      if (p.y <= kWater) return water;
+      const bool has_flower = mix64(static_cast<std::uint64_t>(p.x * 977 + p.z)) % 7 == 0;
+      return p.y == top + 1 && has_flower ? flower : kEmpty;
+    }
+    if (p.y == top) return grass;
+    return p.y > top - 4 ? dirt : stone;
+  }
+  std::shared_ptr<const RunChunk> operator()(ChunkCoord coord) const {
+    const VoxelPos o = origin_of(coord, kHillEdge);
+    if (o.y < kLow || o.y >= kHigh) return nullptr;
+    RunBuilder out(Extent::cube(kHillEdge), AxisOrder::xyz);
+    for (std::int32_t z = 0; z < kHillEdge; ++z) {
+      for (std::int32_t y = 0; y < kHillEdge; ++y) {
+        for (std::int32_t x = 0; x < kHillEdge; ++x) out.append(1, at({o.x + x, o.y + y, o.z + z}));
+      }
+    }
+    return std::make_shared<RunChunk>(in_cheapest_order(out.finish()));
+  }
+  /// Returns the column when its surface lies at `to`.
+  std::vector<Material> moved_column(std::int32_t x, std::int32_t z, std::int32_t to) const {
+    const std::int32_t from = height(x, z);
+    std::vector<Material> old, ground;
+    for (std::int32_t y = kLow; y < kHigh; ++y) old.push_back(at({x, y, z}));
+    const auto index = [](std::int32_t y) { return static_cast<std::size_t>(y - kLow); };
+    if (to == from) return old;
+    ground.assign(old.begin(), old.begin() + from - kLow - 3);
+    ground.resize(ground.size() + static_cast<std::size_t>(to - from), stone);
+    ground.insert(ground.end(), old.begin() + from - kLow - 3, old.begin() + from - kLow + 1);
+    const Material above = old[index(from + 1)];
+    std::vector<Material> out = old;
+    for (std::int32_t y = std::min(from, to) + 1; y <= from; ++y)
+      out[index(y)] = above == water ? water : kEmpty;
+    std::copy(ground.begin(), ground.end(), out.begin());
+    if (above == flower) {
+      if (to < from) out[index(from + 1)] = kEmpty;
+      if (to < from || out[index(to + 1)] == kEmpty) out[index(to + 1)] = flower;
+    }
+    return out;
+  }
+
+  MaterialTable table = default_material_table();
+  Material grass = 0, dirt = 0, stone = 0, water = 0, flower = 0;
+};
+
+double distance(double x, double z, VoxelPos a, VoxelPos b) {
+  const double dx = b.x - a.x, dz = b.z - a.z, square = dx * dx + dz * dz;
+  double t = square > 0 ? ((x - a.x) * dx + (z - a.z) * dz) / square : 0;
+  t = std::clamp(t, 0.0, 1.0);
+  return std::hypot(x - a.x - t * dx, z - a.z - t * dz);
+}
+
+std::int32_t weight(const TerrainBrush& brush, const std::vector<VoxelPos>& places, std::int32_t x,
+                    std::int32_t z) {
+  double nearest = 1e9;
+  for (std::size_t i = 0; i + 1 < std::max<std::size_t>(2, places.size()); ++i)
+    nearest =
+        std::min(nearest, distance(x, z, places[i], places[std::min(i + 1, places.size() - 1)]));
+  const double t = nearest / (brush.radius + 0.5);
+  if (t >= 1) return 0;
+  const double share = brush.falloff == BrushFalloff::none     ? 1.0
+                       : brush.falloff == BrushFalloff::linear ? 1 - t
+                       : brush.falloff == BrushFalloff::round  ? std::sqrt(1 - t * t)
+                                                               : 1 - t * t * (3 - 2 * t);
+  return static_cast<std::int32_t>(std::lround(share * 256));
+}
+
+/// Returns the mean of the heights in a square, and of the means in a square, by brute force.
+std::int64_t mean(const Hills& hills, const VoxelBox& box, std::int32_t x, std::int32_t z,
+                  std::int32_t radius) {
+  std::int64_t sum = 0, count = 0;
+  const auto inside = [&](std::int32_t px, std::int32_t pz) {
+    return px >= box.min.x && px < box.max.x && pz >= box.min.z && pz < box.max.z;
+  };
+  for (std::int32_t dz = -radius; dz <= radius; ++dz) {
+    for (std::int32_t dx = -radius; dx <= radius; ++dx) {
+      if (!inside(x + dx, z + dz)) continue;
+      for (std::int32_t ez = -radius; ez <= radius; ++ez) {
+        for (std::int32_t ex = -radius; ex <= radius; ++ex) {
+          if (!inside(x + dx + ex, z + dz + ez)) continue;
+          sum += hills.height(x + dx + ex, z + dz + ez) * 256;
+          ++count;
+        }
+      }
+    }
+  }
+  return static_cast<std::int64_t>(
+      std::floor(static_cast<double>(sum) / static_cast<double>(count)));
+}
+
+struct Stroke {
+  GroundColumns columns;
+  PlacedBuild placed;
+};
+
+Stroke stroke(const Hills& hills, const TerrainBrush& brush, const std::vector<VoxelPos>& places) {
+  VoxelBox box = brush_box(brush, places);
+  box.min.y = std::max(box.min.y, Hills::kLow);
+  box.max.y = std::min(box.max.y, Hills::kHigh);
+  auto columns = GroundColumns::read(box, kHillEdge, hills);
+  REQUIRE(columns);
+  const auto changes = brush_changes(*columns, GroundMaterials::of(hills.table), brush, places);
+  auto placed = build_of_changes(*columns, changes);
+  REQUIRE(placed);
+  return {*std::move(columns), *std::move(placed)};
+}
+
+/// Compares the build with columns whose surface lies at the heights that `to` gives. Cells that do
+/// not differ from the world are untouched.
+template <class F>
+void check_heights(const Hills& hills, const Stroke& made, F&& to) {
+  const VoxelBox& box = made.columns.box();
+  const PlacedBuild& placed = made.placed;
+  std::size_t wrong = 0, changed = 0;
+  for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+      const auto expected = hills.moved_column(x, z, to(x, z));
+      for (std::int32_t y = Hills::kLow; y < Hills::kHigh; ++y) {
+        const Material old = hills.at({x, y, z});
+        std::optional<Material> cell;
+        const VoxelPos local{x - placed.at.x, y - placed.at.y, z - placed.at.z};
+        if (placed.build && placed.build->box().contains(local)) cell = placed.build->at(local);
+        const Material wanted = expected[static_cast<std::size_t>(y - Hills::kLow)];
+        if (wanted != old) ++changed;
+        if (cell != (wanted == old ? std::nullopt : std::optional<Material>(wanted))) ++wrong;
+      }
+    }
+  }
+  CHECK(changed > 0);
+  CHECK(wrong == 0);
+}
+
+std::int32_t rounded(std::int64_t height) {
+  return static_cast<std::int32_t>(std::floor((static_cast<double>(height) + 128) / 256));
+}
+
+const std::vector<VoxelPos> kLine = {{-20, 8, 3}, {5, 9, 10}, {11, 6, -14}};
+
+}  // namespace
+
+TEST_CASE("raise and lower move the surface with its soil, plants and water", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.radius = GENERATE(1, 9, 17);
+  brush.strength = GENERATE(1, 6, 15);
+  brush.falloff = static_cast<BrushFalloff>(GENERATE(range(0, kBrushFalloffCount)));
+  brush.lowers = GENERATE(false, true);
+  CAPTURE(brush.radius, brush.strength, static_cast<int>(brush.falloff), brush.lowers);
+  const auto made = stroke(hills, brush, kLine);
+  check_heights(hills, made, [&](std::int32_t x, std::int32_t z) {
+    const std::int32_t sign = brush.lowers ? -1 : 1;
+    return rounded(hills.height(x, z) * 256 + sign * brush.strength * weight(brush, kLine, x, z));
+  });
+}
+
+TEST_CASE("flatten moves the surface to the height of the first place", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.mode = BrushMode::flatten;
+  brush.radius = 12;
+  brush.falloff = static_cast<BrushFalloff>(GENERATE(range(0, kBrushFalloffCount)));
+  check_heights(hills, stroke(hills, brush, kLine), [&](std::int32_t x, std::int32_t z) {
+    const std::int64_t height = hills.height(x, z) * 256;
+    return rounded(height + (kLine[0].y * 256 - height) * weight(brush, kLine, x, z) / 256);
+  });
+}
+
+TEST_CASE("smooth moves the surface to the mean of the heights around", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.mode = BrushMode::smooth;
+  brush.radius = 10;
+  brush.strength = GENERATE(1, 3);
+  const auto made = stroke(hills, brush, kLine);
+  check_heights(hills, made, [&](std::int32_t x, std::int32_t z) {
+    const std::int64_t height = hills.height(x, z) * 256;
+    const std::int32_t part = weight(brush, kLine, x, z);
+    if (part == 0) return hills.height(x, z);
+    // The mean is rounded towards a height of the area, so it may differ by one part of a voxel.
+    const std::int64_t target = mean(hills, made.columns.box(), x, z, brush.strength);
+    return rounded(height + (target - height) * part / 256);
+  });
+}
+
+TEST_CASE("erosion lowers steep steps, and keeps the sum of the heights", "[sculpt]") {
+  constexpr std::int32_t kSide = 24;
+  std::vector<std::int32_t> heights(kSide * kSide);
+  for (std::int32_t i = 0; i < kSide * kSide; ++i)
+    heights[std::size_t(i)] = i % kSide < 12 ? 20 : 0;
+  heights[0] = kNoSurface;
+  std::vector<std::int32_t> weights(heights.size(), kFullWeight);
+  for (std::size_t i = 0; i < kSide; ++i) weights[i * kSide + 23] = 0;
+  const HeightField before = height_field(heights, kSide);
+  const HeightField after = eroded(before, weights, 64);
+  CHECK(std::accumulate(after.heights.begin(), after.heights.end(), std::int64_t{0}) ==
+        std::accumulate(before.heights.begin(), before.heights.end(), std::int64_t{0}));
+  CHECK(after.rounded(5 * kSide + 11) < 15);
+  CHECK(after.rounded(5 * kSide + 12) > 5);
+  for (std::size_t i = 0; i < kSide; ++i) CHECK(after.heights[i * kSide + 23] == 0);
+  CHECK(after.heights[0] == 0);
+  CHECK(eroded(before, weights, 0).heights == before.heights);
+}
+
+TEST_CASE("noise depends on the seed, and stays within the strength", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.mode = BrushMode::noise;
+  brush.falloff = BrushFalloff::none;
+  brush.radius = 16;
+  brush.strength = 5;
+  const auto one = stroke(hills, brush, kLine);
+  brush.seed = 2;
+  const auto two = stroke(hills, brush, kLine);
+  REQUIRE(one.placed.build);
+  REQUIRE(two.placed.build);
+  CHECK(one.placed.build->touched() != two.placed.build->touched());
+  const auto surface = surface_heights(one.columns, GroundMaterials::of(hills.table));
+  for (std::size_t i = 0; i < surface.size(); ++i) CHECK(surface[i] != kNoSurface);
+  CHECK(one.placed.build->sides().y <= 2 * 5 + 30);
+}
+
+TEST_CASE("overlay and naturalise set the upper voxels of the ground", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.mode = BrushMode::overlay;
+  brush.falloff = BrushFalloff::none;
+  brush.radius = 6;
+  brush.strength = 2;
+  brush.material = hills.stone;
+  const auto made = stroke(hills, brush, kLine);
+  REQUIRE(made.placed.build);
+  const std::int32_t top = hills.height(5, 10);
+  const VoxelPos at = made.placed.at;
+  const auto cell = [&](std::int32_t y) {
+    return made.placed.build->at({5 - at.x, y - at.y, 10 - at.z});
+  };
+  CHECK(cell(top) == hills.stone);
+  CHECK(cell(top - 1) == hills.stone);
+  brush.mode = BrushMode::naturalise;
+  // The hills have natural layers already.
+  CHECK(stroke(hills, brush, kLine).placed.build == nullptr);
+}
+
+TEST_CASE("a stroke that is lower than the box allows is cut to it", "[sculpt]") {
+  const Hills hills;
+  TerrainBrush brush;
+  brush.radius = 3;
+  brush.strength = kBrushStrengthMax;
+  brush.lowers = true;
+  brush.falloff = BrushFalloff::none;
+  const auto made = stroke(hills, brush, kLine);
+  REQUIRE(made.placed.build);
+  CHECK(made.placed.at.y >= Hills::kLow);
+}
+
+}  // namespace runstone::test
