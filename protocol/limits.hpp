@@ -34,9 +34,9 @@ inline constexpr std::uint64_t kFeatureResume =
 inline constexpr std::uint64_t kFeatureServerList = 8192;  // Servers
 // Actions without a bound of edits, which budgets delay; see Welcome::waiting_edits_max.
 inline constexpr std::uint64_t kFeatureLargeActions = 32768;
-inline constexpr std::uint64_t kFeatureBuilds = 131072;     // BuildsRequest to BuildAnswer
-inline constexpr std::uint64_t kFeatureShapes = 262144;     // shapes in Welcome, and ShapesGiven
-inline constexpr std::uint64_t kFeatureTextures = 1 << 20;  // TexturesGiven to TextureParts
+inline constexpr std::uint64_t kFeatureBuilds = 131072;      // BuildsRequest to BuildAnswer
+inline constexpr std::uint64_t kFeatureShapes = 262144;      // shapes in Welcome, and ShapesGiven
+inline constexpr std::uint64_t kFeatureTextures = 1 << 20;   // TexturesGiven to TextureParts
 inline constexpr std::uint64_t kFeatureWorldTime = 1 << 22;  // WorldTime
 // SessionAccepted.place, and lines of the chat of the kind visit.
 inline constexpr std::uint64_t kFeatureVisits = 1 << 24;

@@ -41,8 +41,8 @@ struct RenderStats {
   /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
   /// ghosts.
   bool is_animated = false;
-  bool lacks_msaa = false;  // FXAA replaced the MSAA that was wanted
-  std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
+  bool lacks_msaa = false;              // FXAA replaced the MSAA that was wanted
+  std::uint32_t tile_parts_drawn = 0;   // tiles that are drawn whole, and octants of the others
   std::uint32_t textures_left_out = 0;  // see TextureArray::left_out()
 };
 

@@ -134,8 +134,8 @@ VoxelBox path_box(const PathBrush& brush, std::span<const CurvePoint> curve) {
     box = bounding_box(box, {{at.x - side, at.y - kPathRoom, at.z - side},
                              {at.x + side + 1, at.y + kPathRoom + 1, at.z + side + 1}});
   }
-  return intersect(box, {{-kWorldLimit, -kWorldLimit, -kWorldLimit},
-                         {kWorldLimit, kWorldLimit, kWorldLimit}});
+  return intersect(
+      box, {{-kWorldLimit, -kWorldLimit, -kWorldLimit}, {kWorldLimit, kWorldLimit, kWorldLimit}});
 }
 
 ColumnChanges path_changes(const GroundColumns& columns, const GroundMaterials& materials,

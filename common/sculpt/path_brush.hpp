@@ -14,7 +14,7 @@ namespace runstone {
 
 enum class PathHeight : std::uint8_t {
   ground,  // the way lies on the ground as it is
-  even,    // its height follows the curve: low ground is filled, high ground cut, and deep ground bridged
+  even,  // its height follows the curve: low ground is filled, high ground cut, and deep ground bridged
 };
 
 /// The voxels that a way is wide, at most.

@@ -154,8 +154,8 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   if (access != StoreAccess::read_only && !store->loss_) {
     const auto present = store->present_tile_rules();
     const auto rules = rows->find("tile_rules");
-    const bool are_tiles_current = present && rules != rows->end() &&
-                                   rules->second == MetaValue{std::int64_t{*present}};
+    const bool are_tiles_current =
+        present && rules != rows->end() && rules->second == MetaValue{std::int64_t{*present}};
     if (!are_tiles_current) {
       const auto deleted = store->transact([&] { return store->delete_tiles(); });
       if (!deleted) return failed(deleted.error());

@@ -404,9 +404,10 @@ Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
       in[0] <= static_cast<std::uint8_t>(EditKind::clock))
-    return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials, shapes, textures, the library or the clock is no edit "
-                "of voxels");
+    return fail(
+        ErrorCode::unknown_kind,
+        "a change of rights, materials, shapes, textures, the library or the clock is no edit "
+        "of voxels");
   return decode_descriptor(in);
 }
 

@@ -29,8 +29,7 @@ LandCover cover_of(const LandPlace& place) {
 
 std::int32_t tree_share(const LandPlace& place, LandCover cover) {
   if (cover != LandCover::grass && cover != LandCover::forest_floor) return 0;
-  const std::int32_t below_line =
-      kOne - ramp(place.height + place.cold, kTreeLine - 60, kTreeLine);
+  const std::int32_t below_line = kOne - ramp(place.height + place.cold, kTreeLine - 60, kTreeLine);
   return times(55 + times(place.forest, 3500), below_line);
 }
 

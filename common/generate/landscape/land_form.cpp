@@ -10,8 +10,7 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kPatchesKept = 1024;
-constexpr std::int64_t kReachSquared =
-    std::int64_t{kDrainageReach} * 16 * kDrainageReach * 16;
+constexpr std::int64_t kReachSquared = std::int64_t{kDrainageReach} * 16 * kDrainageReach * 16;
 constexpr std::int64_t kNearSquared = 24 * 16 * 24 * 16;  // within 24 voxels a level stays as it is
 
 std::array<LatticeNoise, 4> octaves(std::uint64_t key) {
@@ -101,12 +100,10 @@ LandSample LandForm::at(std::int32_t x, std::int32_t z) const {
   // Crags are ridges at each scale, as high as the side of the valley lets them be.
   std::int32_t crag = 0;
   constexpr std::array<int, 4> kCrag = {30, 21, 8, 4};
-  for (std::size_t i = 0; i < 4; ++i)
-    crag += (kOne - 2 * std::abs(crags_[i].at(x, z))) * kCrag[i];
+  for (std::size_t i = 0; i < 4; ++i) crag += (kOne - 2 * std::abs(crags_[i].at(x, z))) * kCrag[i];
   crag = times(crag >> 6, times(off_water, rise * 2 / 5 + times(mountain, 12 * 256)));
   const std::int32_t swell =
-      times((swell_8_.at(x, z) * 7 + swell_7_.at(x, z) * 3) >> 1, off_water) *
-      256 / kOne;
+      times((swell_8_.at(x, z) * 7 + swell_7_.at(x, z) * 3) >> 1, off_water) * 256 / kOne;
   out.height = std::clamp(level + 200 + rise + crag + swell, (kLandHeightMin + 8) * 256,
                           (kLandHeightMax - 40) * 256);
   out.roughness = mountain;

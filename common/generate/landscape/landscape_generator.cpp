@@ -188,7 +188,10 @@ std::optional<RunChunk> LandscapeGenerator::coarse(VoxelPos origin, std::int32_t
     const std::int32_t slope_z = std::abs(at.height - beside_z) >> level;
     const LandPlace where{(at.height + 128) >> 8,
                           std::max(slope_x, slope_z) + std::min(slope_x, slope_z) / 2,
-                          at.roughness, at.forest, at.cold, 0};
+                          at.roughness,
+                          at.forest,
+                          at.cold,
+                          0};
     const LandCover cover = cover_of(where);
     FarColumn out{0, where.height, where.height, kEmpty, kEmpty};
     switch (cover) {
@@ -260,8 +263,7 @@ std::optional<RunChunk> LandscapeGenerator::coarse(VoxelPos origin, std::int32_t
 }
 
 std::int32_t LandscapeGenerator::surface_y(std::int32_t x, std::int32_t z) const {
-  return sea_level_ +
-         LandColumns(form_, materials_, choices_, seed_, x, z, 1, 1).high();
+  return sea_level_ + LandColumns(form_, materials_, choices_, seed_, x, z, 1, 1).high();
 }
 
 }  // namespace runstone

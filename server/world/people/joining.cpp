@@ -245,8 +245,8 @@ void Joining::enter(Session& session, AuthorId author, bool is_listed, const Clo
 bool Joining::send_accepted(Session& session, ClientSequence resolved,
                             const std::optional<Pose>& place, const Clocks& now) {
   session.tile_rules = session.has(kFeatureTiles) ? world_.order.tile_rules() : 0;
-  if (!world_.sessions.send_or_close(session, SessionAccepted{session.author, resolved,
-                                                              session.tile_rules, place}))
+  if (!world_.sessions.send_or_close(
+          session, SessionAccepted{session.author, resolved, session.tile_rules, place}))
     return false;
   if (session.is_relayed) return true;
   world_.receipts.send_epoch(session);      // if it began since Welcome

@@ -21,7 +21,8 @@ class GroundScene {
   static constexpr int kWidth = 160, kHeight = 120;
 
   explicit GroundScene(MaterialTable materials)
-      : materials_(std::move(materials)), chunk_(uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy)) {
+      : materials_(std::move(materials)),
+        chunk_(uniform_chunk(Extent::cube(kEdge), kEmpty, AxisOrder::xzy)) {
     std::string tried;
     context_ = make_egl_surfaceless_context(tried);
     if (!context_) {

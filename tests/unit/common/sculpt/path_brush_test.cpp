@@ -1,7 +1,7 @@
 #include "common/sculpt/path_brush.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
@@ -34,13 +34,10 @@ std::map<VoxelPos, Material> way(const PathBrush& brush, const std::vector<Voxel
   const auto columns = GroundColumns::read(path_box(brush, curve), kSide, slope_chunk);
   REQUIRE(columns);
   std::map<VoxelPos, Material> out;
-  for (const ColumnChange& change :
-       path_changes(*columns, GroundMaterials(), brush, curve)) {
+  for (const ColumnChange& change : path_changes(*columns, GroundMaterials(), brush, curve)) {
     const auto width = static_cast<std::size_t>(columns->width());
-    const std::int32_t x =
-        columns->box().min.x + static_cast<std::int32_t>(change.column % width);
-    const std::int32_t z =
-        columns->box().min.z + static_cast<std::int32_t>(change.column / width);
+    const std::int32_t x = columns->box().min.x + static_cast<std::int32_t>(change.column % width);
+    const std::int32_t z = columns->box().min.z + static_cast<std::int32_t>(change.column / width);
     for (std::int32_t y = change.low; y < change.high; ++y) {
       CHECK(out.emplace(VoxelPos{x, y, z}, change.material).second);
     }
@@ -51,7 +48,8 @@ std::map<VoxelPos, Material> way(const PathBrush& brush, const std::vector<Voxel
 }  // namespace
 
 TEST_CASE("a curve goes through its places in small steps", "[sculpt]") {
-  const std::vector<VoxelPos> places = {{0, 0, 0}, {10, 3, 0}, {10, 3, 0}, {12, 4, 30}, {-5, 0, 31}};
+  const std::vector<VoxelPos> places = {
+      {0, 0, 0}, {10, 3, 0}, {10, 3, 0}, {12, 4, 30}, {-5, 0, 31}};
   const auto curve = curve_through(places);
   for (const VoxelPos& place : places) {
     const bool is_met = std::any_of(curve.begin(), curve.end(), [&](const CurvePoint& p) {
@@ -67,8 +65,7 @@ TEST_CASE("a curve goes through its places in small steps", "[sculpt]") {
 }
 
 TEST_CASE("a way on the ground replaces the upper voxel of each column", "[sculpt]") {
-  const auto changed =
-      way({3, PathHeight::ground, kRoad}, {{0, 0, 4}, {12, 1, 4}, {18, 2, 4}});
+  const auto changed = way({3, PathHeight::ground, kRoad}, {{0, 0, 4}, {12, 1, 4}, {18, 2, 4}});
   for (std::int32_t x = 0; x <= 18; ++x) {
     for (std::int32_t z = 3; z <= 5; ++z) {
       const auto at = changed.find({x, slope_height(x), z});
