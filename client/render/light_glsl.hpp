@@ -48,7 +48,7 @@ namespace runstone {
   "}\n"                                                                              \
   "vec3 display(vec3 c) {\n"                                                         \
   "  float grey = dot(c, vec3(0.25, 0.60, 0.15));\n"                                 \
-  "  float lost = night * clamp(1.15 - 7.0 * grey, 0.0, 1.0);\n"                      \
+  "  float lost = night * clamp(1.15 - 7.0 * grey, 0.0, 1.0);\n"                     \
   "  vec3 x = max(mix(c, grey * vec3(0.74, 0.94, 1.42), lost) * exposure, 0.0);\n"   \
   "  return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);\n"                 \
   "}\n"

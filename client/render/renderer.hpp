@@ -40,7 +40,7 @@ struct RenderStats {
   /// True if the frame changes with FrameLook::seconds, because it shows transparent faces or
   /// ghosts.
   bool is_animated = false;
-  bool lacks_msaa = false;  // FXAA replaced the MSAA that was wanted
+  bool lacks_msaa = false;             // FXAA replaced the MSAA that was wanted
   std::uint32_t tile_parts_drawn = 0;  // tiles that are drawn whole, and octants of the others
 };
 
