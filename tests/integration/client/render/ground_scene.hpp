@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "client/platform/egl_context.hpp"
 #include "client/render/renderer.hpp"
@@ -34,10 +35,10 @@ class GroundScene {
     contents.look.quality = Quality::medium;
   }
   bool draws() const { return context_ != nullptr; }
-  /// Makes the renderer anew, with the functions of this loader.
-  void use_loader(GlContextLoader loader) {
+  /// Makes the renderer anew, with these functions of OpenGL.
+  void use_loader(GlContextLoader functions) {
     renderer_.reset();
-    renderer_ = std::make_unique<Renderer>(loader);
+    renderer_ = std::make_unique<Renderer>(functions);
     renderer_->set_materials(materials_);
     upload();
   }
