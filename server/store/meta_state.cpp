@@ -33,10 +33,10 @@ StoreResult<std::optional<SavedClock>> MetaTable::clock() {
   return std::optional(clock);
 }
 
-StoreResult<std::vector<PlayerPlace>> MetaTable::places() {
+StoreResult<std::vector<LastPlace>> MetaTable::places() {
   const auto value = find(kPlacesKey);
   if (!value) return failed(value.error());
-  std::vector<PlayerPlace> places;
+  std::vector<LastPlace> places;
   if (!*value) return places;
   const auto* bytes = std::get_if<Bytes>(&**value);
   if (bytes == nullptr || bytes->size() % kPlaceBytes != 0 ||
@@ -44,7 +44,7 @@ StoreResult<std::vector<PlayerPlace>> MetaTable::places() {
     return corrupt(kPlacesKey, "is no list of places");
   places.resize(bytes->size() / kPlaceBytes);
   ByteReader reader(*bytes);
-  for (PlayerPlace& place : places) {
+  for (LastPlace& place : places) {
     for (std::uint8_t& byte : place.key) byte = reader.u8();
     for (double* coordinate : {&place.pose.at.x, &place.pose.at.y, &place.pose.at.z}) {
       *coordinate = reader.f64();
@@ -73,11 +73,11 @@ StoreResult<void> MetaTable::put_clock(const SavedClock& clock) {
   return put(kClockKey, bytes);
 }
 
-StoreResult<void> MetaTable::put_places(const std::vector<PlayerPlace>& places) {
+StoreResult<void> MetaTable::put_places(const std::vector<LastPlace>& places) {
   Bytes bytes;
   bytes.reserve(places.size() * kPlaceBytes);
   ByteWriter writer(bytes);
-  for (const PlayerPlace& place : places) {
+  for (const LastPlace& place : places) {
     writer.bytes(place.key);
     for (const double coordinate : {place.pose.at.x, place.pose.at.y, place.pose.at.z})
       writer.f64(coordinate);

@@ -96,7 +96,7 @@ class MetaTable {
   /// value.
   StoreResult<SavedState> saved_state();
   StoreResult<void> put_clock(const SavedClock& clock);
-  StoreResult<void> put_places(const std::vector<PlayerPlace>& places);
+  StoreResult<void> put_places(const std::vector<LastPlace>& places);
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)
@@ -108,7 +108,7 @@ class MetaTable {
   StoreResult<std::optional<MetaValue>> find(const std::string& key);
   StoreResult<MetaValue> get(const std::string& key);
   StoreResult<std::optional<SavedClock>> clock();
-  StoreResult<std::vector<PlayerPlace>> places();
+  StoreResult<std::vector<LastPlace>> places();
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;
 
   std::string file_;

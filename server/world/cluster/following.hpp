@@ -43,7 +43,7 @@ struct Takeover {
   ReadLog read;     // from the last record of this server on, to the end of the log
   Sequence checkpoint = 0;
   AuthorId author_max = 0;
-  std::vector<PlayerPlace> places;
+  std::vector<LastPlace> places;
 };
 
 class Following {

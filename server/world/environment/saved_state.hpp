@@ -15,10 +15,10 @@ namespace runstone {
 /// The places that are kept: those of the players who were seen last.
 inline constexpr std::size_t kPlayerPlacesMax = 4096;
 
-struct PlayerPlace {
+struct LastPlace {
   PublicKey key{};
   Pose pose;
-  friend bool operator==(const PlayerPlace&, const PlayerPlace&) = default;
+  friend bool operator==(const LastPlace&, const LastPlace&) = default;
 };
 
 struct SavedClock {
@@ -28,7 +28,7 @@ struct SavedClock {
 };
 
 struct SavedState {
-  std::vector<PlayerPlace> places;  // at most kPlayerPlacesMax, those seen last at the end
+  std::vector<LastPlace> places;    // at most kPlayerPlacesMax, those seen last at the end
   std::optional<SavedClock> clock;  // nullopt: nobody has set it
   friend bool operator==(const SavedState&, const SavedState&) = default;
 };

@@ -2,10 +2,10 @@
 
 namespace runstone {
 
-void PlayerPlaces::restore(const std::vector<PlayerPlace>& saved) {
+void PlayerPlaces::restore(const std::vector<LastPlace>& saved) {
   numbers_.clear();
   places_.clear();
-  for (const PlayerPlace& place : saved) note(place.key, place.pose);
+  for (const LastPlace& place : saved) note(place.key, place.pose);
 }
 
 void PlayerPlaces::note(const PublicKey& key, const Pose& pose) {
@@ -24,8 +24,8 @@ std::optional<Pose> PlayerPlaces::find(const PublicKey& key) const {
   return places_.at(number->second).pose;
 }
 
-std::vector<PlayerPlace> PlayerPlaces::all() const {
-  std::vector<PlayerPlace> out;
+std::vector<LastPlace> PlayerPlaces::all() const {
+  std::vector<LastPlace> out;
   out.reserve(places_.size());
   for (const auto& [number, place] : places_) out.push_back(place);
   return out;

@@ -23,8 +23,8 @@ EditRecord record_of_clock(Sequence seq, const WorldTime& time, Epoch epoch = 1)
   return record;
 }
 
-PlayerPlace place_of(std::uint8_t who, double x) {
-  PlayerPlace place;
+LastPlace place_of(std::uint8_t who, double x) {
+  LastPlace place;
   place.key.fill(who);
   place.pose = {{x, 64.25, -1e6}, 65'535, -16'384};
   return place;
@@ -106,7 +106,7 @@ TEST_CASE("places that are damaged are an error that names them", "[store][saved
   if (place.is_postgres()) return;
   auto store = *create_world(place / "w", sample_meta());
   REQUIRE(store->raise_epoch().has_value());
-  PlayerPlace beyond = place_of(1, 1e300);
+  LastPlace beyond = place_of(1, 1e300);
   REQUIRE(store->save_state({{beyond}, std::nullopt}).has_value());
   const auto read = store->saved_state();
   REQUIRE_FALSE(read.has_value());

@@ -29,7 +29,7 @@ TEST_CASE("the place of the player who was seen longest ago is forgotten first",
   CHECK(places.find(numbered_key(0)) == pose_at(0.5));
   CHECK(places.find(numbered_key(1)) == std::nullopt);
   CHECK(places.find(numbered_key(2)) == pose_at(2));
-  CHECK(places.all().back() == PlayerPlace{numbered_key(kPlayerPlacesMax), pose_at(9)});
+  CHECK(places.all().back() == LastPlace{numbered_key(kPlayerPlacesMax), pose_at(9)});
   const PlayerPlaces again(places.all());
   CHECK(again.all() == places.all());
 }
@@ -68,7 +68,7 @@ TEST_CASE("places are saved from time to time, only if they have changed", "[wor
   bench.tick(60'000'000);
   REQUIRE(bench.environment.states.size() == 1);
   const PublicKey key = key_pair_of(seed_of(1)).public_key;
-  CHECK(bench.environment.states[0].places == std::vector<PlayerPlace>{{key, pose_at(40)}});
+  CHECK(bench.environment.states[0].places == std::vector<LastPlace>{{key, pose_at(40)}});
   bench.server.received(1, Ping{1}, bench.now());
   bench.tick(60'000'000);
   CHECK(bench.environment.states.size() == 1);
