@@ -167,7 +167,7 @@ TEST_CASE("new materials and all of their shapes are one commit, or none of them
   // More shapes than one record has.
   std::vector<MaterialRow> rows;
   for (std::size_t i = 0; i < kAddedMaterialsMax; ++i) {
-    rows.push_back(row_with(("m" + std::to_string(i)).c_str(), kSlab));
+    rows.push_back(row_with(("shaped_" + std::to_string(i)).c_str(), kSlab));
     auto& boxes = rows.back().shape.boxes;
     boxes.clear();
     for (std::uint8_t n = 0; n < 16; ++n) {
