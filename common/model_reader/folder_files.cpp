@@ -34,9 +34,7 @@ class FolderStream : public Assimp::IOStream {
   }
   std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const std::uint64_t from = origin == aiOrigin_CUR   ? at_
-                               : origin == aiOrigin_END ? bytes_
-                                                        : 0;
+    const std::uint64_t from = origin == aiOrigin_CUR ? at_ : origin == aiOrigin_END ? bytes_ : 0;
     const std::uint64_t to = from + offset;  // a negative offset wraps, as it does for Assimp
     if (to > bytes_) return aiReturn_FAILURE;
     at_ = to;

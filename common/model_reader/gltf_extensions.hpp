@@ -15,7 +15,8 @@ std::vector<std::string> required_extensions(std::string_view json);
 
 /// What the extensions of a file ask of its reader.
 struct Extensions {
-  bool is_quantised = false;  // KHR_mesh_quantization, which Assimp does not read: plain_gltf() does
+  bool is_quantised =
+      false;  // KHR_mesh_quantization, which Assimp does not read: plain_gltf() does
 };
 
 /// Fails with one line that does not name the file if the .gltf or .glb requires an extension that is

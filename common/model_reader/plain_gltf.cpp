@@ -97,8 +97,9 @@ class GltfConversion {
       integers_.push_back(*found);
       bytes += found->floats_bytes();
       if (bytes > kFloatsBytesMax)
-        return failure(std::string("has too many quantised numbers: export the model without "
-                                   "KHR_mesh_quantization"));
+        return failure(
+            std::string("has too many quantised numbers: export the model without "
+                        "KHR_mesh_quantization"));
     }
     out_.floats.resize(static_cast<std::size_t>(bytes));
     if (auto converted = convert(); !converted) return failure(converted.error());
@@ -136,8 +137,9 @@ class GltfConversion {
     if (!is_quantised_type(out.type))
       return failure(std::string("a place, normal or texture place has numbers of another kind"));
     if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-      return failure(std::string("has quantised numbers that are sparse or compressed: export "
-                                 "the model without them"));
+      return failure(
+          std::string("has quantised numbers that are sparse or compressed: export "
+                      "the model without them"));
     const auto& form = accessor.at("type").get_ref<const std::string&>();
     if (form.size() != 4 || form.compare(0, 3, "VEC") != 0 || form[3] < '2' || form[3] > '4')
       throw NoGltf();
@@ -178,7 +180,8 @@ class GltfConversion {
           return got;
         for (std::size_t k = 0; k < count; ++k) {
           for (std::size_t part = 0; part < from.parts; ++part) {
-            const std::uint8_t* const at = block.data() + k * static_cast<std::size_t>(from.stride) +
+            const std::uint8_t* const at = block.data() +
+                                           k * static_cast<std::size_t>(from.stride) +
                                            part * static_cast<std::size_t>(from.part_bytes());
             const float value = float_of(at, from.type, from.is_normalised);
             std::memcpy(out_.floats.data() + to, &value, sizeof value);

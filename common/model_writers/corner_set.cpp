@@ -25,7 +25,8 @@ void CornerSet::clear() {
 
 CornerSet::Added CornerSet::add(const Corner& at) {
   if (is_lattice(at[0]) && is_lattice(at[1]) && is_lattice(at[2])) {
-    const bool is_new = lattice_.add({at[0] / kModelUnits, at[1] / kModelUnits, at[2] / kModelUnits});
+    const bool is_new =
+        lattice_.add({at[0] / kModelUnits, at[1] / kModelUnits, at[2] / kModelUnits});
     return is_new ? Added::on_lattice : Added::known;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) lines_[axis].push_back(key_of(at, axis));

@@ -30,8 +30,7 @@ Result<ModelLevels> ModelLevels::of(const WrittenBuild& source, const ModelWriti
     Level level{*std::move(made), {build, source.info, {}}, {}};
     for (const std::uint16_t number : level.made.finer_numbers) {
       level.finest_numbers.push_back(out.finest_number(out.coarser_.size(), number));
-      level.source.materials.push_back(
-          as_cube(source.materials[level.finest_numbers.back() - 1U]));
+      level.source.materials.push_back(as_cube(source.materials[level.finest_numbers.back() - 1U]));
     }
     out.coarser_.push_back(std::move(level));
     finer = &out.coarser_.back().source;

@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/model_writers/corner_set.hpp"
 #include "common/core/result.hpp"
+#include "common/model_writers/corner_set.hpp"
 #include "common/model_writers/model_writing.hpp"
 #include "common/model_writers/region_mesher.hpp"
 #include "common/model_writers/region_model.hpp"

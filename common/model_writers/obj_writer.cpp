@@ -144,10 +144,10 @@ class ObjWriter {
     const ObjPlace at = {origin.x * kModelUnits + vertex.x, origin.y * kModelUnits + vertex.y,
                          origin.z * kModelUnits + vertex.z};
     if (!writing_.is_welded) return write_vertex(at);
-    const bool is_between = std::any_of(at.begin(), at.end(), [](std::int32_t place) {
-      return place % kModelRegionUnits == 0;
-    });
-    if (std::any_of(at.begin(), at.end(), [](std::int32_t place) { return place % kModelUnits != 0; })) {
+    const bool is_between = std::any_of(
+        at.begin(), at.end(), [](std::int32_t place) { return place % kModelRegionUnits == 0; });
+    if (std::any_of(at.begin(), at.end(),
+                    [](std::int32_t place) { return place % kModelUnits != 0; })) {
       std::uint64_t& number = (is_between ? fine_between_regions_ : fine_in_region_)[at];
       if (number == 0) number = write_vertex(at);
       return number;

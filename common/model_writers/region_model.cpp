@@ -8,7 +8,6 @@
 namespace runstone {
 namespace {
 
-
 std::uint8_t layer_of(const QuadFields& q) {
   const std::array<std::uint8_t, 3> at = {q.x, q.y, q.z};
   return at[static_cast<std::size_t>(axis_of(q.direction))];

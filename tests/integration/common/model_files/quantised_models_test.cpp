@@ -114,8 +114,7 @@ TEST_CASE("integers of each type become places, wherever their buffer lies", "[m
   folder.write("a b.bin", gltf.bytes);
   for (const char* name : {"a.gltf", "a.glb", "b.gltf"}) {
     CAPTURE(name);
-    CHECK(folder.model(name).model.positions ==
-          Places{{-3, 0, 7}, {32767, 0, 0}, {0, -32768, 16}});
+    CHECK(folder.model(name).model.positions == Places{{-3, 0, 7}, {32767, 0, 0}, {0, -32768, 16}});
   }
   gltf.accessor += R"(,"normalized":true)";
   folder.write("a.glb", gltf.glb());
@@ -212,8 +211,8 @@ TEST_CASE("a quantised file cannot ask for more floats than allowed", "[model_fi
   gltf.bytes = gltf.bytes.substr(0, 30) + places;
   std::string accessors, attributes;
   for (int i = 0; i < 3000; ++i) {
-    accessors += R"(},{"bufferView":2,"componentType":5122,"type":"VEC3","count":)" +
-                 std::to_string(kCount);
+    accessors +=
+        R"(},{"bufferView":2,"componentType":5122,"type":"VEC3","count":)" + std::to_string(kCount);
     attributes += (i == 0 ? "\"TEXCOORD_" : ",\"TEXCOORD_") + std::to_string(i) +
                   "\":" + std::to_string(i + 2);
   }

@@ -247,8 +247,9 @@ TEST_CASE("no level follows a single voxel", "[model_writers]") {
   CHECK(levels_of({4000, 1, 1}) == kModelLevelsMax);
 }
 
-TEST_CASE("coarser levels take a shape for a cube if it fills half of its voxel, and else leave it out",
-          "[model_writers][shapes]") {
+TEST_CASE(
+    "coarser levels take a shape for a cube if it fills half of its voxel, and else leave it out",
+    "[model_writers][shapes]") {
   std::vector<BuildMaterial> materials = {file_material("plant", "", {10, 200, 10, 255}),
                                           file_material("slab", "", {90, 90, 90, 255}),
                                           file_material("stone", "", {50, 50, 50, 255})};

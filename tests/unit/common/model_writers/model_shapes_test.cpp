@@ -43,8 +43,8 @@ const std::vector<BuildMaterial>& shape_materials() {
       material_of_kind("plant", "", {10, 200, 10, 255})};
   return kMaterials;
 }
-constexpr std::uint16_t kStone = 1, kStairs = 2, kTopStairs = 3, kSlab = 4, kPane = 11,
-                        kAnvil = 12, kPlant = 13;
+constexpr std::uint16_t kStone = 1, kStairs = 2, kTopStairs = 3, kSlab = 4, kPane = 11, kAnvil = 12,
+                        kPlant = 13;
 
 bool fills(const Shape& shape, VoxelPos cell) {
   if (shape.is_cube()) return true;
@@ -106,16 +106,14 @@ ModelWriting shape_writing(unsigned choice) {
 
 /// A staircase whose steps touch along edges.
 FileBuild staircase() {
-  return file_build({1, 4, 4}, shape_materials(), [](VoxelPos at) {
-    return at.y == 3 - at.z ? kStairs : std::uint16_t{0};
-  });
+  return file_build({1, 4, 4}, shape_materials(),
+                    [](VoxelPos at) { return at.y == 3 - at.z ? kStairs : std::uint16_t{0}; });
 }
 
 /// A square of fences that are connected.
 FileBuild fence_square() {
   constexpr std::uint16_t kRows[3][3] = {{5, 6, 7}, {8, 0, 8}, {9, 6, 10}};
-  return file_build({3, 1, 3}, shape_materials(),
-                    [&](VoxelPos at) { return kRows[at.z][at.x]; });
+  return file_build({3, 1, 3}, shape_materials(), [&](VoxelPos at) { return kRows[at.z][at.x]; });
 }
 
 /// Solid materials in every second voxel, so that none hides a face of another one.
@@ -191,13 +189,11 @@ TEST_CASE("an edge of a cube is split where a corner of a shape in another regio
 
 TEST_CASE("a shape on a cube shows what the client draws", "[model_writers][shapes]") {
   // The slab shows no face to the stone, and the stone all of its own.
-  const FileBuild build = file_build({1, 2, 1}, shape_materials(), [](VoxelPos at) {
-    return at.y == 0 ? kStone : kSlab;
-  });
+  const FileBuild build = file_build({1, 2, 1}, shape_materials(),
+                                     [](VoxelPos at) { return at.y == 0 ? kStone : kSlab; });
   // A pane shows its ends to the air, and comes last.
-  const FileBuild panes = file_build({3, 1, 1}, shape_materials(), [](VoxelPos at) {
-    return at.x == 2 ? kTopStairs : kPane;
-  });
+  const FileBuild panes = file_build({3, 1, 1}, shape_materials(),
+                                     [](VoxelPos at) { return at.x == 2 ? kTopStairs : kPane; });
   for (const std::string& ending : model_endings_written()) {
     CAPTURE(ending);
     CHECK(area_of(model_of(ending, build)) == 6 + 1 + 4 * 0.5);
@@ -242,7 +238,8 @@ TEST_CASE("a plane of a plant is one rectangle of a double-sided material, or on
   }
 }
 
-TEST_CASE("equal places of shapes share a vertex if vertices are welded", "[model_writers][shapes]") {
+TEST_CASE("equal places of shapes share a vertex if vertices are welded",
+          "[model_writers][shapes]") {
   SplitMix64 rng(4822);
   const FileBuild build = shapes_by_chance(rng, {20, 15, 20});
   for (const std::string ending : {".glb", ".ply"}) {
@@ -269,8 +266,8 @@ TEST_CASE("quantised places are voxels, and sixteenths of them only where shapes
   const std::string text(file.begin(), file.end());
   CHECK(text.find(R"("byteStride":12)") != std::string::npos);
   CHECK(text.find(R"("scale":[0.0625,0.0625,0.0625])") != std::string::npos);
-  const FileBuild cubes = file_build({131, 2, 1}, shape_materials(),
-                                     [](VoxelPos) { return kStone; });
+  const FileBuild cubes =
+      file_build({131, 2, 1}, shape_materials(), [](VoxelPos) { return kStone; });
   const Bytes other = model_bytes("a.glb", cubes, shape_writing(4));
   const std::string other_text(other.begin(), other.end());
   CHECK(other_text.find(R"("byteStride":8)") != std::string::npos);
@@ -282,10 +279,10 @@ TEST_CASE("quantised places are voxels, and sixteenths of them only where shapes
 TEST_CASE("too many faces of shapes in one region are refused", "[model_writers][shapes]") {
   BuildMaterial grains = file_material("grains", "", {9, 9, 9, 255});
   for (std::uint8_t i = 0; i < 32; ++i) {
-    const auto x = static_cast<std::uint8_t>(4 * (i % 4)), z = static_cast<std::uint8_t>(2 * (i / 4));
-    grains.row.shape.boxes.push_back({{x, 1, z},
-                                      {static_cast<std::uint8_t>(x + 1), 2,
-                                       static_cast<std::uint8_t>(z + 1)}});
+    const auto x = static_cast<std::uint8_t>(4 * (i % 4)),
+               z = static_cast<std::uint8_t>(2 * (i / 4));
+    grains.row.shape.boxes.push_back(
+        {{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 2, static_cast<std::uint8_t>(z + 1)}});
   }
   const FileBuild build =
       file_build({24, 24, 24}, {grains}, [](VoxelPos) { return std::uint16_t{1}; });
