@@ -38,7 +38,8 @@ Result<FileBuild, std::string> read_build_of_file(const std::string& file,
 /// replaced when the new one is whole. Fails if choice_refusal() refuses. The materials of an .obj
 /// become a second file, companion_file(). Levels of detail of an .obj or .ply become files of
 /// their own, level_file(); a single voxel has no coarser level, nor have shapes of which none is a
-/// cube (visibility_as_cube()). Returns the number of bytes of all files. The error is one line that begins with the name of the file.
+/// cube (visibility_as_cube()). Returns the number of bytes of all files. The error is one line
+/// that begins with the name of the file.
 Result<std::uint64_t, std::string> write_build_to_file(const std::string& file,
                                                        const FileBuild& build,
                                                        const FileWriting& writing = {});

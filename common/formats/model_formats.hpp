@@ -16,8 +16,8 @@ Result<void> write_obj(const FileBuild& build, const FormatSink& sink);
 Result<void> write_ply(const FileBuild& build, const FormatSink& sink);
 
 /// Returns the next coarser level of detail of a build (common/model_writers/coarser_build.hpp),
-/// which has the name and the origin of the build. Its materials are cubes. Fails as coarser_build() does. Requires
-/// can_be_coarser().
+/// which has the name and the origin of the build. Its materials are cubes. Fails as
+/// coarser_build() does. Requires can_be_coarser().
 Result<FileBuild> coarser_level(const FileBuild& build);
 /// Write a build with the choices of FileWriting::model. Otherwise they are as those above.
 Result<void> write_glb_with(const FileBuild& build, const FileWriting& writing,

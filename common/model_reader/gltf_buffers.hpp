@@ -1,5 +1,5 @@
-// GltfBuffers: the bytes of the buffers of a .gltf or .glb, wherever they lie: in the second chunk, in
-// the text as base64, or in a file beside the model. Thread: one.
+// GltfBuffers: the bytes of the buffers of a .gltf or .glb, wherever they lie: in the second chunk,
+// in the text as base64, or in a file beside the model. Thread: one.
 #pragma once
 #include <cstddef>
 #include <cstdint>

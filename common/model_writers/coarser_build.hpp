@@ -1,7 +1,7 @@
 // Coarser builds: the levels of detail of a model that is written. Level k has cells of 2^k voxels,
 // and each level is made of the one before it by the rule of tiles (common/tiles/tile_builder.hpp).
-// A cell in which any voxel shows is not empty, so a coarse level covers the fine one. Voxels with a
-// shape count as the cubes in their place (WrittenMaterial::as_cube). Thread: any.
+// A cell in which any voxel shows is not empty, so a coarse level covers the fine one. Voxels with
+// a shape count as the cubes in their place (WrittenMaterial::as_cube). Thread: any.
 #pragma once
 #include <cstddef>
 #include <cstdint>

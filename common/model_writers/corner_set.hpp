@@ -1,6 +1,6 @@
 // CornerSet: the corners of the quads of one region, at which edges are split. Those of cubes are
-// points of the lattice. Those of shapes may lie between them; they are kept in sorted lists, one for
-// each axis, so that the points of a line follow each other.
+// points of the lattice. Those of shapes may lie between them; they are kept in sorted lists, one
+// for each axis, so that the points of a line follow each other.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -15,8 +15,9 @@ namespace runstone {
 class ModelLevels {
  public:
   /// Makes `writing.levels` levels besides the finest one, or fewer: no level follows a single
-  /// cell, or one of shapes of which none is a cube. Keeps a reference to the build. Fails with limit_exceeded if a level takes more memory
-  /// than the finer one and kBuildBytesMax together. Requires at most kModelLevelsMax levels.
+  /// cell, or one of shapes of which none is a cube. Keeps a reference to the build. Fails with
+  /// limit_exceeded if a level takes more memory than the finer one and kBuildBytesMax together.
+  /// Requires at most kModelLevelsMax levels.
   static Result<ModelLevels> of(const WrittenBuild& source, const ModelWriting& writing);
 
   /// Returns the number of levels, at least 1.

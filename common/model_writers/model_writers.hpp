@@ -1,8 +1,8 @@
 // Writers of triangles: a build as .glb, .gltf, .obj with .mtl, or .ply. What the build shows is
 // written: the faces of voxels towards empty and untouched cells, towards the outside of the build,
 // and between two materials as in the client (mesh/visibility.hpp). Faces are joined to rectangles
-// (common/mesh/rdm). Voxels with a shape have the faces of their boxes or planes (common/mesh/shapes).
-// docs/models.md describes the files.
+// (common/mesh/rdm). Voxels with a shape have the faces of their boxes or planes
+// (common/mesh/shapes). docs/models.md describes the files.
 //
 // Axes are those of a world: x east, y up, z south, right-handed; in a .ply x east, y north, z up,
 // as most of these files are read (usual_up()). Triangles wind counter-clockwise seen from outside.
@@ -16,8 +16,7 @@
 //   - limit_exceeded if the file becomes larger than the format allows, or if 128^3 voxels have too
 //     many faces of shapes. An .obj finds the latter while it is written.
 // It fails with io_failed if the sink returns false. Cost: a number of passes of ModelWalk: one for
-// .obj, two for .glb and .gltf, three for .ply. Memory: that of ModelWalk, and
-// what is named below.
+// .obj, two for .glb and .gltf, three for .ply. Memory: that of ModelWalk, and what is named below.
 // Thread: any.
 #pragma once
 #include <cstdint>
@@ -45,8 +44,8 @@ Result<void> write_glb_model(const WrittenBuild& source, const ModelWriting& wri
 Result<void> write_gltf_model(const WrittenBuild& source, const ModelWriting& writing,
                               const ModelSink& sink);
 /// Writes a Wavefront .obj. It names `writing.material_file`, which write_mtl_model() writes.
-/// Memory: 8.6 MB, 40 bytes for each vertex between regions, and 72 bytes for each vertex of a region
-/// that lies between the corners of voxels.
+/// Memory: 8.6 MB, 40 bytes for each vertex between regions, and 72 bytes for each vertex of a
+/// region that lies between the corners of voxels.
 Result<void> write_obj_model(const WrittenBuild& source, const ModelWriting& writing,
                              const ModelSink& sink);
 /// Writes the materials of an .obj of the same source. Cost: O(materials).

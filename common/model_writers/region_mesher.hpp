@@ -1,7 +1,7 @@
-// RegionMesher: the quads of one region of a build, of cubes and of shapes. Regions are cubes of kModelRegionEdge cells
-// from the lowest corner of the build on; the last one along an axis ends with the build. Faces
-// between regions are culled, and faces to untouched cells and to the outside of the build are
-// kept. Thread: one at a time. Memory: the runs and quads of one region.
+// RegionMesher: the quads of one region of a build, of cubes and of shapes. Regions are cubes of
+// kModelRegionEdge cells from the lowest corner of the build on; the last one along an axis ends
+// with the build. Faces between regions are culled, and faces to untouched cells and to the outside
+// of the build are kept. Thread: one at a time. Memory: the runs and quads of one region.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -55,8 +55,8 @@ struct RegionModel {
   }
 };
 
-/// Returns the corners of a quad in the order of quad_corners(), in sixteenths of a voxel. `face` is
-/// null for a quad of cubes, otherwise its face of the shape.
+/// Returns the corners of a quad in the order of quad_corners(), in sixteenths of a voxel. `face`
+/// is null for a quad of cubes, otherwise its face of the shape.
 std::array<Corner, 4> quad_places(Quad quad, const ShapeFace* face);
 
 /// Returns the face of a quad's shape, or null for a quad of cubes.
