@@ -86,7 +86,7 @@ std::string variant_of(const char* shader, Quality quality, bool is_transparent,
 std::string texture_definitions(bool is_textured, bool has_holes, bool has_all_holes) {
   std::string out;
   if (is_textured) out += "#define RUNSTONE_TEXTURES\n";
-  if (has_holes || has_all_holes) out += "#define RUNSTONE_HOLES\n";
+  if (has_holes) out += "#define RUNSTONE_HOLES\n";
   if (has_all_holes) out += "#define RUNSTONE_ALL_HOLES\n";
   return out;
 }

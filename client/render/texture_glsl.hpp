@@ -1,6 +1,7 @@
 // The textures of a world in GLSL. RUNSTONE_TEXTURES reads them (TextureArray), RUNSTONE_HOLES
-// leaves out the pixels of holes, and RUNSTONE_ALL_HOLES makes holes in all faces, not in those of
-// shapes alone.
+// leaves out the pixels of holes in the faces of shapes, and RUNSTONE_ALL_HOLES those in all faces.
+// The latter is for transparent faces, whose two sides are drawn. The planes of a plant have a face
+// on each side, so of shapes it draws the front alone.
 //   - On the four lateral sides a picture is upright and not mirrored. Its right is that of a viewer
 //     who stands before the side.
 //   - On the upper side its right is +x and its upper edge is at -z; on the lower side its right is
@@ -13,7 +14,7 @@
 namespace runstone {
 
 /// For vertex shaders. Requires RUNSTONE_QUAD_GLSL. `texture_layer` is 0 if the side has no picture,
-/// otherwise 1 + its layer; it is negative if the picture has holes there.
+/// otherwise 1 + its layer; it is negative for a face of a shape.
 #define RUNSTONE_TO_TEXTURE_GLSL                                                            \
   "#ifdef RUNSTONE_TEXTURES\n"                                                              \
   "uniform usampler2D texture_layers;\n"                                                    \
@@ -22,10 +23,7 @@ namespace runstone {
   "void to_texture(QuadCorner c) {\n"                                                       \
   "  int side = int(c.material) * 8 + int(c.side);\n"                                       \
   "  texture_layer = int(texelFetch(texture_layers, texel_place(side), 0).x);\n"            \
-  "#ifndef RUNSTONE_ALL_HOLES\n"                                                            \
-  "  if (c.is_shape)\n"                                                                     \
-  "#endif\n"                                                                                \
-  "    texture_layer = -texture_layer;\n"                                                   \
+  "  if (c.is_shape) texture_layer = -texture_layer;\n"                                     \
   "  vec3 p = c.across;\n"                                                                  \
   "  float right = c.side == 0u ? p.z : c.side == 1u ? -p.z : c.side == 4u ? -p.x : p.x;\n" \
   "  float down = c.side == 2u ? -p.z : c.side == 3u ? p.z : -p.y;\n"                       \
@@ -35,24 +33,27 @@ namespace runstone {
 
 /// For fragment shaders. Requires `colour`, that of the material. surface_colour() is the linear
 /// colour and the alpha at the fragment; is_textured() is true if they are those of a picture.
-#define RUNSTONE_TEXTURE_GLSL                                       \
-  "#ifdef RUNSTONE_TEXTURES\n"                                      \
-  "uniform sampler2DArray textures;\n"                              \
-  "flat in int texture_layer;\n"                                    \
-  "in vec2 texture_place;\n"                                        \
-  "bool is_textured() { return texture_layer != 0; }\n"             \
-  "vec4 surface_colour() {\n"                                       \
-  "  if (texture_layer == 0) return colour;\n"                      \
-  "  float layer = float(abs(texture_layer) - 1);\n"                \
-  "  vec4 texel = texture(textures, vec3(texture_place, layer));\n" \
-  "#ifdef RUNSTONE_HOLES\n"                                         \
-  "  if (texture_layer < 0 && texel.a < 0.5) discard;\n"            \
-  "#endif\n"                                                        \
-  "  return vec4(texel.rgb, colour.a * texel.a);\n"                 \
-  "}\n"                                                             \
-  "#else\n"                                                         \
-  "bool is_textured() { return false; }\n"                          \
-  "vec4 surface_colour() { return colour; }\n"                      \
+#define RUNSTONE_TEXTURE_GLSL                                                 \
+  "#ifdef RUNSTONE_TEXTURES\n"                                                \
+  "uniform sampler2DArray textures;\n"                                        \
+  "flat in int texture_layer;\n"                                              \
+  "in vec2 texture_place;\n"                                                  \
+  "bool is_textured() { return texture_layer != 0; }\n"                       \
+  "vec4 surface_colour() {\n"                                                 \
+  "  if (texture_layer == 0) return colour;\n"                                \
+  "  float layer = float(abs(texture_layer) - 1);\n"                          \
+  "  vec4 texel = texture(textures, vec3(texture_place, layer));\n"           \
+  "#ifdef RUNSTONE_HOLES\n"                                                   \
+  "  if (texture_layer < 0 && texel.a < 0.5) discard;\n"                      \
+  "#endif\n"                                                                  \
+  "#ifdef RUNSTONE_ALL_HOLES\n"                                               \
+  "  if (texel.a < 0.5 || (texture_layer < 0 && !gl_FrontFacing)) discard;\n" \
+  "#endif\n"                                                                  \
+  "  return vec4(texel.rgb, colour.a * texel.a);\n"                           \
+  "}\n"                                                                       \
+  "#else\n"                                                                   \
+  "bool is_textured() { return false; }\n"                                    \
+  "vec4 surface_colour() { return colour; }\n"                                \
   "#endif\n"
 
 }  // namespace runstone

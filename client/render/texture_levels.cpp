@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <span>
 
 #include "common/core/assert.hpp"
@@ -84,18 +83,37 @@ Pixels halved_pixels(const Pixels& pixels, std::size_t edge) {
   return out;
 }
 
-/// Returns the factor of alpha with which this share of the pixels, or one pixel if there is any
-/// share, is no hole. It makes no holes larger.
-float alpha_factor(const Pixels& pixels, double solid_share) {
-  const auto wanted = static_cast<std::size_t>(
-      std::max(1.0, std::round(solid_share * static_cast<double>(pixels.size()))));
-  if (solid_count(pixels) >= wanted) return 1;
-  std::vector<float> alphas;
-  for (const Pixel& pixel : pixels) alphas.push_back(pixel.alpha);
-  std::nth_element(alphas.begin(), alphas.begin() + static_cast<std::ptrdiff_t>(wanted - 1),
-                   alphas.end(), std::greater<>());
-  const float least = alphas[wanted - 1];
-  return least > 0 ? static_cast<float>(kHoleAlpha) / 255.0F / least : 1;
+/// Returns the share of a square picture that is no hole where the GPU mixes four pixels, if alpha
+/// is multiplied with the factor.
+double solid_share(const Pixels& pixels, std::size_t edge, float factor) {
+  constexpr std::array<float, 2> kPlaces = {0.25F, 0.75F};  // between two pixels
+  const auto alpha = [&](std::size_t x, std::size_t y) {
+    return std::min(1.0F, pixels[y % edge * edge + x % edge].alpha * factor);
+  };
+  std::size_t solid = 0;
+  for (std::size_t y = 0; y < edge; ++y) {
+    for (std::size_t x = 0; x < edge; ++x) {
+      for (const float right : kPlaces) {
+        const float upper = std::lerp(alpha(x, y), alpha(x + 1, y), right);
+        const float lower = std::lerp(alpha(x, y + 1), alpha(x + 1, y + 1), right);
+        for (const float down : kPlaces) solid += std::lerp(upper, lower, down) >= 0.5F ? 1 : 0;
+      }
+    }
+  }
+  return static_cast<double>(solid) / static_cast<double>(4 * pixels.size());
+}
+
+/// Returns the least factor of alpha, 1 or more, with which at least this share is no hole.
+float alpha_factor(const Pixels& pixels, std::size_t edge, double wanted) {
+  constexpr float kFactorMax = 256;  // makes a pixel of any alpha solid
+  constexpr int kSteps = 10;
+  if (solid_share(pixels, edge, 1) >= wanted) return 1;
+  float less = 1, enough = kFactorMax;
+  for (int i = 0; i < kSteps; ++i) {
+    const float between = std::sqrt(less * enough);
+    (solid_share(pixels, edge, between) >= wanted ? enough : less) = between;
+  }
+  return enough;
 }
 
 std::vector<std::uint8_t> bytes_of(const Pixels& pixels, float factor) {
@@ -122,11 +140,12 @@ TextureLevels texture_levels(const TexturePicture& picture) {
   }
   const std::size_t solid = solid_count(pixels);
   const bool has_holes = solid != 0 && solid != pixels.size();
-  const double solid_share = static_cast<double>(solid) / static_cast<double>(pixels.size());
+  const double wanted = static_cast<double>(solid) / static_cast<double>(pixels.size());
   out.levels.push_back(bytes_of(pixels, 1));
   for (std::size_t edge = picture.edge; edge > 1; edge /= 2) {
     pixels = halved_pixels(pixels, edge);
-    out.levels.push_back(bytes_of(pixels, has_holes ? alpha_factor(pixels, solid_share) : 1.0F));
+    out.levels.push_back(
+        bytes_of(pixels, has_holes ? alpha_factor(pixels, edge / 2, wanted) : 1.0F));
   }
   return out;
 }

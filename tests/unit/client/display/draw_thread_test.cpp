@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "client/net/wake_up.hpp"
+#include "client/render/drawn_textures.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/unit/client/display/draw_samples.hpp"
 #include "tests/unit/client/display/fake_screen.hpp"
