@@ -45,8 +45,8 @@ class EditTool {
   const ShapeTable& shapes() const { return *shapes_; }
   ToolBox& box() { return box_; }
   const ToolBox& box() const { return box_; }
-  /// Returns the voxel that the player looks at, or nullopt if there is none within kReach. The look
-  /// goes through liquids, unless the player holds one.
+  /// Returns the voxel that the player looks at, or nullopt if there is none within kReach. The
+  /// look goes through liquids, unless the player holds one.
   std::optional<RayHit> pick() const;
   /// Returns the place at which the player points, or at which a script aims.
   Aim aim() const;

@@ -54,10 +54,17 @@ inline constexpr const char* kTerrainVertexShader =
     "  QuadCorner c = quad_corner();\n"
     "  relative = origin + c.at * scale;\n"
     // Merged quads meet in T-junctions, where rounding leaves pinholes. So each quad grows by a
-    // small fraction of a pixel along both of its axes, whatever the angle at which they are seen:
-    // an axis of length 1 is seen with the length sqrt(q) / distance^2.
+    // small fraction of a pixel across each of its edges, whatever the angle at which it is seen.
+    // An axis of length 1 is seen with the length seen / distance^2, and the part of it that lies
+    // across the other axis with facing / seen of the other / distance. Corners that are seen very
+    // sharp would become long, so the growth along an axis is at most half a pixel.
     "  float d2 = dot(relative, relative);\n"
-    "  vec3 q = max(d2 - relative * relative, 0.0004 * d2);\n"
+    "  float far = sqrt(d2);\n"
+    "  vec3 seen = sqrt(max(d2 - relative * relative, 0.0004 * d2));\n"
+    "  vec3 growth = seam * d2 / seen;\n"
+    "  float facing = max(abs(dot(c.normal, relative)), 0.0001 * far);\n"
+    "  vec3 other = dot(seen, 1.0 - abs(c.normal)) - seen;\n"
+    "  if (c.inside > 0.0) growth = clamp(seam * far * other / facing, growth, 15.0 * growth);\n"
     "  vec3 outward = c.outward;\n"
     "#ifdef RUNSTONE_TILE\n"
     // The faces on the border of a part are drawn also where the ground of the next part covers
@@ -69,11 +76,10 @@ inline constexpr const char* kTerrainVertexShader =
     "  float is_wall = on_border * (1.0 - abs(c.normal.y));\n"
     "  outward *= 1.0 - is_wall * end;\n"
     "  outward.y = min(outward.y, 1.0 - is_wall);\n"
-    "  float far = sqrt(d2);\n"
     "  float behind = seam * (10.0 + 1.5 * far / max(abs(relative.y), 0.25));\n"
     "  float bias = (on_border + is_wall) * min(behind, 0.45 * scale / far);\n"
     "#endif\n"
-    "  relative += outward * (seam * d2 * inversesqrt(q));\n"
+    "  relative += outward * growth;\n"
     "#ifdef RUNSTONE_TILE\n"
     "  relative *= 1.0 + bias;\n"
     "#endif\n"
