@@ -27,7 +27,7 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 10> kCauses = {{{"player", Cause::player},
+constexpr std::array<CauseName, 11> kCauses = {{{"player", Cause::player},
                                                 {"console", Cause::console},
                                                 {"rollback", Cause::rollback},
                                                 {"undo", Cause::undo},
