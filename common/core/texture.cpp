@@ -50,7 +50,8 @@ Result<std::uint16_t> texture_edge(ByteView png) {
   if (width != height || (width != 16 && width != 32 && width != 64))
     return fail(ErrorCode::bad_value, "the picture is not square with 16, 32 or 64 pixels a side");
   if (!has_known_colours(png[24], png[25]))
-    return fail(ErrorCode::bad_value, "the picture has colours of more than 8 bits or of no known type");
+    return fail(ErrorCode::bad_value,
+                "the picture has colours of more than 8 bits or of no known type");
   if (png[26] != 0 || png[27] != 0 || png[28] > 1)
     return fail(ErrorCode::bad_value, "the picture is packed in no known way");
   return static_cast<std::uint16_t>(width);

@@ -54,9 +54,9 @@ struct TextureEntry {
 /// valid. The error's offset is the index of the use. Cost: O(uses).
 Result<void> check_texture_uses(const std::vector<TextureUse>& uses);
 
-/// Returns the pixels along a side of the picture, from the head of the PNG. Fails if it is no PNG, if
-/// it is not square with an edge of 16, 32 or 64, if a colour has more than 8 bits, or if the file is
-/// longer than kTextureBytesMax. The rest of the file is not read: see read_texture(). Cost: O(1).
+/// Returns the pixels along a side of the picture, from the head of the PNG. Fails if it is no PNG,
+/// if it is not square with an edge of 16, 32 or 64, if a colour has more than 8 bits, or if the
+/// file is longer than kTextureBytesMax. The rest is not read: see read_texture(). Cost: O(1).
 Result<std::uint16_t> texture_edge(ByteView png);
 
 }  // namespace runstone

@@ -76,7 +76,8 @@ Result<PngPixels> read_png(ByteView png, std::uint32_t pixels_max) {
   block_bytes_max = std::max(kBlockBytesMin, std::size_t{16} * pixels_max);
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-      stbi_load_from_memory(png.data(), static_cast<int>(png.size()), &width, &height, &channels, 4),
+      stbi_load_from_memory(png.data(), static_cast<int>(png.size()), &width, &height, &channels,
+                            4),
       &stbi_image_free);
   // A second head could change the sides.
   if (!pixels || static_cast<std::uint32_t>(width) != sides->width ||

@@ -20,7 +20,8 @@ struct PngPixels {
   std::vector<std::uint8_t> rgba;  // width * height pixels of four bytes, sRGB, the upper row first
 };
 
-/// Returns the sides that the head of a PNG names, or nullopt if the bytes are no PNG or a side is 0.
+/// Returns the sides that the head of a PNG names, or nullopt if the bytes are no PNG or a side is
+/// 0.
 std::optional<PngSides> png_sides(ByteView png);
 
 /// Decodes a PNG. Fails before anything is decoded if it is no PNG, or has more than `pixels_max`

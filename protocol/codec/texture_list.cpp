@@ -58,8 +58,7 @@ Result<std::vector<TextureEntry>> decode_textures(ByteView bytes) {
       entry.uses.push_back({material, r.u8()});
     }
     if (!r.ok()) break;
-    if (const auto sound = check_texture_uses(entry.uses); !sound)
-      return failure(sound.error());
+    if (const auto sound = check_texture_uses(entry.uses); !sound) return failure(sound.error());
     entries.push_back(std::move(entry));
   }
   if (const auto done = r.finish(); !done) return failure(done.error());

@@ -9,8 +9,8 @@
 namespace runstone {
 
 /// Pictures that the world has, or uses of pictures that were given before. It has the class of the
-/// edits, and follows the materials. After Welcome the whole list comes in several of these messages;
-/// without textures none comes.
+/// edits, and follows the materials. After Welcome the whole list comes in several of these
+/// messages; without textures none comes.
 struct TexturesGiven {
   std::vector<TextureEntry> entries;  // 1 .. kTexturesGivenMax, each with valid uses
   friend bool operator==(const TexturesGiven&, const TexturesGiven&) = default;
@@ -29,10 +29,11 @@ struct TexturePart {
   friend bool operator==(const TexturePart&, const TexturePart&) = default;
 };
 
-/// Answers a TexturesWanted, in several messages and in any order. That the bytes have the hash, and
-/// are a picture, is not checked.
+/// Answers a TexturesWanted, in several messages and in any order. That the bytes have the hash,
+/// and are a picture, is not checked.
 struct TextureParts {
-  std::vector<TexturePart> parts;  // 1 .. kTexturesWantedMax, together kTexturePartsBytesMax at most
+  std::vector<TexturePart>
+      parts;  // 1 .. kTexturesWantedMax, together kTexturePartsBytesMax at most
   friend bool operator==(const TextureParts&, const TextureParts&) = default;
 };
 

@@ -25,7 +25,7 @@ constexpr const char* kBoxHelp =
 constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME or author #N (several: any of them), "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library";
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library|textures";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;

@@ -28,15 +28,15 @@ struct CauseName {
   Cause cause;
 };
 constexpr std::array<CauseName, 10> kCauses = {{{"player", Cause::player},
-                                               {"console", Cause::console},
-                                               {"rollback", Cause::rollback},
-                                               {"undo", Cause::undo},
-                                               {"redo", Cause::redo},
-                                               {"import", Cause::import},
-                                               {"rights", Cause::rights},
-                                               {"materials", Cause::materials},
-                                               {"library", Cause::library},
-                                               {"textures", Cause::textures}}};
+                                                {"console", Cause::console},
+                                                {"rollback", Cause::rollback},
+                                                {"undo", Cause::undo},
+                                                {"redo", Cause::redo},
+                                                {"import", Cause::import},
+                                                {"rights", Cause::rights},
+                                                {"materials", Cause::materials},
+                                                {"library", Cause::library},
+                                                {"textures", Cause::textures}}};
 constexpr const char* kCauseNames =
     "player, console, rollback, undo, redo, import, rights, materials, library or textures";
 

@@ -22,8 +22,8 @@ void give_found_textures(const CommandCall& call, const TextureImport& found) {
     return call.refuse("materials textures: " + *why);
   const auto given = call.world().changes().give_textures(found.textures, call.now);
   if (!given) return call.refuse("materials textures: " + given.error());
-  call.answer_when_durable(*given, textures_text(found) + "\ngiven, for ever (record " +
-                                       std::to_string(*given) + ")");
+  call.answer_when_durable(
+      *given, textures_text(found) + "\ngiven, for ever (record " + std::to_string(*given) + ")");
 }
 
 void use_textures_of(const CommandCall& call, const std::string& place, TexturesUse use) {
@@ -55,8 +55,8 @@ void preview_textures_of(const CommandCall& call, const std::string& place) {
 
 constexpr std::array<CommandRow, 2> kTextureRows = {{
     {"materials textures FILE", kLocal,
-     "materials textures FILE   give materials the pictures of a folder: of PNGs that are named for\n"
-     "                          them, of a game of Luanti, or of a resource pack of Minecraft\n"
+     "materials textures FILE   give materials the pictures of a folder: of PNGs that are named\n"
+     "                          for them, of a game of Luanti, or of a resource pack of Minecraft\n"
      "materials textures preview FILE\n"
      "                          say what that would give",
      parsed_by<parse_picture_folder, give_textures_of>()},

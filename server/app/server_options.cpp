@@ -96,6 +96,10 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   made->add_option("--map", out.map,
                    "TOML file that chooses materials: rows such as \"minecraft:oak_planks\" = "
                    "\"planks\" below [materials]");
+  made->add_option(
+      "--textures", out.textures,
+      "folder of pictures for the materials: of PNGs, a game of Luanti, or a resource pack "
+      "of Minecraft");
   made->add_flag(
       "--keep-all", out.keep_all,
       "keep blocks that are no whole cubes and have no shape, such as wires, as see-through "

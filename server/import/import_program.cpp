@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,6 +21,8 @@
 #include "server/mapping/material_map_file.hpp"
 #include "server/store/store.hpp"
 #include "server/store/world_folder.hpp"
+#include "server/textures/stored_textures.hpp"
+#include "server/textures/texture_import.hpp"
 
 namespace runstone {
 namespace {
@@ -63,10 +66,23 @@ Result<MaterialTable, std::string> materials_of(const ImportRequest& request,
   return materials;
 }
 
+/// Gives the materials of the new world the textures of a folder.
+Result<void, std::string> give_textures_of(const std::string& place, const MaterialTable& materials,
+                                           Store& store, std::ostream& out) {
+  const auto found = import_textures(place, materials, {});
+  if (!found) return failure(found.error());
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto given = append_textures(
+      store, found->textures, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  if (!given) return failure(given.error().message());
+  out << textures_text(*found) << '\n';
+  return {};
+}
+
 /// Makes the world in `folder`, and has `chunks` write its base.
 Result<void, std::string> fill(
     const ImportRequest& request, const MaterialTable& materials, VoxelPos spawn,
-    const std::string& folder,
+    const std::string& folder, std::ostream& out,
     const std::function<Result<void, std::string>(BaseWriter&)>& chunks) {
   WorldMeta meta;
   meta.chunk_edge = request.edge;
@@ -81,7 +97,8 @@ Result<void, std::string> fill(
   if (!base.error().empty()) return failure(base.error());
   if (!done) return done;
   if (!base.flush()) return failure(base.error());
-  return {};
+  if (request.textures.empty()) return {};
+  return give_textures_of(request.textures, materials, **store, out);
 }
 
 Result<void, std::string> fill_from_luanti(const ImportRequest& request, const MaterialMap* map,
@@ -150,7 +167,7 @@ Result<MaterialTable, std::string> make_world(
   if (!materials) return failure(materials.error());
   auto folder = NewFolder::make(request.world, out);
   if (!folder) return failure(folder.error());
-  const auto filled = fill(request, *materials, spawn, folder->path(),
+  const auto filled = fill(request, *materials, spawn, folder->path(), out,
                            [&](BaseWriter& base) { return chunks(*materials, base); });
   if (!filled) return failure(filled.error());
   if (const auto finished = folder->finish("world.sqlite"); !finished)

@@ -25,6 +25,7 @@ struct ImportRequest {
   std::string colours;    // of a file that is a height map: the PNG with its colours; empty: none
   ModelReading model;     // of a file that is a model
   std::string map;        // TOML file that chooses materials (material_map_file.hpp); empty: none
+  std::string textures;   // folder of pictures (texture_import.hpp); empty: none
 };
 
 /// Imports a world and prints a short report. The error is one line.

@@ -94,8 +94,8 @@ class LogReader : public virtual WorldInfo {
   /// Calls `each` for all changes of rights, in order, until it returns false. They include those
   /// that a compaction moved out of the log.
   virtual StoreResult<void> read_rights(const EachRecord& each) = 0;
-  /// Calls `each` for all records that give textures, in order, until it returns false. They include
-  /// those that a compaction moved out of the log.
+  /// Calls `each` for all records that give textures, in order, until it returns false. They
+  /// include those that a compaction moved out of the log.
   virtual StoreResult<void> read_textures(const EachRecord& /*each*/) { return {}; }
   /// Returns the material table after edit `at`: meta().materials, and the rows that records of the
   /// log added. Fails (corrupt) if a record does not continue the table.

@@ -23,10 +23,10 @@ StoreResult<FoldedRows<EditRecord>> RightsTable::records() {
     if (!*more) return out;
     const std::int64_t seq = all_.integer(0);
     auto record = decode_record(all_.blob(1));
-    const bool is_sound = record && static_cast<std::int64_t>(record->version.seq) == seq &&
-                          static_cast<std::int64_t>(record_checksum(*record)) == all_.integer(2) &&
-                          (rights_change_of(record->edit) != nullptr ||
-                           given_texture_of(record->edit) != nullptr);
+    const bool is_sound =
+        record && static_cast<std::int64_t>(record->version.seq) == seq &&
+        static_cast<std::int64_t>(record_checksum(*record)) == all_.integer(2) &&
+        (rights_change_of(record->edit) != nullptr || given_texture_of(record->edit) != nullptr);
     if (!is_sound) {
       return failure(StoreError{StoreError::Kind::corrupt, file_,
                                 "rights_record seq=" + std::to_string(seq),

@@ -1,5 +1,5 @@
-// RightsTable: the records that a compaction moved out of the log because they are needed as they are
-// (`rights_record`): changes of rights, and textures. Who may do what, and what materials show,
+// RightsTable: the records that a compaction moved out of the log because they are needed as they
+// are (`rights_record`): changes of rights, and textures. Who may do what, and what materials show,
 // follows from them and from the log.
 #pragma once
 #include <string>

@@ -83,9 +83,8 @@ StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
 }
 
 StoreResult<void> SqlStore::mark_textures(std::span<const EditRecord> records) {
-  const bool has_textures = std::ranges::any_of(records, [](const EditRecord& record) {
-    return given_texture_of(record.edit) != nullptr;
-  });
+  const bool has_textures = std::ranges::any_of(
+      records, [](const EditRecord& record) { return given_texture_of(record.edit) != nullptr; });
   if (!has_textures) return {};
   if (auto put = meta_table_.put(kTexturesKey, std::int64_t{1}); !put) return put;
   return raise_format(kWorldFormatOfTextures);

@@ -191,8 +191,8 @@ class SqlStore final : public Store {
   StoreResult<void> complete_base(const StoredMoment& moment);
   /// Calls `each` for the records of this cause that compactions kept, then for those of the log.
   StoreResult<void> read_kept(Cause cause, const EachRecord& each);
-  /// Copies the records of this cause that the log holds up to `last` to the table of those that are
-  /// kept.
+  /// Copies the records of this cause that the log holds up to `last` to the table of those that
+  /// are kept.
   StoreResult<void> keep_records(Cause cause, Sequence last);
   /// Writes the material table after edit `last` to `meta` and returns it.
   StoreResult<MaterialTable> keep_materials(Sequence last);

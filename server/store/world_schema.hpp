@@ -28,8 +28,8 @@ inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// table and its log have what programs of format 7 do not know. It has the tables of a library
 /// only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
-/// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records that
-/// programs of format 8 do not know.
+/// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records
+/// that programs of format 8 do not know.
 inline constexpr std::uint32_t kWorldFormatOfTextures = 9;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
@@ -37,9 +37,8 @@ inline constexpr std::uint32_t kWorldFormatConverted = 2;
 /// Returns "world formats 5, 6, 7, 8 and 9": those that this program makes, for --version.
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
-         std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) +
-         ", " + std::to_string(kWorldFormatOfShapes) + " and " +
-         std::to_string(kWorldFormatOfTextures);
+         std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) + ", " +
+         std::to_string(kWorldFormatOfShapes) + " and " + std::to_string(kWorldFormatOfTextures);
 }
 
 /// Makes all tables in the caller's transaction.

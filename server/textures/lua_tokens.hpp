@@ -1,5 +1,5 @@
-// LuaTokens: the words of a text in Lua, for a scan that runs nothing. Every text has words; what is
-// not well formed ends the last one.
+// LuaTokens: the words of a text in Lua, for a scan that runs nothing. Every text has words; what
+// is not well formed ends the last one.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -17,8 +17,8 @@ struct LuaToken {
 class LuaTokens {
  public:
   explicit LuaTokens(std::string_view text) : text_(text) {}
-  /// Returns the next word; comments and blanks are left out. At the end of the text returns a token
-  /// of kind end. Cost: O(bytes of the token and what is left out).
+  /// Returns the next word; comments and blanks are left out. At the end of the text returns a
+  /// token of kind end. Cost: O(bytes of the token and what is left out).
   LuaToken next();
 
  private:

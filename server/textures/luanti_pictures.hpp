@@ -1,6 +1,6 @@
-// LuantiPictures: the textures of a game or mod of Luanti. The definitions of nodes are found in its
-// files in Lua by a scan that runs nothing: register_node("name", {tiles = {...}}) with plain texts, and
-// register_stair_and_slab("name", "node", ...). What is made by code is not found.
+// LuantiPictures: the textures of a game or mod of Luanti. The definitions of nodes are found in
+// its files in Lua by a scan that runs nothing: register_node("name", {tiles = {...}}) with plain
+// texts, and register_stair_and_slab("name", "node", ...). What is made by code is not found.
 #pragma once
 #include <array>
 #include <map>
@@ -25,8 +25,8 @@ struct LuantiNodes {
   std::map<std::string, std::string> stairs;
 };
 
-/// Adds the nodes that a text in Lua defines. The first definition of a node stays. Every text is read.
-/// Cost: O(bytes).
+/// Adds the nodes that a text in Lua defines. The first definition of a node stays. Every text is
+/// read. Cost: O(bytes).
 void scan_lua(std::string_view text, LuantiNodes& nodes);
 
 class LuantiPictures final : public PictureSource {
@@ -42,7 +42,8 @@ class LuantiPictures final : public PictureSource {
 
  private:
   const std::array<std::string, 6>* tiles_of(const std::string& node) const;
-  /// Returns the pictures of a tile such as "a.png^b.png": those before the first part that is none.
+  /// Returns the pictures of a tile such as "a.png^b.png": those before the first part that is
+  /// none.
   SidePicture picture_of(const std::string& tile) const;
 
   std::map<std::string, std::string> files_;

@@ -13,7 +13,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kJsonBytesMax = std::size_t{1} << 20;
+/// A file of JSON has at most so many bytes, and all of a pack together.
+constexpr std::size_t kJsonBytesMax = std::size_t{1} << 20,
+                      kAllJsonBytesMax = std::size_t{64} << 20;
 /// Models above a model, and texts that name each other.
 constexpr int kChainMax = 16;
 constexpr std::size_t kElementsMax = 256;
@@ -59,7 +61,8 @@ bool fits(std::string_view condition, const ShapeStates& states) {
   return true;
 }
 
-/// Returns true if the states fit {"north": "true", "axis": "x|y"}, or the lists OR and AND of such.
+/// Returns true if the states fit {"north": "true", "axis": "x|y"}, or the lists OR and AND of
+/// such.
 bool fits_when(const Json& when, const ShapeStates& states, int depth = 0) {
   if (!when.is_object() || depth > kChainMax) return true;
   for (const auto& [key, value] : when.items()) {
@@ -120,7 +123,9 @@ const Json& MinecraftPictures::json_of(const std::string& path) {
   const auto file = texts_.find(path);
   if (file == texts_.end()) return kNoJson;
   Json& json = read_[path];
+  if (read_bytes_ > kAllJsonBytesMax) return json;
   if (const auto text = read_file(file->second, kJsonBytesMax)) {
+    read_bytes_ += text->size();
     json = Json::parse(*text, nullptr, false);
     if (json.is_discarded()) json = Json();
   }
@@ -162,7 +167,8 @@ SidePictures MinecraftPictures::pictures_of_model(const std::string& model, bool
     const Json& json = json_of(asset_path(name, "models", ".json"));
     if (const Json& own = at(json, "textures"); own.is_object()) {
       for (const auto& [key, value] : own.items()) {
-        const std::string text = value.is_string() ? value.get<std::string>() : text_at(value, "sprite");
+        const std::string text =
+            value.is_string() ? value.get<std::string>() : text_at(value, "sprite");
         if (!text.empty()) textures.emplace(key, text);
       }
     }

@@ -18,8 +18,8 @@ class NamedPictures final : public PictureSource {
   SidePictures pictures_of(const MaterialInfo& material) override;
 
  private:
-  /// Returns the first picture that there is, of the names "stem_part" for each part. A part "" means
-  /// the stem alone.
+  /// Returns the first picture that there is, of the names "stem_part" for each part. A part ""
+  /// means the stem alone.
   SidePicture first_of(const std::string& stem, std::initializer_list<const char*> parts) const;
   SidePictures upright(const std::string& stem) const;
 

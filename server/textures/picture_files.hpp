@@ -1,5 +1,5 @@
-// PictureFiles: the files with some ending below a folder of the server's machine, by name. Links are
-// not followed. Thread: any. Blocks on the disk.
+// PictureFiles: the files with some ending below a folder of the server's machine, by name. Links
+// are not followed. Thread: any. Blocks on the disk.
 #pragma once
 #include <cstddef>
 #include <map>

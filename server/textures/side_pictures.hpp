@@ -12,7 +12,8 @@
 
 namespace runstone {
 
-/// A picture by the path of its file. Further pictures lie over it, from the lower to the upper one.
+/// A picture by the path of its file. Further pictures lie over it, from the lower to the upper
+/// one.
 struct SidePicture {
   std::vector<std::string> layers;  // empty: the side has no picture
   bool is_tinted = false;           // it is grey and gets the colour of the material
@@ -36,8 +37,8 @@ class PictureSource {
   virtual ~PictureSource() = default;
   /// Returns the words for this kind of folder.
   virtual const char* kind() const = 0;
-  /// Returns the pictures of a material. The paths are those of files that were there. A side without
-  /// a picture is empty.
+  /// Returns the pictures of a material. The paths are those of files that were there. A side
+  /// without a picture is empty.
   virtual SidePictures pictures_of(const MaterialInfo& material) = 0;
 };
 

@@ -18,13 +18,14 @@ struct StoredTextures {
   TextureTable table;
 };
 
-/// Reads all textures of a world. The error is one line that names the file, and the record if no table
-/// takes it.
+/// Reads all textures of a world. The error is one line that names the file, and the record if no
+/// table takes it.
 Result<StoredTextures, std::string> read_stored_textures(LogReader& reader);
 
 /// Gives a new world textures, as records of the log in an epoch of their own, at this time (UTC).
 /// Requires that the world has its base chunks, and no log.
-StoreResult<void> append_textures(
-    Store& store, std::span<const std::shared_ptr<const GivenTexture>> textures, TimeUs time_us);
+StoreResult<void> append_textures(Store& store,
+                                  std::span<const std::shared_ptr<const GivenTexture>> textures,
+                                  TimeUs time_us);
 
 }  // namespace runstone

@@ -29,8 +29,7 @@ Result<Source, std::string> open_source(const std::string& place) {
     return Source(std::make_unique<NamedPictures>(
         std::map<std::string, std::string>{{stem_of(place), place}}));
   }
-  if (!fs::is_directory(place, error))
-    return failure(place + ": there is no such file or folder");
+  if (!fs::is_directory(place, error)) return failure(place + ": there is no such file or folder");
   const fs::path folder(place);
   if (fs::is_directory(folder / "assets", error)) return MinecraftPictures::open(place);
   for (const char* sign : {"game.conf", "modpack.conf", "mod.conf", "init.lua", "mods"}) {
@@ -175,7 +174,8 @@ std::string textures_text(const TextureImport& found) {
                      counted_as(found.materials, "material") + " (" +
                      counted_as(found.sides, "side") + ")";
   if (found.sides_before > 0)
-    text += "\n" + counted_as(found.sides_before, "side") + " with a picture already stay as they are";
+    text +=
+        "\n" + counted_as(found.sides_before, "side") + " with a picture already stay as they are";
   if (found.without > 0)
     text += "\nno picture there for " + counted_as(found.without, "material") + ": " +
             shown(found.without_names, found.without, ", ");

@@ -22,7 +22,8 @@ std::string sides_text(const PngSides& sides) {
 /// Returns a picture with an edge of 16, 32 or 64. Requires a power of two.
 TexturePicture scaled(std::uint32_t edge, const std::vector<std::uint8_t>& rgba) {
   const std::uint32_t to = std::clamp<std::uint32_t>(edge, kTextureEdgeMin, kTextureEdgeMax);
-  TexturePicture out{static_cast<std::uint16_t>(to), std::vector<std::uint8_t>(std::size_t{4} * to * to)};
+  TexturePicture out{static_cast<std::uint16_t>(to),
+                     std::vector<std::uint8_t>(std::size_t{4} * to * to)};
   const std::uint32_t block = std::max(1U, edge / to), times = std::max(1U, to / edge);
   for (std::uint32_t y = 0; y < to; ++y) {
     for (std::uint32_t x = 0; x < to; ++x) {
@@ -30,8 +31,10 @@ TexturePicture scaled(std::uint32_t edge, const std::vector<std::uint8_t>& rgba)
       std::uint64_t sum[4] = {};
       for (std::uint32_t j = 0; j < block; ++j) {
         for (std::uint32_t i = 0; i < block; ++i) {
-          const std::size_t from = std::size_t{4} * ((y / times * block + j) * edge + x / times * block + i);
-          for (std::size_t c = 0; c < 3; ++c) sum[c] += std::uint64_t{rgba[from + c]} * rgba[from + 3];
+          const std::size_t from =
+              std::size_t{4} * ((y / times * block + j) * edge + x / times * block + i);
+          for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += std::uint64_t{rgba[from + c]} * rgba[from + 3];
           sum[3] += rgba[from + 3];
         }
       }
@@ -52,9 +55,10 @@ Result<TexturePicture, std::string> square_of(ByteView file) {
   const auto [width, height] = *sides;
   if (height % width != 0 || !std::has_single_bit(width) || width > kScaledSideMax ||
       std::uint64_t{width} * height > kPicturePixelsMax)
-    return failure("has " + sides_text(*sides) +
-                   " pixels: a width of 1, 2, 4 .. 1024 and a height that is a multiple of it are read, "
-                   "4,194,304 pixels at most");
+    return failure(
+        "has " + sides_text(*sides) +
+        " pixels: a width of 1, 2, 4 .. 1024 and a height that is a multiple of it are read, "
+        "4,194,304 pixels at most");
   const auto pixels = read_png(file, kPicturePixelsMax);
   if (!pixels) return failure(std::string(pixels.error().what));
   return scaled(width, pixels->rgba);

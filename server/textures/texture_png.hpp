@@ -1,5 +1,5 @@
-// Pictures of files as textures: pictures of other sizes are cut and scaled, and those that lie over
-// each other become one. Thread: any.
+// Pictures of files as textures: pictures of other sizes are cut and scaled, and those that lie
+// over each other become one. Thread: any.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kPicturePixelsMax = 1U << 22;
 ///   - of a picture that is higher than wide, as animations are, the first square is taken;
 ///   - a picture of fewer than 16 pixels a side is repeated, and one of more than 64 averaged;
 ///   - further layers lie over the first one, if they have its size, and are left out otherwise.
-/// `tint`: the average colour that the picture gets. Fails with words if the lowest layer is no PNG, is
-/// damaged, has too many pixels or sides that do not fit. Cost: O(pixels).
+/// `tint`: the average colour that the picture gets. Fails with words if the lowest layer is no
+/// PNG, is damaged, has too many pixels or sides that do not fit. Cost: O(pixels).
 Result<Bytes, std::string> texture_png(std::span<const Bytes> layers,
                                        std::optional<std::array<std::uint8_t, 3>> tint);
 

@@ -186,9 +186,10 @@ void WorldServer::connected(SessionId session, const Clocks& now, AddressBlock f
 
 void WorldServer::handle(Session& session, Message&& message, const Clocks& now) {
   if (rooms_->cluster.on_message_for_owner(session, message, now)) return;
-  std::visit(OpenMessages{rooms_->sessions, rooms_->ground, rooms_->people, rooms_->cluster,
-                          rooms_->build_reads, rooms_->build_uploads, rooms_->textures, session, now},
-             message);
+  std::visit(
+      OpenMessages{rooms_->sessions, rooms_->ground, rooms_->people, rooms_->cluster,
+                   rooms_->build_reads, rooms_->build_uploads, rooms_->textures, session, now},
+      message);
 }
 
 void WorldServer::authenticate(Session& session, const ClientAuth& auth, const Clocks& now) {

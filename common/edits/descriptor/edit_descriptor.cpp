@@ -285,10 +285,9 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel,   EditKind::fill_box, EditKind::fill_sphere,
-      EditKind::fill_stroke, EditKind::paste,    EditKind::rights,
-      EditKind::materials,   EditKind::library,  EditKind::shapes,
-      EditKind::texture};
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
+      EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
+      EditKind::shapes,    EditKind::texture};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -381,8 +380,9 @@ Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
       in[0] <= static_cast<std::uint8_t>(EditKind::texture))
-    return fail(ErrorCode::unknown_kind,
-                "a change of rights, materials, shapes, textures or the library is no edit of voxels");
+    return fail(
+        ErrorCode::unknown_kind,
+        "a change of rights, materials, shapes, textures or the library is no edit of voxels");
   return decode_descriptor(in);
 }
 

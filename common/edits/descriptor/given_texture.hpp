@@ -16,13 +16,13 @@ struct GivenTexture {
   friend bool operator==(const GivenTexture&, const GivenTexture&) = default;
 };
 
-/// The maximum size of the bytes: the PNG and its length, and of each use the step from the material
-/// before, and the sides.
+/// The maximum size of the bytes: the PNG and its length, and of each use the step from the
+/// material before, and the sides.
 inline constexpr std::size_t kGivenTextureBytesMax =
     3 + kTextureBytesMax + 2 + kTextureUsesMax * (3 + 1);
 
-/// Fails if the head of the PNG or the uses are not valid. That the rest of the PNG decodes is checked
-/// by the server before it orders the record. Cost: O(uses).
+/// Fails if the head of the PNG or the uses are not valid. That the rest of the PNG decodes is
+/// checked by the server before it orders the record. Cost: O(uses).
 Result<void> validate(const GivenTexture& given);
 
 /// Appends the canonical bytes. Requires validate().

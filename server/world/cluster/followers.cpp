@@ -132,8 +132,8 @@ std::optional<std::string> Followers::shapes_refusal() const {
 std::optional<std::string> Followers::textures_refusal() const {
   for (const auto& [link, follower] : all_) {
     if (!follower.takes_textures)
-      return "a server that follows is of an older version, which cannot read textures: stop it, or "
-             "start it with this version (servers lists them)";
+      return "a server that follows is of an older version, which cannot read textures: stop it, "
+             "or start it with this version (servers lists them)";
   }
   return std::nullopt;
 }

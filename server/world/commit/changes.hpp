@@ -1,5 +1,6 @@
 // Changes: edits that the server makes itself: rollback, undo, redo, changes of rights, new
-// materials, their shapes and textures, and changes of the library of builds. All are records of the log.
+// materials, their shapes and textures, and changes of the library of builds. All are records of
+// the log.
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
@@ -82,10 +83,10 @@ class Changes {
   Result<Sequence, std::string> give_shapes(std::vector<GivenShape> rows, const Clocks& now);
 
   /// Orders textures for materials of the world by the console, one record for each: all or none.
-  /// Requires at least one, and pictures for which read_texture() succeeds. Returns the last record, or
-  /// why it was refused, as a sentence: a material that is not there, a side that has a picture already,
-  /// too many pictures (TextureTable::check()), and while the log takes no edits or lacks room for all.
-  /// Cost: O(bytes), to hash them.
+  /// Requires at least one, and pictures for which read_texture() succeeds. Returns the last record,
+  /// or why it was refused, as a sentence: a material that is not there, a side that has a picture
+  /// already, too many pictures (TextureTable::check()), and while the log takes no edits or lacks
+  /// room for all. Cost: O(bytes), to hash them.
   Result<Sequence, std::string> give_textures(std::span<const GivenTexturePtr> textures,
                                               const Clocks& now);
 

@@ -12,8 +12,8 @@ TextureParts TextureSending::next_parts(const Wanting& wanting) const {
     if (message.parts.size() == kTexturesWantedMax) break;
     TexturePart part{hash, {}};
     const auto index = textures.table().find(hash);
-    const bool is_sent = index && (*index >= wanting.answers.size() ||
-                                   wanting.answers[*index] < kTextureAnswersMax);
+    const bool is_sent =
+        index && (*index >= wanting.answers.size() || wanting.answers[*index] < kTextureAnswersMax);
     if (is_sent) {
       const Bytes& png = textures.png(*index);
       if (bytes != 0 && bytes + png.size() > kTextureMessageBytes) break;

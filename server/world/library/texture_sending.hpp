@@ -1,6 +1,6 @@
 // TextureSending: answers the requests of clients for pictures. A server that follows answers them
-// itself. The pictures are of the class chunks, so the link's pace, the budgets of bytes and the order
-// of the queue hold for them as for terrain. Bounds:
+// itself. The pictures are of the class chunks, so the link's pace, the budgets of bytes and the
+// order of the queue hold for them as for terrain. Bounds:
 //   - a session has kTexturesUnansweredMax pictures unanswered, otherwise it is closed;
 //   - a picture is sent to a session kTextureAnswersMax times. Later answers are empty;
 //   - a call sends a session as much as its queue takes, kPartsAtOnce messages at most.

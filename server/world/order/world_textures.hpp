@@ -1,5 +1,5 @@
-// WorldTextures: the textures of the world as the world strand knows them: their table, and the bytes
-// of the pictures, which players fetch.
+// WorldTextures: the textures of the world as the world strand knows them: their table, and the
+// bytes of the pictures, which players fetch.
 // Thread: the world strand. Memory: at most kTexturesBytesMax of pictures, and 8 bytes a use.
 #pragma once
 #include <memory>

@@ -144,8 +144,8 @@ std::vector<TextureUse> any_texture_uses(SplitMix64& rng) {
 /// Returns a texture whose picture has a sound head and nothing behind it.
 GivenTexture any_given_texture(SplitMix64& rng) {
   const auto edge = static_cast<std::uint8_t>(16U << rng.below(3));
-  GivenTexture given{{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
-                      'R',  0,   0,   0,   edge, 0,   0,    0,   edge, 8, 6, 0, 0,  0},
+  GivenTexture given{{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,    0, 0, 13, 'I', 'H', 'D',
+                      'R',  0,   0,   0,   edge, 0,    0,    0,    edge, 8, 6, 0,  0,   0},
                      any_texture_uses(rng)};
   for (std::uint32_t left = rng.below(100); left != 0; --left)
     given.png.push_back(static_cast<std::uint8_t>(rng.next()));

@@ -10,7 +10,8 @@ namespace runstone::test {
 namespace {
 
 void add_number(Bytes& out, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+  for (int shift = 24; shift >= 0; shift -= 8)
+    out.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 void add_chunk(Bytes& out, std::string_view name, const Bytes& data) {
@@ -18,7 +19,8 @@ void add_chunk(Bytes& out, std::string_view name, const Bytes& data) {
   const std::size_t checked = out.size();
   out.insert(out.end(), name.begin(), name.end());
   out.insert(out.end(), data.begin(), data.end());
-  add_number(out, static_cast<std::uint32_t>(crc32_z(0, out.data() + checked, out.size() - checked)));
+  add_number(out,
+             static_cast<std::uint32_t>(crc32_z(0, out.data() + checked, out.size() - checked)));
 }
 
 }  // namespace
@@ -44,7 +46,8 @@ Bytes plain_png(std::uint32_t width, std::uint32_t height, std::array<std::uint8
   TestPng png{width, height};
   for (std::uint32_t y = 0; y < height; ++y) {
     png.rows.push_back(0);
-    for (std::uint32_t x = 0; x < width; ++x) png.rows.insert(png.rows.end(), rgba.begin(), rgba.end());
+    for (std::uint32_t x = 0; x < width; ++x)
+      png.rows.insert(png.rows.end(), rgba.begin(), rgba.end());
   }
   return bytes_of(png);
 }
@@ -52,7 +55,8 @@ Bytes plain_png(std::uint32_t width, std::uint32_t height, std::array<std::uint8
 void write_file(const std::string& path, const Bytes& bytes) {
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
 }
 
 }  // namespace runstone::test

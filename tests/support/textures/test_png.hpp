@@ -12,7 +12,7 @@ namespace runstone::test {
 struct TestPng {
   std::uint32_t width = 16, height = 16;
   std::uint8_t bits = 8, type = 6;  // RGBA
-  Bytes rows;
+  Bytes rows = {};
   Bytes palette = {};  // three bytes each
 };
 

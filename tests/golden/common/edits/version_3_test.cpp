@@ -72,7 +72,7 @@ TEST_CASE("the bytes of given shapes are pinned", "[edits][golden]") {
 }
 
 TEST_CASE("the bytes of a given texture are pinned", "[edits][golden]") {
-  const Bytes png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
+  const Bytes png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,  0, 0, 13, 'I', 'H', 'D',
                      'R',  0,   0,   0,   32,   0,    0,    0,    32, 8, 6, 0,  0,   0};
   std::vector<std::uint8_t> bytes = {0x0c, 0x00, 0x00,  // texture, no mask, no material
                                      0x1c};             // 29 bytes

@@ -22,7 +22,8 @@ namespace {
 
 constexpr TimeUs kLaterUs = 2'000'000'000'000'000;  // than any edit of the test
 
-/// Joins with the feature, and fetches the list and all pictures. Returns the pictures by their hash.
+/// Joins with the feature, and fetches the list and all pictures. Returns the pictures by their
+/// hash.
 std::map<TextureHash, Bytes> fetched(std::uint16_t port, TextureTable& table, std::uint64_t who) {
   RawClient client(port);
   client.features = kFeatureMaterials | kFeatureTextures;
@@ -98,8 +99,8 @@ TEST_CASE("a world has its textures after kill -9, compaction, backup and copy",
     auto store = *open_world(world, StoreAccess::read_only);
     CHECK(store->log_range()->first > 2);
     const auto generator = generator_of(*store);
-    const auto copied = copy_world(*store, **generator, store->log_range()->last.version.seq,
-                                   folder / "copy", out);
+    const auto copied =
+        copy_world(*store, **generator, store->log_range()->last.version.seq, folder / "copy", out);
     if (!copied) FAIL(copied.error());
   }
   has_textures(world, 43);

@@ -65,8 +65,8 @@ TEST_CASE("a server that adds pictures for ever is stopped at 4,096 of them, and
 
   TextureTable large;
   std::size_t count = 0;
-  while (large.add(TextureEntry{numbered_hash(count), kTextureBytesMax,
-                                {{static_cast<Material>(count + 1), 1}}}))
+  while (large.add(TextureEntry{
+      numbered_hash(count), kTextureBytesMax, {{static_cast<Material>(count + 1), 1}}}))
     ++count;
   CHECK(count == kTexturesBytesMax / kTextureBytesMax);
   CHECK_FALSE(large.add(TextureEntry{numbered_hash(9000), 0, {{60000, 1}}}).has_value());

@@ -40,8 +40,10 @@ struct Shown {
     for (const auto& given : found.textures) {
       const auto read = read_texture(given->png);
       REQUIRE(read.has_value());
-      REQUIRE(table.add(TextureEntry{{static_cast<std::uint8_t>(table.entries().size())},
-                                     static_cast<std::uint32_t>(given->png.size()), given->uses})
+      REQUIRE(table
+                  .add(TextureEntry{{static_cast<std::uint8_t>(table.entries().size())},
+                                    static_cast<std::uint32_t>(given->png.size()),
+                                    given->uses})
                   .has_value());
       reds.push_back(read->rgba[0]);
     }
@@ -71,8 +73,8 @@ TEST_CASE("a folder of pictures is matched by the names of materials", "[texture
   write_file(folder / "oven_front.png", picture(4));
   write_file(folder / "oven_side.png", picture(5));
   write_file(folder / "oven_top.png", picture(6));
-  const MaterialTable materials = table_of_names(
-      {"minecraft:stone", "mod:log[axis=x]", "x:oven[facing=east]", "sand", "oven"});
+  const MaterialTable materials =
+      table_of_names({"minecraft:stone", "mod:log[axis=x]", "x:oven[facing=east]", "sand", "oven"});
   const TextureImport found = found_in(folder.path(), materials);
   const Shown shown(found);
   using enum Direction;
@@ -203,8 +205,8 @@ TEST_CASE("a resource pack of Minecraft says its textures by models", "[textures
   write_file(mc + "textures/block/furnace_side.png", picture(3));
   write_file(mc + "textures/block/grass.png", plain_png(16, 16, {100, 100, 100, 255}));
   const MaterialTable materials =
-      table_of_names({"minecraft:furnace[facing=east]", "minecraft:furnace", "minecraft:grass_block",
-                      "minecraft:stone", "minecraft:dirt", "sand"});
+      table_of_names({"minecraft:furnace[facing=east]", "minecraft:furnace",
+                      "minecraft:grass_block", "minecraft:stone", "minecraft:dirt", "sand"});
   const TextureImport found = found_in(folder.path(), materials);
   const Shown shown(found);
   using enum Direction;

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/textures/test_png.hpp"
 #include "tests/unit/server/world/cluster/cluster_bench.hpp"
 
 namespace runstone::test {
@@ -262,6 +263,26 @@ TEST_CASE("no shapes go to a follower that cannot read them", "[world][servers][
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::wrong_protocol);
   CHECK(bench.environment.closed[0].text ==
         "this world has materials with shapes: start a version that can read this");
+}
+
+TEST_CASE("no textures go to a follower that cannot read them", "[world][servers][textures]") {
+  constexpr std::uint64_t kOlder = kFeaturesOfServers & ~kFeatureTextureRecords;
+  WorldBench bench;
+  const auto refused = [&] { return bench.server.cluster().textures_refusal().has_value(); };
+  handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+  CHECK_FALSE(refused());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  CHECK(refused());
+  bench.server.disconnected(kLink + 1);
+  CHECK_FALSE(refused());
+  const std::vector<GivenTexturePtr> textures = {std::make_shared<const GivenTexture>(
+      GivenTexture{plain_png(16, 16, {1, 2, 3, 255}), {{1, kAllTextureSides}}})};
+  REQUIRE(bench.server.changes().give_textures(textures, bench.now()).has_value());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::wrong_protocol);
+  CHECK(bench.environment.closed[0].text ==
+        "this world has textures: start a version that can read this");
 }
 
 TEST_CASE("the features of servers are in force for no player", "[world][servers][clock]") {

@@ -17,8 +17,8 @@ struct SendingBench : FeatureBench {
       Bytes png = plain_png(16, 16, {i, 0, 0, 255});
       if (i == 3) png.resize(kTextureBytesMax);
       hashes.push_back(texture_hash(png));
-      textures.push_back(std::make_shared<const GivenTexture>(GivenTexture{
-          std::move(png), {{1, static_cast<std::uint8_t>(1U << i)}}}));
+      textures.push_back(std::make_shared<const GivenTexture>(
+          GivenTexture{std::move(png), {{1, static_cast<std::uint8_t>(1U << i)}}}));
     }
     REQUIRE(server.changes().give_textures(textures, now()).has_value());
     join_with(1, 1, kFeatureMaterials | kFeatureTextures);
