@@ -41,10 +41,11 @@ class CacheThread {
   void look_up_textures(std::vector<TextureHash> hashes);
   /// Queues pictures, which a world bounds (TextureTable).
   void keep_textures(std::vector<TexturePart> parts);
-  /// Returns the results of lookups of textures since the last call, in order: the pictures that were
-  /// found.
+  /// Returns the results of lookups of textures since the last call, in order: the pictures that
+  /// were found.
   std::vector<std::vector<TexturePart>> drain_textures();
-  /// Writes the waiting chunks and pictures and ends the thread. Later lookups and chunks are ignored.
+  /// Writes the waiting chunks and pictures and ends the thread. Later lookups, chunks and pictures
+  /// are ignored.
   void stop();
 
   CacheCounters counters() const;

@@ -1,6 +1,6 @@
 // DrawQueue: what the main thread hands to the screen, and what it gets back.
-//   in    changes (meshes, removals, materials, textures), of which the newest per chunk is kept, and at most
-//         one frame order; bounded by the number of chunks
+//   in    changes (meshes, removals, materials, textures), of which the newest per chunk is kept,
+//         and at most one frame order; bounded by the number of chunks
 //   out   completed uploads and frames, in order; bounded by the number of orders since the last
 //         take_done()
 // The content of a frame:
@@ -29,6 +29,7 @@
 
 #include "client/display/screen.hpp"
 #include "client/display/upload_queue.hpp"
+#include "client/render/drawn_textures.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/shapes/shape_table.hpp"
@@ -90,7 +91,8 @@ class DrawQueue {
   /// Queues a removal, which replaces a queued change of the same chunk.
   void remove(const ChunkKey& key);
   /// Drops queued work and what take_done() would return, waits for the frame in progress, and
-  /// queues the removal of every chunk and of the textures. So another world can be shown. Throws as take_done().
+  /// queues the removal of every chunk and of the textures. So another world can be shown. Throws
+  /// as take_done().
   void clear();
   /// Orders a frame. Requires that take_done() has returned the frame ordered before.
   void draw(FrameOrder order);
@@ -105,8 +107,8 @@ class DrawQueue {
 
   /// Reports that there is a screen, on which serve() draws from now on.
   void set_drawing(const char* screen_name);
-  /// Gives the screen the queued materials, textures and removals, and draws the frame that is ordered. If
-  /// none is, uploads for a while.
+  /// Gives the screen the queued materials, textures and removals, and draws the frame that is
+  /// ordered. If none is, uploads for a while.
   void serve(Screen& screen);
   /// Reports that drawing has failed, and why.
   void fail(const char* why);

@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-/// For vertex shaders. Requires RUNSTONE_QUAD_GLSL. `texture_layer` is 0 if the side has no picture,
-/// otherwise 1 + its layer; it is negative for a face of a shape.
+/// For vertex shaders. Requires RUNSTONE_QUAD_GLSL. `texture_layer` is 0 if the side has no
+/// picture, otherwise 1 + its layer; it is negative for a face of a shape.
 #define RUNSTONE_TO_TEXTURE_GLSL                                                            \
   "#ifdef RUNSTONE_TEXTURES\n"                                                              \
   "uniform usampler2D texture_layers;\n"                                                    \

@@ -1,5 +1,5 @@
-// TextureExchange: how a client gets the textures of a world. The server sends the list of them; the
-// pictures come from the client's cache, or else from the server. Every picture is checked:
+// TextureExchange: how a client gets the textures of a world. The server sends the list of them;
+// the pictures come from the client's cache, or else from the server. Every picture is checked:
 //   - TextureTable bounds the list: 4,096 pictures, 16 MiB of PNG files, 64 MiB of pixels;
 //   - the bytes must have the size and the hash of the list, whether the server or the cache gave
 //     them; only then are they decoded (read_texture()), and only what is a picture is cached;
@@ -32,7 +32,8 @@ class TextureExchange {
  public:
   /// The hashes of one lookup in the cache.
   static constexpr std::size_t kLookupMax = 256;
-  /// One call of step() decodes one picture, and further ones while their PNGs are smaller together.
+  /// One call of step() decodes one picture, and further ones while all PNGs before are smaller
+  /// together.
   static constexpr std::size_t kDecodeBytes = 32 * 1024;
 
   /// Sets whether pictures are wanted; they are not at first. The list is kept in any case.

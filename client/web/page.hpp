@@ -70,8 +70,8 @@ void page_cache_find(const char* world, const std::int32_t* keys, int count);
 void page_cache_keep(const char* world, const std::uint8_t* rows, int bytes);
 
 // The texture cache, see WebTextures. The page carries out the calls later, in their order.
-/// Reads pictures. `hashes` has 32 bytes of each. The page calls web_texture_found() for each picture
-/// that it has, and then web_textures_looked_up().
+/// Reads pictures. `hashes` has 32 bytes of each. The page calls web_texture_found() for each
+/// picture that it has, and then web_textures_looked_up().
 void page_textures_find(const std::uint8_t* hashes, int count);
 /// Writes pictures. Each is its hash, a u32 with its size, little-endian, and its bytes.
 void page_textures_keep(const std::uint8_t* rows, int bytes);

@@ -22,7 +22,8 @@ class WebTextures {
   void keep_textures(const std::vector<TexturePart>& parts);
 
   // Calls of the page.
-  /// Takes the picture of a hash of the oldest lookup. `index`: the place of the hash in the lookup.
+  /// Takes the picture of a hash of the oldest lookup. `index`: the place of the hash in the
+  /// lookup.
   void found(std::size_t index, ByteView png);
   /// Ends the oldest lookup.
   void looked_up();

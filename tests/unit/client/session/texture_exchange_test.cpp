@@ -224,7 +224,10 @@ TEST_CASE_METHOD(TextureSession, "a list that is not valid ends the session",
   SECTION("a side that has a picture") { wrong.entries[0].uses[0].material = 1; }
   SECTION("no sides") { wrong.entries[0].uses[0].sides = 0; }
   SECTION("a picture that is too large") { wrong.entries[0].bytes = kTextureBytesMax + 1; }
-  SECTION("one picture with two sizes") { wrong.entries[0].hash = texture_hash(png_of(1)); }
+  SECTION("one picture with two sizes") {
+    wrong.entries[0].hash = texture_hash(png_of(1));
+    wrong.entries[0].bytes = static_cast<std::uint32_t>(png_of(1).size()) + 1;
+  }
   SECTION("too many pictures") {
     wrong.entries.clear();
     for (std::size_t i = 0; i < kTextureCountMax; ++i) {

@@ -1,7 +1,10 @@
 #include "client/web/web_textures.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <deque>
 #include <map>
+#include <vector>
 
 #include "client/web/page.hpp"
 
