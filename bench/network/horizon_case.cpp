@@ -51,12 +51,12 @@ Result<HorizonJoin, std::string> horizon_once(Testbed& testbed, TestbedLink& lin
   const std::string script = testbed.fresh("script.txt"),
                     report_file = testbed.fresh("report.json");
   write_text(script, fmt::format("wait horizon {}\nquit\n", kHorizonSeconds));
-  auto client =
-      testbed.start_client(link, "runstone-client",
-                           {"--connect", server->address, "--name", "newcomer", "--no-render",
-                            "--view", fmt::to_string(views_of(testbed.options()).radius),
-                            "--view-vertical", fmt::to_string(kFarViewRadiusV), "--far-levels",
-                            fmt::to_string(view.levels), "--script", script, "--report", report_file});
+  auto client = testbed.start_client(
+      link, "runstone-client",
+      {"--connect", server->address, "--name", "newcomer", "--no-render", "--view",
+       fmt::to_string(views_of(testbed.options()).radius), "--view-vertical",
+       fmt::to_string(kFarViewRadiusV), "--far-levels", fmt::to_string(view.levels), "--script",
+       script, "--report", report_file});
   if (!client) return failed(client);
   if (const auto ended = testbed.finish(**client, 2 * kHorizonSeconds); !ended)
     return failed(ended);

@@ -19,7 +19,7 @@ namespace runstone {
 /// The rules of a world that does not exist yet.
 struct NewLocalWorld {
   std::string generator = "landscape";  // landscape, terrain, flat or empty
-  std::optional<std::uint64_t> seed;  // nullopt: a random one
+  std::optional<std::uint64_t> seed;    // nullopt: a random one
   friend bool operator==(const NewLocalWorld&, const NewLocalWorld&) = default;
 };
 

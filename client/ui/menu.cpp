@@ -15,7 +15,7 @@ constexpr ImGuiWindowFlags kFixed =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
 constexpr std::array<const char*, 4> kGenerators = {"landscape", "terrain", "flat", "empty"};
 constexpr std::array<const char*, 4> kGeneratorTexts = {"landscape", "hills and sea", "flat ground",
-                                                         "nothing"};
+                                                        "nothing"};
 const ImVec4 kWarning{1.0F, 0.62F, 0.45F, 1.0F};
 const ImVec4 kQuiet{0.65F, 0.68F, 0.72F, 1.0F};
 

@@ -96,8 +96,8 @@ std::optional<GenerationRule> thesis_rule(std::string_view name) {
 MaterialTable make_default_table() {
   MaterialTable table;
   for (const PaletteRow& row : kPalette) {
-    const auto id = table.add({row.name, colour_of(row.rgba), row.visibility, thesis_rule(row.name),
-                               row.body, row.look});
+    const auto id = table.add(
+        {row.name, colour_of(row.rgba), row.visibility, thesis_rule(row.name), row.body, row.look});
     RUNSTONE_ASSERT(id.has_value());
   }
   return table;
@@ -106,8 +106,8 @@ MaterialTable make_default_table() {
 MaterialTable make_landscape_table() {
   MaterialTable table = make_default_table();
   for (const PaletteRow& row : kGrowth) {
-    const auto id = table.add({row.name, colour_of(row.rgba), row.visibility, std::nullopt, row.body,
-                               row.look});
+    const auto id = table.add(
+        {row.name, colour_of(row.rgba), row.visibility, std::nullopt, row.body, row.look});
     RUNSTONE_ASSERT(id.has_value());
   }
   for (const PlantRow& row : kPlants) {

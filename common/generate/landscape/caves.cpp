@@ -20,17 +20,15 @@ Caves::Caves(std::uint64_t seed)
               Layer{LatticeNoise(mix64(seed + 44), 7), LatticeNoise(mix64(seed + 45), 5),
                     LatticeNoise(mix64(seed + 46), 7)}} {}
 
-std::array<Tunnel, kTunnels> Caves::at(std::int32_t x, std::int32_t z,
-                                       std::int32_t surface) const {
+std::array<Tunnel, kTunnels> Caves::at(std::int32_t x, std::int32_t z, std::int32_t surface) const {
   std::array<Tunnel, kTunnels> out;
   for (std::size_t i = 0; i < kTunnels; ++i) {
     const Layer& layer = layers_[i];
     const std::int32_t line = std::abs(layer.wide.at(x, z) + layer.narrow.at(x, z) / 8);
     if (line >= kTunnelWidth) continue;
-    const std::int32_t middle =
-        surface - kDepths[i] + layer.height.at(x, z) * kHeightSwing / kOne;
-    const std::int32_t half = 1 + 3 * (kTunnelWidth * kTunnelWidth - line * line) /
-                                      (kTunnelWidth * kTunnelWidth);
+    const std::int32_t middle = surface - kDepths[i] + layer.height.at(x, z) * kHeightSwing / kOne;
+    const std::int32_t half =
+        1 + 3 * (kTunnelWidth * kTunnelWidth - line * line) / (kTunnelWidth * kTunnelWidth);
     out[i] = {middle - half, middle + half + 1};
   }
   // Two tunnels that meet are one.

@@ -10,8 +10,8 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kSquaresKept = 2048;
-constexpr int kReachNodes = 2;     // nodes farther away have no effect on a square
-constexpr int kFlowSteps = 6;      // a river is as wide as the nodes that drain into it in 6 steps say
+constexpr int kReachNodes = 2;  // nodes farther away have no effect on a square
+constexpr int kFlowSteps = 6;   // a river is as wide as the nodes that drain into it in 6 steps say
 constexpr int kFlowMargin = kReachNodes + 1 + kFlowSteps;  // ends of edges are one node farther
 constexpr int kNodeMargin = kFlowMargin + 1;
 constexpr int kNodeSide = 2 * kNodeMargin + 1;
@@ -61,10 +61,10 @@ std::int32_t Drainage::continent(std::int32_t x, std::int32_t z) const {
   out += 280;
   // Players arrive near the origin, so there is land.
   if (std::abs(x) < kSpawnLand && std::abs(z) < kSpawnLand) {
-    const std::int32_t near_x = kOne - static_cast<std::int32_t>(std::int64_t{x} * x * kOne /
-                                                                 kSpawnLand / kSpawnLand);
-    const std::int32_t near_z = kOne - static_cast<std::int32_t>(std::int64_t{z} * z * kOne /
-                                                                 kSpawnLand / kSpawnLand);
+    const std::int32_t near_x =
+        kOne - static_cast<std::int32_t>(std::int64_t{x} * x * kOne / kSpawnLand / kSpawnLand);
+    const std::int32_t near_z =
+        kOne - static_cast<std::int32_t>(std::int64_t{z} * z * kOne / kSpawnLand / kSpawnLand);
     out += times(times(near_x, near_x), times(near_z, near_z)) / 3;
   }
   return out;

@@ -21,9 +21,9 @@ inline constexpr std::int32_t kDrainageReach = 1280;
 /// The bottom of a valley from one node to the next, with or without a river, or a lake around a
 /// node. Lengths are sixteenths of a voxel, places relative to the square that asked.
 struct Watercourse {
-  std::int32_t x, z, to_x, to_z;  // to_*: the end, relative to the start
-  std::int64_t inverse;           // 2^44 / length^2, or 0 for a lake
-  std::int32_t level, to_level;   // at both ends, in voxels
+  std::int32_t x, z, to_x, to_z;          // to_*: the end, relative to the start
+  std::int64_t inverse;                   // 2^44 / length^2, or 0 for a lake
+  std::int32_t level, to_level;           // at both ends, in voxels
   std::int32_t plateau, plateau_inverse;  // the share of the way before the level begins to fall
   std::int32_t half_width, to_half_width;
   bool is_wet;

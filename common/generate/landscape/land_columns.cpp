@@ -327,8 +327,8 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
       } else if (is_wet || (at.shore < 20 && at.patch < 900 && land_cover != LandCover::snow)) {
         cover = bed_of(at, materials);
       }
-      LandColumn out{at.ground, is_wet ? at.water : at.ground, cover.top, cover.filling, cover.depth,
-                     kEmpty};
+      LandColumn out{
+          at.ground, is_wet ? at.water : at.ground, cover.top, cover.filling, cover.depth, kEmpty};
       if (!is_wet && !at.is_sill && choices.plants > 0) {
         out.plant = plant_of(at, land_cover, column_random(plant_key, x + i, z + k), choices.plants,
                              materials);

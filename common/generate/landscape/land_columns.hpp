@@ -21,10 +21,10 @@ struct LandChoices {
 
 /// How high a place lies and how steep it is, and what follows from that for its cover.
 struct LandPlace {
-  std::int32_t height;     // voxels
-  std::int32_t slope;      // 256ths: voxels up for each voxel aside
+  std::int32_t height;                   // voxels
+  std::int32_t slope;                    // 256ths: voxels up for each voxel aside
   std::int32_t roughness, forest, cold;  // as in LandSample
-  std::int32_t grain;      // noise within -kOne .. kOne, or 0 from afar
+  std::int32_t grain;                    // noise within -kOne .. kOne, or 0 from afar
 };
 enum class LandCover : std::uint8_t { grass, forest_floor, rock, scree, snow, beach };
 LandCover cover_of(const LandPlace& place);

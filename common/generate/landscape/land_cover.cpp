@@ -7,8 +7,8 @@ namespace runstone {
 namespace {
 
 constexpr std::int32_t kBeachHeight = 2;  // voxels above the sea
-constexpr std::int32_t kSnowLine = 345;
-constexpr std::int32_t kScreeLine = 290;
+constexpr std::int32_t kSnowLine = 400;
+constexpr std::int32_t kScreeLine = 310;
 constexpr std::int32_t kTreeLine = 250;
 constexpr std::int32_t kForestFloorShare = 2000;
 
@@ -29,8 +29,7 @@ LandCover cover_of(const LandPlace& place) {
 
 std::int32_t tree_share(const LandPlace& place, LandCover cover) {
   if (cover != LandCover::grass && cover != LandCover::forest_floor) return 0;
-  const std::int32_t below_line =
-      kOne - ramp(place.height + place.cold, kTreeLine - 60, kTreeLine);
+  const std::int32_t below_line = kOne - ramp(place.height + place.cold, kTreeLine - 60, kTreeLine);
   return times(55 + times(place.forest, 3500), below_line);
 }
 

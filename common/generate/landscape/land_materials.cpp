@@ -32,9 +32,10 @@ Result<LandMaterials> LandMaterials::find(const MaterialTable& table) {
   for (const auto& [name, material] : names) {
     const auto id = table.find(name);
     if (!id) {
-      return fail(ErrorCode::not_found,
-                  "the table lacks a material of landscape (docs/worlds.md lists them); the built-in "
-                  "table has all of them");
+      return fail(
+          ErrorCode::not_found,
+          "the table lacks a material of landscape (docs/worlds.md lists them); the built-in "
+          "table has all of them");
     }
     *material = *id;
   }

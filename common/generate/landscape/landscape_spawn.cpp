@@ -14,8 +14,8 @@ namespace {
 constexpr std::int32_t kSearchReach = 1536;  // voxels around the origin, on each axis
 constexpr std::int32_t kSearchStep = 48;
 constexpr std::int32_t kClearing = 4;  // columns around the place that are level and without trees
-constexpr std::int32_t kLevelGround = 2;     // voxels between the highest and the lowest of them
-constexpr std::int32_t kEyes = 2;      // voxels above the ground
+constexpr std::int32_t kLevelGround = 2;  // voxels between the highest and the lowest of them
+constexpr std::int32_t kEyes = 2;         // voxels above the ground
 constexpr std::array<std::int32_t, 7> kSights = {50, 120, 280, 600, 1300, 2800, 5600};
 /// Sixteen directions, times 256. Players arrive with the view to +z.
 constexpr std::array<std::pair<std::int32_t, std::int32_t>, 16> kDirections = {{{0, 256},

@@ -9,7 +9,7 @@ namespace runstone {
 namespace {
 
 /// Directions of length sqrt(2), times 256. With this length the noise reaches one.
-constexpr std::array<std::int32_t, 16> kGradientX = {362, 334,  256,  139,  0, -139, -256, -334,
+constexpr std::array<std::int32_t, 16> kGradientX = {362,  334,  256,  139,  0, -139, -256, -334,
                                                      -362, -334, -256, -139, 0, 139,  256,  334};
 constexpr std::array<std::int32_t, 16> kGradientZ = {0, 139,  256,  334,  362,  334,  256,  139,
                                                      0, -139, -256, -334, -362, -334, -256, -139};

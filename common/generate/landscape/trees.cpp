@@ -32,7 +32,8 @@ Form form_of(const Tree& tree) {
     case TreeKind::birch:
       return {kBirch, 4 + extra, 8 + extra};
     case TreeKind::pine:
-      return is_big ? Form{kBigPine, 3 + extra, 14 + extra} : Form{kSmallPine, 2 + extra, 9 + extra};
+      return is_big ? Form{kBigPine, 3 + extra, 14 + extra}
+                    : Form{kSmallPine, 2 + extra, 9 + extra};
     case TreeKind::shrub:
       break;
   }

@@ -27,8 +27,9 @@ TEST_CASE("a voxel is the same in every chunk that holds it", "[generate][proper
   const auto name = GENERATE(as<std::string>{}, "empty", "flat", "landscape", "terrain");
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 60; ++round) {
-    const auto made = make_generator({name, 1, random.below(5), name == "landscape" ? "caves = 1" : ""},
-                                     landscape_material_table());
+    const auto made =
+        make_generator({name, 1, random.below(5), name == "landscape" ? "caves = 1" : ""},
+                       landscape_material_table());
     REQUIRE(made.has_value());
     const Generator& generator = **made;
     const std::int32_t reach = round % 8 == 0 ? kWorldLimit - 200 : 500;

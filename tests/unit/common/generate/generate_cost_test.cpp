@@ -18,14 +18,12 @@ constexpr std::int32_t kCostEdge = 32;
 constexpr std::int32_t kCostReach = 6, kCostReachUp = 4;  // chunks around the spawn
 
 void print_chunks(const std::string& name, std::uint64_t seed, const Generator& generator) {
-  const ChunkCoord middle =
-      chunk_of(spawn_point(generator, landscape_material_table()), kCostEdge);
+  const ChunkCoord middle = chunk_of(spawn_point(generator, landscape_material_table()), kCostEdge);
   double all_ns = 0, chunks = 0, mixed = 0, runs = 0, mixed_runs = 0;
   for (std::int32_t x = -kCostReach; x <= kCostReach; ++x) {
     for (std::int32_t z = -kCostReach; z <= kCostReach; ++z) {
       for (std::int32_t y = -kCostReachUp; y <= kCostReachUp; ++y) {
-        const VoxelPos origin =
-            origin_of({middle.x + x, middle.y + y, middle.z + z}, kCostEdge);
+        const VoxelPos origin = origin_of({middle.x + x, middle.y + y, middle.z + z}, kCostEdge);
         const auto start = thread_cpu_ns();
         const RunChunk chunk = generator.generate(origin, Extent::cube(kCostEdge));
         all_ns += static_cast<double>(thread_cpu_ns() - start);
@@ -38,9 +36,10 @@ void print_chunks(const std::string& name, std::uint64_t seed, const Generator& 
       }
     }
   }
-  std::printf("%s, seed %llu: %.0f us a chunk, %.0f a mixed one; %.0f runs a chunk, %.0f a mixed one\n",
-              name.c_str(), static_cast<unsigned long long>(seed), all_ns / chunks / 1e3,
-              all_ns / mixed / 1e3, runs / chunks, mixed_runs / mixed);
+  std::printf(
+      "%s, seed %llu: %.0f us a chunk, %.0f a mixed one; %.0f runs a chunk, %.0f a mixed one\n",
+      name.c_str(), static_cast<unsigned long long>(seed), all_ns / chunks / 1e3,
+      all_ns / mixed / 1e3, runs / chunks, mixed_runs / mixed);
 }
 
 void print_tiles(const std::string& name, const Generator& generator) {

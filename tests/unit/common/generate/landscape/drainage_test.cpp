@@ -72,8 +72,9 @@ TEST_CASE("a point of a river is as far as its nearest point, and levels fall al
           "[generate][landscape]") {
   // From (0, 0) to (1600, 0), 100 voxels, from level 20 to level 10, half of the way at 20.
   const std::int64_t squared = 1600 * 1600;
-  const Watercourse course{0,  0,        0 + 1600,  0,  (std::int64_t{1} << 44) / squared, 20, 10,
-                           kOne / 2, 2 * kOne, 32, 64, true, false};
+  const Watercourse course{0,  0,    0 + 1600, 0,        (std::int64_t{1} << 44) / squared,
+                           20, 10,   kOne / 2, 2 * kOne, 32,
+                           64, true, false};
   const auto near = nearest_point(course, 400, 300);
   CHECK(near.distance_squared == Approx(300 * 300).margin(400));
   CHECK(near.level == 20 * 256);
