@@ -7,8 +7,8 @@ namespace runstone {
 namespace {
 
 constexpr std::int32_t kBeachHeight = 2;  // voxels above the sea
-constexpr std::int32_t kSnowLine = 345;
-constexpr std::int32_t kScreeLine = 290;
+constexpr std::int32_t kSnowLine = 400;
+constexpr std::int32_t kScreeLine = 310;
 constexpr std::int32_t kTreeLine = 250;
 constexpr std::int32_t kForestFloorShare = 2000;
 

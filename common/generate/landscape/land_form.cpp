@@ -26,10 +26,10 @@ std::int32_t weighted(const std::array<LatticeNoise, 4>& noise, const std::array
 }
 
 /// Returns how far the side of a valley rises, in voxels, at `away` voxels from its bottom and a
-/// slope of one: slowly at first, and less again towards the ridge.
-std::int32_t valley_side(std::int32_t away) {
+/// slope of one: slowly at first, and less again towards the ridge, where it would end at `most`.
+std::int32_t valley_side(std::int32_t away, std::int32_t most) {
   const std::int64_t soft = std::int64_t{away} * away * 16 / (away + 56);
-  return static_cast<std::int32_t>(soft * 640 * 16 / (640 * 16 + soft));  // sixteenths
+  return static_cast<std::int32_t>(soft * most * 16 / (most * 16 + soft));  // sixteenths
 }
 
 }  // namespace
@@ -93,15 +93,16 @@ LandSample LandForm::at(std::int32_t x, std::int32_t z) const {
   const std::int32_t hills = ramp(hills_11_.at(x, z), -1400, 1800);
   const std::int32_t ashore = ramp(land, -500, 500);
   // The slope of the sides of valleys.
-  const std::int32_t slope = 120 + times(times(hills, ashore), 1350) + times(mountain, 3700);
+  const std::int32_t slope = 120 + times(times(hills, ashore), 1350) + times(mountain, 3300);
   const std::int32_t away = std::max(0, nearest / 16 - 8);
-  const std::int32_t rise = times(valley_side(away), slope) * 16;  // 256ths
+  const std::int32_t rise =
+      times(valley_side(away, 640 + times(mountain, 600)), slope) * 16;  // 256ths
   const std::int32_t off_water = ramp(away, 4, 140);
   // Crags are ridges at each scale, as high as the side of the valley lets them be.
   std::int32_t crag = 0;
   constexpr std::array<int, 4> kCrag = {30, 21, 8, 4};
   for (std::size_t i = 0; i < 4; ++i) crag += (kOne - 2 * std::abs(crags_[i].at(x, z))) * kCrag[i];
-  crag = times(crag >> 6, times(off_water, rise * 2 / 5 + times(mountain, 12 * 256)));
+  crag = times(crag >> 6, times(off_water, rise * 9 / 20 + times(mountain, 20 * 256)));
   const std::int32_t swell =
       times((swell_8_.at(x, z) * 7 + swell_7_.at(x, z) * 3) >> 1, off_water) * 256 / kOne;
   out.height = std::clamp(level + 200 + rise + crag + swell, (kLandHeightMin + 8) * 256,

@@ -59,6 +59,6 @@ class LandForm {
 
 /// Heights above the sea that bound the ground of every landscape, in voxels.
 inline constexpr std::int32_t kLandHeightMin = -96;
-inline constexpr std::int32_t kLandHeightMax = 800;
+inline constexpr std::int32_t kLandHeightMax = 960;
 
 }  // namespace runstone

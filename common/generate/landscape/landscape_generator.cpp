@@ -47,6 +47,16 @@ class ColumnWriter {
   RunBuilder& out_;
 };
 
+/// Removes the parts of column `column` from the front of parts that ascend by column.
+template <class Part>
+std::span<const Part> take_column(std::span<const Part>& parts, std::uint32_t column) {
+  std::size_t count = 0;
+  while (count < parts.size() && parts[count].column == column) ++count;
+  const auto out = parts.first(count);
+  parts = parts.subspan(count);
+  return out;
+}
+
 /// Appends the trees of a column, from height `from` upwards: in each height the last one counts.
 void write_wood(std::span<const LandColumns::Wood> wood, std::int32_t from,
                 std::vector<std::int32_t>& heights, ColumnWriter& writer) {
@@ -124,25 +134,22 @@ RunChunk LandscapeGenerator::generate(VoxelPos origin, Extent extent) const {
 
   RunBuilder out(extent, AxisOrder::yxz);
   std::vector<std::int32_t> heights;
-  auto wood = land->wood().begin();
-  auto hollow = land->hollows().begin();
+  std::span<const LandColumns::Wood> wood = land->wood();
+  ColumnWriter::Hollows hollows = land->hollows();
   const std::vector<LandColumn>& all = land->columns();
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const LandColumn& column = all[i];
-    const auto first = wood;
-    while (wood != land->wood().end() && wood->column == i) ++wood;
-    const auto first_hollow = hollow;
-    while (hollow != land->hollows().end() && hollow->column == i) ++hollow;
-    ColumnWriter writer(origin.y - sea_level_, end - sea_level_, out, {first_hollow, hollow});
+    const auto here = take_column(wood, i);
+    ColumnWriter writer(origin.y - sea_level_, end - sea_level_, out, take_column(hollows, i));
     writer.until(y_min_ - sea_level_, kEmpty);
     writer.until(column.ground - 1 - column.filling_depth, materials_.stone);
     writer.until(column.ground - 1, column.filling);
     writer.until(column.ground, column.top);
     writer.until(column.water, materials_.water);
-    if (first == wood) {
+    if (here.empty()) {
       if (column.plant != kEmpty) writer.until(column.ground + 1, column.plant);
     } else {
-      write_wood({first, wood}, column.water, heights, writer);
+      write_wood(here, column.water, heights, writer);
     }
     writer.finish();
   }
@@ -253,7 +260,8 @@ std::optional<RunChunk> LandscapeGenerator::coarse(VoxelPos origin, std::int32_t
       std::int32_t ground = row_of(best->ground - 1) + 1;
       if (is_wet) ground = std::min(ground, row_of(best->water - 1));
       writer.until(ground - 1, materials_.stone);
-      writer.until(ground, best->cover);
+      // From far away the crowns of a forest share the row of its ground.
+      writer.until(ground, best->crown != kEmpty ? best->crown : best->cover);
       if (is_wet) writer.until(row_of(best->water - 1) + 1, materials_.water);
       if (best->crown != kEmpty) writer.until(row_of(best->top - 1) + 1, best->crown);
       writer.finish();
