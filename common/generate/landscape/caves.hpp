@@ -1,5 +1,5 @@
-// Caves of a landscape: tunnels that wind through the ground. A tunnel is an interval of heights in a
-// column, so it becomes runs without a grid.
+// Caves of a landscape: tunnels that wind through the ground. A tunnel is an interval of heights in
+// a column, so it becomes runs without a grid.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@ struct Tunnel {
 class Caves {
  public:
   explicit Caves(std::uint64_t seed);
-  /// Returns the tunnels through the column, the lowest first. `surface` is the height of the ground
-  /// without its grain, in voxels. A tunnel may reach the ground. Cost: six noises.
+  /// Returns the tunnels through the column, the lowest first. `surface` is the height of the
+  /// ground without its grain, in voxels. A tunnel may reach the ground. Cost: six noises.
   std::array<Tunnel, kTunnels> at(std::int32_t x, std::int32_t z, std::int32_t surface) const;
 
  private:

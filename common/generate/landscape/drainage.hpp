@@ -1,7 +1,7 @@
 // Drainage: where water flows in a landscape. Each square of kDrainageWidth voxels has one node,
-// which drains into its lowest neighbour. So every node knows its way to the sea, or to a lake, from
-// the heights around it alone, and each part of the world can be made without the others. Source:
-// Gaillard et al., Dendry: A Procedural Model for Dendritic Patterns (I3D 2019).
+// which drains into its lowest neighbour. So every node knows its way to the sea, or to a lake,
+// from the heights around it alone, and each part of the world can be made without the others.
+// Source: Gaillard et al., Dendry: A Procedural Model for Dendritic Patterns (I3D 2019).
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,8 +14,8 @@ namespace runstone {
 
 inline constexpr unsigned kDrainageBits = 10;
 inline constexpr std::int32_t kDrainageWidth = 1 << kDrainageBits;
-/// Beyond this distance a watercourse has no effect on the ground, in voxels. Every place has a node
-/// within sqrt(2) * 3/4 of a square's width.
+/// Beyond this distance a watercourse has no effect on the ground, in voxels. Every place has a
+/// node within sqrt(2) * 3/4 of a square's width.
 inline constexpr std::int32_t kDrainageReach = 1280;
 
 /// The bottom of a valley from one node to the next, with or without a river, or a lake around a

@@ -142,8 +142,8 @@ class Ground {
     }
 
    private:
-    /// Collects the rivers and lakes near the block. Distances of the lattice alone would cut narrow
-    /// rivers into pieces.
+    /// Collects the rivers and lakes near the block. Distances of the lattice alone would cut
+    /// narrow rivers into pieces.
     void find_water() {
       const auto middle = [&](std::int32_t LandSample::* what) {
         return (corners_[0]->*what + corners_[3]->*what) / 2;

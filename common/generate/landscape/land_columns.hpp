@@ -1,5 +1,5 @@
-// LandColumns: the columns of a rectangle of a landscape: their ground, water, cover and plants, and
-// the trees that stand in it or reach into it. Heights are voxels above the level of the sea.
+// LandColumns: the columns of a rectangle of a landscape: their ground, water, cover and plants,
+// and the trees that stand in it or reach into it. Heights are voxels above the level of the sea.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The place where players arrive in a landscape: level and dry ground without trees, from where they
-// see far, and best of all water and mountains.
+// The place where players arrive in a landscape: level and dry ground without trees, from where
+// they see far, and best of all water and mountains.
 #include <algorithm>
 #include <array>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Trees of a landscape. A tree is its kind, its height and a hash. Its crown is given as the interval
-// of heights that it covers in a column, so it becomes runs without a grid.
+// Trees of a landscape. A tree is its kind, its height and a hash. Its crown is given as the
+// interval of heights that it covers in a column, so it becomes runs without a grid.
 #pragma once
 #include <cstdint>
 #include <optional>
