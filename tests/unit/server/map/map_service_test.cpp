@@ -173,7 +173,7 @@ TEST_CASE("the map is drawn again when materials get shapes", "[map][shapes]") {
   constexpr TimeUs kLater = 1'000'000;
   REQUIRE(world.refresh(kLater, kLater).has_value());
   std::vector<std::string> before;
-  for (const std::uint8_t zoom : {0, 1, 2})
+  for (std::uint8_t zoom = 0; zoom <= 2; ++zoom)
     before.push_back(**world.draw(world.present(), {zoom, 0, 0}, goes_on));
   CHECK(world.tile_rules() == kTileRules);
   CHECK(world.changes().after(1).is_complete);
@@ -188,7 +188,7 @@ TEST_CASE("the map is drawn again when materials get shapes", "[map][shapes]") {
   CHECK(world.tile_rules() == tile_rules_of(tile_shapes_number(world.materials())));
   CHECK(world.tile_rules() != kTileRules);
   CHECK_FALSE(world.changes().after(1).is_complete);  // browsers ask for all tiles again
-  for (const std::uint8_t zoom : {0, 1, 2}) {
+  for (std::uint8_t zoom = 0; zoom <= 2; ++zoom) {
     CAPTURE(static_cast<int>(zoom));
     CHECK(**world.draw(world.present(), {zoom, 0, 0}, goes_on) != before[zoom]);
   }

@@ -7,7 +7,7 @@
 namespace runstone::test {
 namespace {
 
-PublicKey numbered_key(std::size_t number) {
+PublicKey key_of_player(std::size_t number) {
   PublicKey key{};
   key[0] = static_cast<std::uint8_t>(number);
   key[1] = static_cast<std::uint8_t>(number >> 8);
@@ -22,14 +22,14 @@ TEST_CASE("the place of the player who was seen longest ago is forgotten first",
           "[world][places]") {
   PlayerPlaces places({});
   for (std::size_t i = 0; i < kPlayerPlacesMax; ++i)
-    places.note(numbered_key(i), pose_at(static_cast<double>(i)));
-  places.note(numbered_key(0), pose_at(0.5));
-  places.note(numbered_key(kPlayerPlacesMax), pose_at(9));
+    places.note(key_of_player(i), pose_at(static_cast<double>(i)));
+  places.note(key_of_player(0), pose_at(0.5));
+  places.note(key_of_player(kPlayerPlacesMax), pose_at(9));
   CHECK(places.all().size() == kPlayerPlacesMax);
-  CHECK(places.find(numbered_key(0)) == pose_at(0.5));
-  CHECK(places.find(numbered_key(1)) == std::nullopt);
-  CHECK(places.find(numbered_key(2)) == pose_at(2));
-  CHECK(places.all().back() == LastPlace{numbered_key(kPlayerPlacesMax), pose_at(9)});
+  CHECK(places.find(key_of_player(0)) == pose_at(0.5));
+  CHECK(places.find(key_of_player(1)) == std::nullopt);
+  CHECK(places.find(key_of_player(2)) == pose_at(2));
+  CHECK(places.all().back() == LastPlace{key_of_player(kPlayerPlacesMax), pose_at(9)});
   const PlayerPlaces again(places.all());
   CHECK(again.all() == places.all());
 }
