@@ -25,10 +25,11 @@ constexpr std::int32_t kTexturedEdge = 16;
 constexpr double kViewAngle = 0.1;  // radians: lines that are parallel look parallel
 
 using Rgba = std::array<std::uint8_t, 4>;
-constexpr Rgba kRed{230, 20, 20, 255}, kGreen{20, 200, 20, 255}, kBlue{20, 20, 230, 255},
-    kYellow{220, 220, 20, 255}, kCyan{20, 220, 220, 255}, kMagenta{220, 20, 220, 255},
-    kHole{0, 0, 0, 0};
-constexpr std::array<Rgba, 6> kSideColours = {kRed, kGreen, kBlue, kYellow, kCyan, kMagenta};
+constexpr Rgba kRedPixel{230, 20, 20, 255}, kGreenPixel{20, 200, 20, 255},
+    kBluePixel{20, 20, 230, 255}, kYellowPixel{220, 220, 20, 255}, kCyanPixel{20, 220, 220, 255},
+    kMagentaPixel{220, 20, 220, 255}, kHole{0, 0, 0, 0};
+constexpr std::array<Rgba, 6> kSideColours = {kRedPixel,    kGreenPixel, kBluePixel,
+                                              kYellowPixel, kCyanPixel,  kMagentaPixel};
 
 /// Returns a picture with the colour that the function gives at right and down, 0 .. 1.
 TexturePicture painted(std::uint16_t edge, const std::function<Rgba(double, double)>& colour) {
@@ -54,7 +55,7 @@ TexturePicture quarters(std::uint16_t edge, const std::array<Rgba, 4>& colours,
     return colours[(down < 0.5 ? 0U : 2U) + (right < 0.5 ? 0U : 1U)];
   });
 }
-constexpr std::array<Rgba, 4> kQuarters = {kRed, kGreen, kBlue, kYellow};
+constexpr std::array<Rgba, 4> kQuarters = {kRedPixel, kGreenPixel, kBluePixel, kYellowPixel};
 
 class Textures {
  public:
@@ -262,7 +263,7 @@ TEST_CASE("faces that are merged to one quad show the picture in each voxel",
   const ChunkMesh mesh = mesh_of(materials, voxels);
   REQUIRE(mesh.opaque.quads.size() == 6);
   Textures textures;
-  textures.add(quarters(16, kQuarters, kMagenta), 1, kAllTextureSides);
+  textures.add(quarters(16, kQuarters, kMagentaPixel), 1, kAllTextureSides);
   TexturedScene scene(*context, materials, mesh);
   scene.set_quality(GENERATE(Quality::low, Quality::high));
   scene.renderer().set_textures(textures.take());
@@ -283,7 +284,7 @@ TEST_CASE("the steps of stairs show the part of the picture at their place", "[r
   ChunkMesh mesh;
   mesh.shapes.opaque = quads_of_shape(materials, 1);
   Textures textures;
-  textures.add(quarters(32, kQuarters, kCyan), 1, kAllTextureSides);
+  textures.add(quarters(32, kQuarters, kCyanPixel), 1, kAllTextureSides);
   TexturedScene scene(*context, materials, mesh);
   scene.renderer().set_textures(textures.take());
   // Seen from the foot of the stairs, from above and from below, the picture is whole.
@@ -294,7 +295,7 @@ TEST_CASE("the steps of stairs show the part of the picture at their place", "[r
   }
   // From the side, the upper left quarter of the voxel is empty.
   const Look look = before(Direction::pos_z);
-  check_quarters(scene.draw(look.camera()), look, {kHole, kGreen, kBlue, kYellow});
+  check_quarters(scene.draw(look.camera()), look, {kHole, kGreenPixel, kBluePixel, kYellowPixel});
 }
 
 TEST_CASE("a plant has holes, and its picture is not mirrored from any side",
@@ -307,9 +308,9 @@ TEST_CASE("a plant has holes, and its picture is not mirrored from any side",
   ChunkMesh mesh;
   (row.visibility == Visibility::opaque ? mesh.shapes.opaque : mesh.shapes.transparent) =
       quads_of_shape(materials, 1);
-  const std::array<Rgba, 4> colours = {kRed, kGreen, kHole, kYellow};
+  const std::array<Rgba, 4> colours = {kRedPixel, kGreenPixel, kHole, kYellowPixel};
   Textures textures;
-  textures.add(quarters(16, colours, kYellow), 1, kAllTextureSides);
+  textures.add(quarters(16, colours, kYellowPixel), 1, kAllTextureSides);
   TexturedScene scene(*context, materials, mesh);
   scene.renderer().set_textures(textures.take());
   for (int turn = 0; turn < 4; ++turn) {
@@ -318,8 +319,8 @@ TEST_CASE("a plant has holes, and its picture is not mirrored from any side",
     const Look look{M_PI / 4 + turn * M_PI / 2, 0, 2};
     const Image image = scene.draw(look.camera());
     check_quarters(image, look, colours);
-    CHECK(named(pixel_at(image, look, -0.55, 0.3)) == kRed);
-    CHECK(named(pixel_at(image, look, 0.55, -0.3)) == kYellow);
+    CHECK(named(pixel_at(image, look, -0.55, 0.3)) == kRedPixel);
+    CHECK(named(pixel_at(image, look, 0.55, -0.3)) == kYellowPixel);
   }
 }
 
@@ -327,8 +328,8 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
           "[render][textures]") {
   const auto context = some_context();
   if (!context) return;
-  const auto holed =
-      painted(16, [](double right, double) { return right < 0.5 ? kRed : Rgba{20, 200, 20, 0}; });
+  const auto holed = painted(
+      16, [](double right, double) { return right < 0.5 ? kRedPixel : Rgba{20, 200, 20, 0}; });
   const Look look = before(Direction::neg_z);
   SECTION("opaque") {
     const MaterialTable materials = materials_of({material_row("leaves")});
@@ -336,7 +337,7 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
     textures.add(holed, 1, kAllTextureSides);
     TexturedScene scene(*context, materials, mesh_of(materials, {{{8, 8, 8}, 1}}));
     scene.renderer().set_textures(textures.take());
-    check_quarters(scene.draw(look.camera()), look, {kRed, kRed, kRed, kRed});
+    check_quarters(scene.draw(look.camera()), look, {kRedPixel, kRedPixel, kRedPixel, kRedPixel});
   }
   SECTION("transparent, before a blue cube") {
     MaterialInfo glass = material_row("glass");
@@ -349,7 +350,7 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
     textures.add(holed, 1, kAllTextureSides);
     TexturedScene scene(*context, materials, mesh_of(materials, {{{8, 8, 8}, 1}, {{8, 8, 9}, 2}}));
     scene.renderer().set_textures(textures.take());
-    check_quarters(scene.draw(look.camera()), look, {kRed, kBlue, kRed, kBlue});
+    check_quarters(scene.draw(look.camera()), look, {kRedPixel, kBluePixel, kRedPixel, kBluePixel});
   }
 }
 
@@ -374,14 +375,14 @@ TEST_CASE("far away a side has the mean of its picture, and a plant is still see
                          [](double right, double down) {
                            const int square =
                                static_cast<int>(16 * right) + static_cast<int>(16 * down);
-                           return square % 2 == 0 ? kRed : kGreen;
+                           return square % 2 == 0 ? kRedPixel : kGreenPixel;
                          }),
                  1, kAllTextureSides);
     TexturedScene scene(*context, materials, mesh_of(materials, voxels));
     scene.renderer().set_textures(textures.take());
     const Image near = scene.draw(before(Direction::neg_z, 1).camera());
-    CHECK(count_of(near, kRed) > kViewEdge * kViewEdge / 3);
-    CHECK(count_of(near, kGreen) > kViewEdge * kViewEdge / 3);
+    CHECK(count_of(near, kRedPixel) > kViewEdge * kViewEdge / 3);
+    CHECK(count_of(near, kGreenPixel) > kViewEdge * kViewEdge / 3);
     // A square is a quarter of a pixel.
     const Look far = before(Direction::neg_z, 50);
     const Image image = scene.draw(far.camera());
@@ -405,14 +406,15 @@ TEST_CASE("far away a side has the mean of its picture, and a plant is still see
     ChunkMesh mesh;
     mesh.shapes.opaque = quads_of_shape(materials, 1);
     Textures textures;
-    textures.add(
-        painted(16, [](double right,
-                       double) { return static_cast<int>(16 * right) % 4 == 1 ? kRed : kHole; }),
-        1, kAllTextureSides);
+    textures.add(painted(16,
+                         [](double right, double) {
+                           return static_cast<int>(16 * right) % 4 == 1 ? kRedPixel : kHole;
+                         }),
+                 1, kAllTextureSides);
     TexturedScene scene(*context, materials, mesh);
     scene.renderer().set_textures(textures.take());
     const Look far{M_PI / 4, 0, 40};
-    CHECK(count_of(scene.draw(far.camera()), kRed) >= 4);
+    CHECK(count_of(scene.draw(far.camera()), kRedPixel) >= 4);
   }
 }
 
@@ -435,7 +437,7 @@ TEST_CASE("without textures a frame is the same to the bit, and so are materials
   camera.x += 0.3;
   const Image before_all = scene.draw(camera);
   Textures textures;
-  textures.add(quarters(16, kQuarters, kCyan), 4, kAllTextureSides);
+  textures.add(quarters(16, kQuarters, kCyanPixel), 4, kAllTextureSides);
   scene.renderer().set_textures(textures.take());
   const Image with_others = scene.draw(camera);
   scene.renderer().set_textures(nullptr);
@@ -451,8 +453,8 @@ TEST_CASE("pictures that arrive later are drawn, and those that leave are not",
   const MaterialTable materials = materials_of({material_row("a"), material_row("b")});
   TexturedScene scene(*context, materials, mesh_of(materials, {{{8, 8, 8}, 1}, {{9, 8, 8}, 2}}));
   Textures both;
-  both.add(plain(16, kRed), 1, kAllTextureSides);
-  both.add(plain(16, kGreen), 2, kAllTextureSides);
+  both.add(plain(16, kRedPixel), 1, kAllTextureSides);
+  both.add(plain(16, kGreenPixel), 2, kAllTextureSides);
   const DrawnTexturesPtr all = both.take();
   const Look look = before(Direction::pos_z);
   const auto shown = [&](const DrawnTexturesPtr& textures) {
@@ -462,13 +464,14 @@ TEST_CASE("pictures that arrive later are drawn, and those that leave are not",
   };
   auto first = std::make_shared<DrawnTextures>(*all);
   first->pictures[1] = nullptr;
-  CHECK(shown(first) == std::array{kRed, kHole});
-  CHECK(shown(all) == std::array{kRed, kGreen});
+  CHECK(shown(first) == std::array{kRedPixel, kHole});
+  CHECK(shown(all) == std::array{kRedPixel, kGreenPixel});
   auto second = std::make_shared<DrawnTextures>(*all);
   second->pictures[0] = nullptr;
-  CHECK(shown(second) == std::array{kHole, kGreen});
-  second->pictures[0] = std::make_shared<const TextureLevels>(texture_levels(plain(64, kBlue)));
-  CHECK(shown(second) == std::array{kBlue, kGreen});  // the array has larger layers now
+  CHECK(shown(second) == std::array{kHole, kGreenPixel});
+  second->pictures[0] =
+      std::make_shared<const TextureLevels>(texture_levels(plain(64, kBluePixel)));
+  CHECK(shown(second) == std::array{kBluePixel, kGreenPixel});  // the array has larger layers now
   CHECK(shown(nullptr) == std::array{kHole, kHole});
 }
 
@@ -482,15 +485,15 @@ TEST_CASE("pictures beyond the layers of the driver are counted, and their sides
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
   if (layers >= static_cast<GLint>(kTextureCountMax)) return;
   Textures textures;
-  textures.add(plain(16, kRed), 1, kAllTextureSides);
+  textures.add(plain(16, kRedPixel), 1, kAllTextureSides);
   for (GLint i = 0; i < layers; ++i)
-    textures.add(plain(16, kBlue), static_cast<Material>(3 + i), kAllTextureSides);
-  textures.add(plain(16, kGreen), 2, kAllTextureSides);
+    textures.add(plain(16, kBluePixel), static_cast<Material>(3 + i), kAllTextureSides);
+  textures.add(plain(16, kGreenPixel), 2, kAllTextureSides);
   scene.renderer().set_textures(textures.take());
   const Look look = before(Direction::pos_z);
   const Image image = scene.draw(look.camera());
   CHECK(scene.stats().textures_left_out == 2);
-  CHECK(named(pixel_at(image, look, 0, 0)) == kRed);
+  CHECK(named(pixel_at(image, look, 0, 0)) == kRedPixel);
   CHECK(named(pixel_at(image, look, 0.9, 0)) == kHole);
 }
 

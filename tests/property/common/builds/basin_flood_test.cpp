@@ -131,7 +131,7 @@ TEST_CASE("a basin in runs has the voxels of a flood voxel by voxel", "[builds][
     for (const VoxelPos at : expected.voxels) {
       if (world.at(at) == kEmpty) cells.insert(at);
     }
-    const std::uint64_t count = expected.voxels.size();
+    const auto count = static_cast<std::uint32_t>(expected.voxels.size());
     flood.voxels_max = rng.below(4) == 0 ? rng.below(count + 2) : 1'000'000;
     const auto made = flood_basin(flood, kBasinEdge, [&](ChunkCoord at) {
       const auto found = chunks.find(at);
