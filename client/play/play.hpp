@@ -32,10 +32,10 @@
 #include "client/play/player.hpp"
 #include "client/play/player_motion.hpp"
 #include "client/play/server_notices.hpp"
+#include "client/play/texture_feed.hpp"
 #include "client/play/view_follower.hpp"
 #include "client/play/view_limits.hpp"
 #include "client/play/world_kit.hpp"
-#include "client/play/world_textures.hpp"
 #include "client/report/report.hpp"
 #include "client/session/client_session.hpp"
 #include "client/tools/tool_box.hpp"
@@ -209,7 +209,7 @@ class Play {
   ViewLimits limits_;
   WorldPanels panels_;
   OthersPreviews others_;
-  WorldTextures textures_;
+  TextureFeed textures_;
   FrameScene scene_;
   DisplayPace pace_;
   ServerNotices server_notices_;

@@ -83,7 +83,7 @@ class TextureExchange {
     bool is_from_cache = false;
   };
 
-  bool asks() const { return is_wanted_ && has_textures_; }
+  bool asks() const { return is_wanted_ && has_textures_ && !is_list_new_; }
   void move_to(Slot& slot, State next);
   std::size_t count(State state) const { return counts_[static_cast<std::size_t>(state)]; }
   /// Forgets the pictures in this state, or nullopt: in any, that are not in the list.

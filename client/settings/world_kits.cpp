@@ -67,6 +67,7 @@ std::optional<std::string> load_kit(const std::string& file, const std::string& 
 
 Result<void, std::string> save_kit(const std::string& file, const std::string& world,
                                    const std::string& line) {
+  if (file.empty()) return failure(std::string("no file for the kits of worlds"));
   std::error_code error;
   std::vector<KitRow> rows;
   if (std::filesystem::exists(file, error)) rows = read_kits(file);

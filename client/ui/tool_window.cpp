@@ -171,7 +171,7 @@ void ToolWindow::build_tools(const ToolBox& box, std::vector<ToolCommand>& out) 
     ImGui::TextDisabled("%s", std::string(tool.what()).c_str());
     ImGui::TableNextColumn();
     const auto key = static_cast<Action>(static_cast<std::size_t>(Action::tool_1) + i);
-    ImGui::TextDisabled("%s", keys_.keys_text(key).c_str());
+    if (key <= Action::tool_10) ImGui::TextDisabled("%s", keys_.keys_text(key).c_str());
   }
   ImGui::EndTable();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -95,6 +96,7 @@ class Taken {
     if (!given.uses.empty()) take(given);
   }
   std::size_t pictures() const { return table_.entries().size(); }
+  std::size_t materials() const { return materials_.size(); }
 
  private:
   void take(GivenTexture& given) {
@@ -102,6 +104,7 @@ class Taken {
       fault(added.error().what);
     } else {
       for (const TextureUse& use : given.uses) {
+        materials_.insert(use.material);
         for (unsigned bits = use.sides; bits != 0; bits &= bits - 1) ++out_.sides;
       }
       out_.textures.push_back(std::make_shared<const GivenTexture>(given));
@@ -113,6 +116,7 @@ class Taken {
   }
 
   TextureTable table_;
+  std::set<Material> materials_;  // that get a picture
   TextureImport& out_;
 };
 
@@ -140,7 +144,6 @@ Result<TextureImport, std::string> import_textures(const std::string& place,
       if (out.without++ < kTextureLinesShown) out.without_names.push_back(info.name);
       continue;
     }
-    bool is_new = false;
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
       const auto direction = static_cast<Direction>(side);
       if (pictures[direction].layers.empty()) continue;
@@ -149,15 +152,14 @@ Result<TextureImport, std::string> import_textures(const std::string& place,
         continue;
       }
       wanted.add(id, info, direction, pictures[direction]);
-      is_new = true;
     }
-    if (is_new) ++out.materials;
   }
   Taken taken(present, out);
   for (const WantedPicture& picture : wanted.pictures()) {
     if (should_continue && !should_continue()) return failure(place + ": was cancelled");
     taken.add(picture);
   }
+  out.materials = taken.materials();
   out.pictures = taken.pictures() - present.entries().size();
   return out;
 }

@@ -58,7 +58,9 @@ class PngFile {
 };
 
 inline bool is_red(const std::array<int, 3>& p) { return p[0] > 1.5 * p[1] && p[0] > 1.5 * p[2]; }
-inline bool is_green(const std::array<int, 3>& p) { return p[1] > 1.3 * p[0] && p[1] > 1.3 * p[2]; }
+inline bool is_green(const std::array<int, 3>& p) {
+  return p[1] > 1.15 * p[0] && p[1] > 1.15 * p[2];
+}
 inline bool is_sky(const std::array<int, 3>& p) { return p[2] >= p[0] && p[2] > 120; }
 
 }  // namespace runstone::test

@@ -12,7 +12,7 @@ using namespace runstone;
 
 namespace {
 
-constexpr std::array<int, 2> kToolsSize = {1280, 720};
+constexpr std::array<int, 2> kToolsSize = {1280, 900};
 
 /// A display with its tool window open, and a tool box that obeys it.
 struct ToolWindowBench {
@@ -67,7 +67,7 @@ struct ToolWindowBench {
   /// Clicks from above to below until a command of this type comes. Returns the command and keeps
   /// its place.
   template <class T>
-  std::optional<T> find(double x, double from_y, double to_y = 640) {
+  std::optional<T> find(double x, double from_y, double to_y = 800) {
     for (found_y = from_y; found_y < to_y; found_y += 5) {
       commands.clear();
       click(x, found_y);
@@ -106,14 +106,14 @@ TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click 
     y = found_y + 5;
   }
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == box.tools()[i]->name());
-  CHECK(box.tool().name() == "flood");
+  CHECK(box.tool().name() == "scatter");
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within its range",
                  "[client_ui]") {
   REQUIRE(box.choose("sphere").has_value());
   frames();
-  const auto changed = find<ParameterChange>(x(kSliderMiddle), 250);
+  const auto changed = find<ParameterChange>(x(kSliderMiddle), 318);
   REQUIRE(changed);
   CHECK(changed->name == "radius");
   CHECK(changed->value > 20);
@@ -129,7 +129,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 310));
+  REQUIRE(find<PlacesChange>(x(kRow), 378));
   const double header_y = found_y;
   REQUIRE(box.typed_places());
   CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
@@ -176,7 +176,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 310));
+  REQUIRE(find<PlacesChange>(x(kRow), 378));
   REQUIRE(box.typed_places());
   SECTION("the window is closed") { hud.act(Action::release); }
   SECTION("the mouse is captured") { state.is_captured = true; }
@@ -204,7 +204,7 @@ TEST_CASE_METHOD(ToolWindowBench,
                  "[client_ui]") {
   state.time_of_day = 0.25;
   state.has_own_time = true;
-  for (double y = 300; y < 460 && times.empty(); y += 5) {
+  for (double y = 368; y < 528 && times.empty(); y += 5) {
     click(x(kRow), y);  // a header, perhaps
     click(x(kSliderMiddle), y + 24);
     found_y = y + 24;

@@ -41,6 +41,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureServerList) return "server list";
   if (feature == kFeatureBuilds) return "builds";
   if (feature == kFeatureShapes) return "shapes";
+  if (feature == kFeatureTextures) return "textures";
   if (feature == kFeatureWorldTime) return "world time";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }

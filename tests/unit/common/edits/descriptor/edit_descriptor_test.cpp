@@ -25,6 +25,16 @@ ErrorCode decode_error(const Bytes& bytes) {
   return result.error().code;
 }
 
+/// Returns an edit with the head of a PNG of 32 pixels, for one or two materials.
+EditDescriptor sample_texture_edit(SplitMix64& rng) {
+  const Bytes head = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,  0, 0, 13, 'I', 'H', 'D',
+                      'R',  0,   0,   0,   32,   0,    0,    0,    32, 8, 6, 0,  0,   0};
+  const auto first = static_cast<Material>(1 + rng.below(1000));
+  std::vector<TextureUse> uses = {{first, static_cast<std::uint8_t>(1 + rng.below(63))}};
+  if (rng.below(2) == 0) uses.push_back({static_cast<Material>(first + 1 + rng.below(9)), 63});
+  return texture_edit({head, std::move(uses)});
+}
+
 EditRecord random_record(SplitMix64& rng) {
   EditRecord record;
   const auto any = [&rng](std::uint64_t max) { return (rng.next() >> rng.below(64)) & max; };
@@ -39,6 +49,7 @@ EditRecord random_record(SplitMix64& rng) {
                 : record.cause == Cause::materials ? sample_materials_edit(rng)
                 : record.cause == Cause::library   ? library_edit(RemoveBuild{1 + rng.below(1000)})
                 : record.cause == Cause::clock     ? clock_edit({rng.below(kDayMs), rng.below(100)})
+                : record.cause == Cause::textures  ? sample_texture_edit(rng)
                                                    : random_edit_anywhere(rng);
   return record;
 }

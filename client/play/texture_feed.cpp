@@ -1,11 +1,11 @@
-#include "client/play/world_textures.hpp"
+#include "client/play/texture_feed.hpp"
 
 #include <utility>
 
 namespace runstone {
 
-std::optional<DrawnTexturesPtr> WorldTextures::step(const TextureExchange& textures, bool is_on,
-                                                    TimeUs now_us) {
+std::optional<DrawnTexturesPtr> TextureFeed::step(const TextureExchange& textures, bool is_on,
+                                                  TimeUs now_us) {
   if (!is_on) {
     levels_.clear();
     serial_ = 0;
@@ -43,13 +43,13 @@ std::optional<DrawnTexturesPtr> WorldTextures::step(const TextureExchange& textu
   return drawn;
 }
 
-std::optional<DrawnTexturesPtr> WorldTextures::take_nothing() {
+std::optional<DrawnTexturesPtr> TextureFeed::take_nothing() {
   if (!std::exchange(has_drawn_, false)) return std::nullopt;
   return DrawnTexturesPtr();
 }
 
-std::optional<std::string> WorldTextures::take_notice(const TextureExchange& textures,
-                                                      std::size_t left_out) {
+std::optional<std::string> TextureFeed::take_notice(const TextureExchange& textures,
+                                                    std::size_t left_out) {
   if (std::exchange(left_out_, left_out) < left_out)
     return std::to_string(left_out) +
            " textures of this world are not drawn: the graphics driver has no room for more";

@@ -1,4 +1,4 @@
-// WorldTextures: makes what is drawn of the textures of a session. One thread.
+// TextureFeed: makes what is drawn of the textures of a session. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace runstone {
 
-class WorldTextures {
+class TextureFeed {
  public:
   /// While pictures arrive, they are drawn in batches that are this far apart.
   static constexpr TimeUs kBatchUs = 250'000;

@@ -1,4 +1,4 @@
-#include "client/play/world_textures.hpp"
+#include "client/play/texture_feed.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>
@@ -35,7 +35,7 @@ struct TextureWorld {
   }
 
   TextureExchange exchange;
-  WorldTextures textures;
+  TextureFeed textures;
   TimeUs now = 1'000'000;
   Material material = kEmpty;
 };
@@ -59,7 +59,7 @@ TEST_CASE("pictures are drawn in batches as they arrive, and all of them in the 
   CHECK_FALSE((*first)->pictures[1]);
   world.answer(pngs[1]);
   CHECK_FALSE(world.step());
-  world.now += WorldTextures::kBatchUs;
+  world.now += TextureFeed::kBatchUs;
   CHECK(world.step());
   world.answer(pngs[2]);
   const auto last = world.step();  // nothing is under way, so it does not wait
@@ -104,7 +104,7 @@ TEST_CASE("one step prepares a bounded number of pixels", "[play][textures]") {
   auto drawn = world.step();
   for (; !drawn && steps < 100; ++steps) drawn = world.step();
   REQUIRE(drawn);
-  CHECK(steps == 40 * 64 * 64 / WorldTextures::kPixels + 1);
+  CHECK(steps == 40 * 64 * 64 / TextureFeed::kPixels + 1);
   for (const TextureLevelsPtr& picture : (*drawn)->pictures) CHECK(picture);
 }
 
