@@ -113,14 +113,14 @@ TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within it
                  "[client_ui]") {
   REQUIRE(box.choose("sphere").has_value());
   frames();
-  const auto changed = find<ParameterChange>(x(kSliderMiddle), 318);
+  const auto changed = find<ParameterChange>(x(kSliderMiddle), 335);
   REQUIRE(changed);
   CHECK(changed->name == "radius");
   CHECK(changed->value > 20);
   CHECK(changed->value < 64);
   click(x(kSliderLow), found_y);
   CHECK(box.tool().parameters()[0].value == box.tool().parameters()[0].low);
-  const auto mask = find<ParameterChange>(x(kSecondChoice), found_y + 15);
+  const auto mask = find<ParameterChange>(x(kSecondChoice), found_y + 22);
   REQUIRE(mask);
   CHECK(mask->name == "mask");
 }
@@ -129,7 +129,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 378));
+  REQUIRE(find<PlacesChange>(x(kRow), 390));
   const double header_y = found_y;
   REQUIRE(box.typed_places());
   CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
@@ -176,7 +176,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 378));
+  REQUIRE(find<PlacesChange>(x(kRow), 390));
   REQUIRE(box.typed_places());
   SECTION("the window is closed") { hud.act(Action::release); }
   SECTION("the mouse is captured") { state.is_captured = true; }
@@ -204,17 +204,20 @@ TEST_CASE_METHOD(ToolWindowBench,
                  "[client_ui]") {
   state.time_of_day = 0.25;
   state.has_own_time = true;
-  for (double y = 368; y < 528 && times.empty(); y += 5) {
-    click(x(kRow), y);  // a header, perhaps
-    click(x(kSliderMiddle), y + 24);
+  for (double y = 380; y < 540 && times.empty(); y += 5) {
     found_y = y + 24;
+    click(x(kRow), y);  // a header, perhaps
+    click(x(kSliderMiddle), found_y);
+    if (!times.empty()) break;
+    click(x(kSliderMiddle), found_y);  // closes what was opened
+    click(x(kRow), y);
   }
   REQUIRE_FALSE(times.empty());
   REQUIRE(times.back().has_value());
   CHECK(*times.back() > 0.2);
   CHECK(*times.back() < 0.8);
   times.clear();
-  for (double y = found_y + 15; y < found_y + 60 && times.empty(); y += 5) click(x(kRow), y);
+  for (double y = found_y + 22; y < found_y + 60 && times.empty(); y += 5) click(x(kRow), y);
   REQUIRE_FALSE(times.empty());
   CHECK_FALSE(times.back().has_value());
 }
