@@ -53,8 +53,11 @@ std::vector<LampGlow> lamp_glows(const RunChunk& codes) {
     out.push_back({cell.places / count, colour,
                    1.2F + 1.4F * std::sqrt(brightest(colour)) + 0.35F * std::cbrt(count)});
   }
-  std::ranges::stable_sort(out, std::greater{},
-                           [](const LampGlow& glow) { return brightest(glow.colour); });
+  const auto order = [](const LampGlow& glow) {
+    return std::tuple(-brightest(glow.colour), glow.at.x, glow.at.y, glow.at.z);
+  };
+  std::sort(out.begin(), out.end(),
+            [&](const LampGlow& a, const LampGlow& b) { return order(a) < order(b); });
   if (out.size() > kGlowsOfChunkMax) out.resize(kGlowsOfChunkMax);
   return out;
 }

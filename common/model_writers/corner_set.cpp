@@ -57,7 +57,6 @@ void CornerSet::distances_between(const Corner& from, const Corner& to,
   }
   const std::vector<std::uint64_t>& line = lines_[axis];
   if (!line.empty()) {
-    const std::size_t lattice_count = out.size();
     at = from;
     at[axis] = high;
     const std::uint64_t end = key_of(at, axis);
@@ -65,8 +64,7 @@ void CornerSet::distances_between(const Corner& from, const Corner& to,
     for (auto key = std::upper_bound(line.begin(), line.end(), key_of(at, axis));
          key != line.end() && *key < end; ++key)
       add(part(*key, 0));
-    std::inplace_merge(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(lattice_count),
-                       out.end());
+    std::sort(out.begin(), out.end());
   }
   if (to[axis] < from[axis]) {
     std::reverse(out.begin(), out.end());

@@ -146,7 +146,7 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
     if (!format) return failed(format.error());
     if (*format >= needed) continue;
     const auto raised =
-        store->transact([&, needed = needed] { return store->raise_format(needed); });
+        store->transact([&, format_needed = needed] { return store->raise_format(format_needed); });
     if (!raised) return failed(raised.error());
   }
   // A world that lacks edits stays as it is, until its losses are accepted. A reader does not see

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "common/core/hash.hpp"
 
@@ -409,8 +410,13 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
     }
   }
   wood_.insert(wood_.end(), trunks.begin(), trunks.end());
-  std::stable_sort(wood_.begin(), wood_.end(),
-                   [](const Wood& a, const Wood& b) { return a.column < b.column; });
+  // By column, and in this order in a column: a counting sort.
+  std::vector<std::size_t> place(std::size_t{1} * w * d + 1);
+  for (const Wood& wood : wood_) ++place[wood.column + 1];
+  for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
+  std::vector<Wood> sorted(wood_.size());
+  for (const Wood& wood : wood_) sorted[place[wood.column]++] = wood;
+  wood_ = std::move(sorted);
   for (const Wood& wood : wood_) high_ = std::max(high_, wood.to);
 }
 

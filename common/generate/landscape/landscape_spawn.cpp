@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -86,8 +87,9 @@ std::optional<VoxelPos> LandscapeGenerator::spawn() const {
       places.push_back({x, z, view_of(form_, x, z) - away / 16});
     }
   }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const Place& a, const Place& b) { return a.worth > b.worth; });
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tuple(b.worth, a.z, a.x) < std::tuple(a.worth, b.z, b.x);
+  });
   for (const Place& place : places) {
     constexpr std::int32_t kClearingSide = 2 * kClearing + 1;
     const LandColumns land(form_, materials_, choices_, seed_, place.x - kClearing,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/mesh/quad.hpp"
@@ -142,8 +143,15 @@ void add_liquid_steps(const RunChunk& chunk, const MeshNeighbours& neighbours,
     }
   }
   if (out.size() == before) return;
-  std::stable_sort(out.begin(), out.end(),
-                   [](Quad a, Quad b) { return unpack(a).direction < unpack(b).direction; });
+  // By direction, and in this order in a direction.
+  std::vector<Quad> sorted;
+  sorted.reserve(out.size());
+  for (int d = 0; d < kDirectionCount; ++d) {
+    for (const Quad quad : out) {
+      if (unpack(quad).direction == static_cast<Direction>(d)) sorted.push_back(quad);
+    }
+  }
+  out = std::move(sorted);
 }
 
 }  // namespace runstone

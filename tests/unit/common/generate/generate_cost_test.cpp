@@ -1,5 +1,6 @@
 // The hidden case prints what chunks and coarse tiles of generated worlds cost. docs/worlds.md has the
 // figures.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <string>
@@ -62,7 +63,7 @@ void print_tiles(const std::string& name, const Generator& generator) {
 }  // namespace
 
 TEST_CASE("the cost of chunks of generated worlds", "[.cost]") {
-  for (const std::uint64_t seed : {1, 2, 3, 7}) {
+  for (const std::uint64_t seed : std::array<std::uint64_t, 4>{1, 2, 3, 7}) {
     for (const char* name : {"terrain", "landscape"}) {
       const auto made = make_generator({name, 1, seed, ""}, landscape_material_table());
       REQUIRE(made.has_value());
