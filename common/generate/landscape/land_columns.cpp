@@ -411,7 +411,7 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
   }
   wood_.insert(wood_.end(), trunks.begin(), trunks.end());
   // By column, and in this order in a column: a counting sort.
-  std::vector<std::size_t> place(std::size_t{1} * w * d + 1);
+  std::vector<std::size_t> place(columns_.size() + 1);
   for (const Wood& wood : wood_) ++place[wood.column + 1];
   for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
   std::vector<Wood> sorted(wood_.size());

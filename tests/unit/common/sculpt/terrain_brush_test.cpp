@@ -224,20 +224,20 @@ TEST_CASE("smooth moves the surface to the mean of the heights around", "[sculpt
 }
 
 TEST_CASE("erosion lowers steep steps, and keeps the sum of the heights", "[sculpt]") {
-  constexpr std::int32_t kSide = 24;
-  std::vector<std::int32_t> heights(kSide * kSide);
-  for (std::int32_t i = 0; i < kSide * kSide; ++i)
-    heights[std::size_t(i)] = i % kSide < 12 ? 20 : 0;
+  constexpr std::int32_t kFieldSide = 24;
+  std::vector<std::int32_t> heights(kFieldSide * kFieldSide);
+  for (std::int32_t i = 0; i < kFieldSide * kFieldSide; ++i)
+    heights[std::size_t(i)] = i % kFieldSide < 12 ? 20 : 0;
   heights[0] = kNoSurface;
   std::vector<std::int32_t> weights(heights.size(), kFullWeight);
-  for (std::size_t i = 0; i < kSide; ++i) weights[i * kSide + 23] = 0;
-  const HeightField before = height_field(heights, kSide);
+  for (std::size_t i = 0; i < kFieldSide; ++i) weights[i * kFieldSide + 23] = 0;
+  const HeightField before = height_field(heights, kFieldSide);
   const HeightField after = eroded(before, weights, 64);
   CHECK(std::accumulate(after.heights.begin(), after.heights.end(), std::int64_t{0}) ==
         std::accumulate(before.heights.begin(), before.heights.end(), std::int64_t{0}));
-  CHECK(after.rounded(5 * kSide + 11) < 15);
-  CHECK(after.rounded(5 * kSide + 12) > 5);
-  for (std::size_t i = 0; i < kSide; ++i) CHECK(after.heights[i * kSide + 23] == 0);
+  CHECK(after.rounded(5 * kFieldSide + 11) < 15);
+  CHECK(after.rounded(5 * kFieldSide + 12) > 5);
+  for (std::size_t i = 0; i < kFieldSide; ++i) CHECK(after.heights[i * kFieldSide + 23] == 0);
   CHECK(after.heights[0] == 0);
   CHECK(eroded(before, weights, 0).heights == before.heights);
 }
