@@ -276,7 +276,7 @@ TEST_CASE("quantised places are voxels, and sixteenths of them only where shapes
         Approx(area_of(model_of(".glb", build))));
 }
 
-TEST_CASE("too many faces of shapes in one region are refused", "[model_writers][shapes]") {
+TEST_CASE("too many faces of shapes in one region are refused", "[.long][model_writers][shapes]") {
   BuildMaterial grains = file_material("grains", "", {9, 9, 9, 255});
   for (std::uint8_t i = 0; i < 32; ++i) {
     const auto x = static_cast<std::uint8_t>(4 * (i % 4)),
