@@ -12,20 +12,13 @@
 
 #include "common/core/assert.hpp"
 #include "common/edits/clipboard/orientation.hpp"
+#include "common/formats/facing_words.hpp"
 #include "common/formats/material_family.hpp"
 #include "common/formats/minecraft_states.hpp"
 #include "common/formats/shape_names.hpp"
 
 namespace runstone {
 namespace {
-
-/// The words of the directions, in the order of Direction.
-constexpr std::array<std::string_view, kDirectionCount> kSideWords = {"west", "east",  "down",
-                                                                      "up",   "north", "south"};
-
-std::string word_of_side(Direction d) {
-  return std::string(kSideWords[static_cast<std::size_t>(d)]);
-}
 
 Direction horizontal_look(const LookDirection& look) {
   if (std::abs(look.x) > std::abs(look.z)) return look.x < 0 ? Direction::neg_x : Direction::pos_x;
@@ -36,20 +29,6 @@ Direction nearest_look(const LookDirection& look) {
   const double level = std::max(std::abs(look.x), std::abs(look.z));
   if (std::abs(look.y) <= level) return horizontal_look(look);
   return look.y < 0 ? Direction::neg_y : Direction::pos_y;
-}
-
-/// North becomes east.
-Direction turned_right(Direction horizontal) {
-  switch (horizontal) {
-    case Direction::neg_z:
-      return Direction::pos_x;
-    case Direction::pos_x:
-      return Direction::pos_z;
-    case Direction::pos_z:
-      return Direction::neg_x;
-    default:
-      return Direction::neg_z;
-  }
 }
 
 /// Returns the rotation of what stands and faces the player: sixteenths of a turn from south over
@@ -120,10 +99,10 @@ class ClickStates {
     if (states.has("shape") && path.ends_with("rail"))
       states.states["shape"] = axis_of(ahead()) == Axis::x ? "east_west" : "north_south";
     if (rule_names("vine glow_lichen resin_clump sculk_vein", path)) {
-      for (const std::string_view side : kSideWords) {
+      for (const std::string_view side : kFacingWords) {
         const auto state = states.states.find(side);
         if (state != states.states.end())
-          state->second = side == word_of_side(opposite(click_.face)) ? "true" : "false";
+          state->second = side == facing_word(opposite(click_.face)) ? "true" : "false";
       }
     }
   }
@@ -173,13 +152,13 @@ class ClickStates {
       facing = click_.face == Direction::neg_y ? Direction::neg_y : opposite(click_.face);
       if (facing == Direction::pos_y) facing = Direction::neg_y;
     } else if (rule_names("anvil chipped_anvil damaged_anvil", path)) {
-      facing = turned_right(ahead());
+      facing = right_of(ahead());
     } else if (rule_names("barrel dispenser dropper piston sticky_piston *command_block", path)) {
       facing = opposite(nearest_look(click_.look));
     }
     // Words of other games than this one are left alone.
-    if (std::find(kSideWords.begin(), kSideWords.end(), before) != kSideWords.end())
-      states.states["facing"] = word_of_side(facing);
+    if (std::find(kFacingWords.begin(), kFacingWords.end(), before) != kFacingWords.end())
+      states.states["facing"] = facing_word(facing);
   }
 
   const PlacedClick& click_;

@@ -53,24 +53,31 @@ ToolEdits action_of(const GroundColumns& columns, const ColumnChanges& changes, 
                         input.replica.edit_limits());
 }
 
-class TerrainTool final : public Tool {
+/// A tool that works on the ground along a stroke, which is drawn while the button is held.
+class GroundTool : public Tool {
+ public:
+  using Tool::Tool;
+  bool is_drawn() const final { return true; }
+  bool chooses_solid() const final { return true; }
+  std::string_view place_name(std::size_t) const final { return "place"; }
+};
+
+class TerrainTool final : public GroundTool {
  public:
   TerrainTool()
-      : Tool("terrain", "shapes the ground, as long as the button is held",
-             {{"radius", "voxels", 1, kBrushRadiusMax, 8, {}},
-              {"mode",
-               "",
-               0,
-               kBrushModeCount - 1,
-               0,
-               {"raise", "flatten", "smooth", "erode", "noise", "naturalise", "overlay"}},
-              {"strength", "", 1, kBrushStrengthMax, 4, {}},
-              {"falloff", "", 0, kBrushFalloffCount - 1, 0, {"smooth", "linear", "round", "none"}},
-              {"seed", "", 0, 9999, 1, {}},
-              mask_parameter()}) {}
-  bool is_drawn() const override { return true; }
-  bool chooses_solid() const override { return true; }
-  std::string_view place_name(std::size_t) const override { return "place"; }
+      : GroundTool(
+            "terrain", "shapes the ground, as long as the button is held",
+            {{"radius", "voxels", 1, kBrushRadiusMax, 8, {}},
+             {"mode",
+              "",
+              0,
+              kBrushModeCount - 1,
+              0,
+              {"raise", "flatten", "smooth", "erode", "noise", "naturalise", "overlay"}},
+             {"strength", "", 1, kBrushStrengthMax, 4, {}},
+             {"falloff", "", 0, kBrushFalloffCount - 1, 0, {"smooth", "linear", "round", "none"}},
+             {"seed", "", 0, 9999, 1, {}},
+             mask_parameter()}) {}
   ToolEdits plan(const ToolInput& input) const override;
 };
 
@@ -94,16 +101,13 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   return action_of(*columns, brush_changes(*columns, materials, brush, places), mask(), input);
 }
 
-class PathTool final : public Tool {
+class PathTool final : public GroundTool {
  public:
   PathTool()
-      : Tool("path", "a way along a curve, as long as the button is held",
-             {{"width", "voxels", 1, kPathWidthMax, 3, {}},
-              {"height", "", 0, 1, 0, {"ground", "even"}},
-              mask_parameter()}) {}
-  bool is_drawn() const override { return true; }
-  bool chooses_solid() const override { return true; }
-  std::string_view place_name(std::size_t) const override { return "place"; }
+      : GroundTool("path", "a way along a curve, as long as the button is held",
+                   {{"width", "voxels", 1, kPathWidthMax, 3, {}},
+                    {"height", "", 0, 1, 0, {"ground", "even"}},
+                    mask_parameter()}) {}
   ToolEdits plan(const ToolInput& input) const override;
 };
 
@@ -122,28 +126,27 @@ ToolEdits PathTool::plan(const ToolInput& input) const {
   return action_of(*columns, path_changes(*columns, materials, brush, curve), mask(), input);
 }
 
-class ScatterTool final : public Tool {
+class ScatterTool final : public GroundTool {
  public:
   ScatterTool()
-      : Tool("scatter", "puts copies of the clipboard on the ground",
-             {{"radius", "voxels", 1, kBrushRadiusMax, 16, {}},
-              {"spacing", "voxels", 1, 128, 6, {}},
-              {"turn", "", 0, 1, 1, {"none", "random"}},
-              {"seed", "", 0, 9999, 1, {}},
-              mask_parameter()}) {}
-  bool is_drawn() const override { return true; }
-  bool chooses_solid() const override { return true; }
-  std::string_view place_name(std::size_t) const override { return "place"; }
+      : GroundTool("scatter", "puts copies of the clipboard on the ground",
+                   {{"radius", "voxels", 1, kBrushRadiusMax, 16, {}},
+                    {"spacing", "voxels", 1, 128, 6, {}},
+                    {"turn", "", 0, 1, 1, {"none", "random"}},
+                    {"seed", "", 0, 9999, 1, {}},
+                    mask_parameter()}) {}
   ToolEdits plan(const ToolInput& input) const override;
 
  private:
   using Turns = std::array<BuildPtr, 4>;
-  static Result<Turns> turns_of(const ToolInput& input);
+  /// Returns the clipboard by quarter turns. Without `is_turned` all are the clipboard itself.
+  static Result<Turns> turns_of(const ToolInput& input, bool is_turned);
 };
 
-Result<ScatterTool::Turns> ScatterTool::turns_of(const ToolInput& input) {
+Result<ScatterTool::Turns> ScatterTool::turns_of(const ToolInput& input, bool is_turned) {
   Turns out;
-  for (int quarters = 0; quarters < 4; ++quarters) {
+  out.fill(input.clipboard.build);
+  for (int quarters = 1; is_turned && quarters < 4; ++quarters) {
     const Orientation orientation = Orientation{}.rotated_about_y(quarters);
     auto made = turned(*input.clipboard.build, orientation);
     if (!made) return failure(made.error());
@@ -159,6 +162,11 @@ Result<ScatterTool::Turns> ScatterTool::turns_of(const ToolInput& input) {
 ToolEdits ScatterTool::plan(const ToolInput& input) const {
   if (!input.clipboard.build) return failure("copy what to scatter first");
   if (input.button == ToolButton::clear) return failure("scatter with the right button");
+  const VoxelPos whole = input.clipboard.build->sides();
+  constexpr auto kLongest = static_cast<std::int32_t>(kSideMax);
+  if (std::max({whole.x, whole.y, whole.z}) > kLongest)
+    return failure("only a clipboard of up to " + std::to_string(kLongest) +
+                   " voxels a side can be scattered");
   Scattering scattering;
   scattering.radius = value("radius");
   scattering.spacing = value("spacing");
@@ -172,11 +180,11 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
   if (spots.size() > kScatteredMax)
     return failure("more than " + std::to_string(kScatteredMax) +
                    " copies: choose a wider spacing or a smaller radius");
-  const auto turns = turns_of(input);
+  const auto turns = turns_of(input, value("turn") == 1);
   if (!turns) return failure("cannot turn the clipboard: " + words_of(turns.error()));
   ToolAction out;
   for (const ScatteredSpot& spot : spots) {
-    const BuildPtr& build = (*turns)[value("turn") == 1 ? spot.quarters : 0U];
+    const BuildPtr& build = (*turns)[spot.quarters];
     const VoxelPos sides = build->sides();
     const VoxelPos at{spot.ground.x - sides.x / 2, spot.ground.y + 1, spot.ground.z - sides.z / 2};
     if (!is_in_world(at, sides)) continue;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/core/material_row.hpp"
+#include "common/formats/facing_words.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/minecraft_shapes.hpp"
 #include "common/formats/minecraft_states.hpp"
@@ -15,18 +16,7 @@
 namespace runstone {
 namespace {
 
-/// The words of the directions, in the order of Direction.
-constexpr std::array<std::string_view, kDirectionCount> kDirectionWords = {
-    "west", "east", "down", "up", "north", "south"};
 constexpr std::array<std::string_view, 3> kAxisWords = {"x", "y", "z"};
-
-std::optional<Direction> direction_of(std::string_view word) {
-  const auto found = std::find(kDirectionWords.begin(), kDirectionWords.end(), word);
-  if (found == kDirectionWords.end()) return std::nullopt;
-  return static_cast<Direction>(found - kDirectionWords.begin());
-}
-
-std::string_view word_of(Direction d) { return kDirectionWords[static_cast<std::size_t>(d)]; }
 
 /// States that are changed: the keys point into names and rules, and values are kept.
 using TurnedStates = std::vector<std::pair<std::string_view, std::string>>;
@@ -73,8 +63,8 @@ class NameTurn {
       }
     };
     if (key == "facing") {
-      const auto d = direction_of(value);
-      if (d) value = word_of(image(*d));
+      const auto d = direction_of_facing(value);
+      if (d) value = facing_word(image(*d));
       return d.has_value();
     }
     if (key == "axis") {
@@ -125,8 +115,8 @@ class NameTurn {
   bool turn_pair(std::string& value, bool is_plan) const {
     const std::size_t middle = value.find('_');
     if (middle == std::string::npos) return false;
-    const auto first = direction_of(std::string_view(value).substr(0, middle));
-    const auto second = direction_of(std::string_view(value).substr(middle + 1));
+    const auto first = direction_of_facing(std::string_view(value).substr(0, middle));
+    const auto second = direction_of_facing(std::string_view(value).substr(middle + 1));
     if (!first || !second) return false;
     Direction a = image(*first), b = image(*second);
     if (is_plan && axis_of(a) != axis_of(b) && axis_of(a) != Axis::z) std::swap(a, b);
@@ -134,7 +124,7 @@ class NameTurn {
       a = axis_of(a) == Axis::z ? Direction::neg_z : Direction::pos_x;
       b = opposite(a);
     }
-    value = std::string(word_of(a)) + '_' + std::string(word_of(b));
+    value = std::string(facing_word(a)) + '_' + std::string(facing_word(b));
     return true;
   }
 
@@ -142,8 +132,8 @@ class NameTurn {
     if (!is_upright()) return false;
     constexpr std::string_view kRising = "ascending_";
     if (!value.starts_with(kRising)) return turn_pair(value, true);
-    const auto d = direction_of(std::string_view(value).substr(kRising.size()));
-    if (d) value = std::string(kRising) + std::string(word_of(image(*d)));
+    const auto d = direction_of_facing(std::string_view(value).substr(kRising.size()));
+    if (d) value = std::string(kRising) + std::string(facing_word(image(*d)));
     return d.has_value();
   }
 
@@ -154,7 +144,7 @@ class NameTurn {
     };
     const auto is_side = [&](std::string_view key) {
       // The state "up" of a wall is its post.
-      return !(is_wall && key == "up") && direction_of(key).has_value();
+      return !(is_wall && key == "up") && direction_of_facing(key).has_value();
     };
     const TurnedStates before = states;
     for (auto& [key, value] : states) {
@@ -163,7 +153,7 @@ class NameTurn {
     }
     for (const auto& [key, value] : before) {
       if (!is_side(key)) continue;
-      const auto place = word_of(image(*direction_of(key)));
+      const auto place = facing_word(image(*direction_of_facing(key)));
       const auto at = find(states, place);
       if (at != states.end() && is_side(place)) {
         states[static_cast<std::size_t>(at - states.begin())].second = value;

@@ -8,32 +8,10 @@
 #include "common/builds/paste_source.hpp"
 #include "common/core/assert.hpp"
 #include "common/runs/run_builder.hpp"
+#include "common/sculpt/column_writer.hpp"
 
 namespace runstone {
 namespace {
-
-/// Collects the changes of one column, from below to above.
-class ColumnWriter {
- public:
-  ColumnWriter(const GroundColumns& columns, std::size_t column, ColumnChanges& out)
-      : runs_(columns.column(column)), column_(column), first_(out.size()), out_(out) {}
-
-  Material old(std::int32_t y) const { return material_in_column(runs_, y); }
-  void set(std::int32_t y, Material material) {
-    if (old(y) == material) return;
-    if (out_.size() > first_ && out_.back().high == y && out_.back().material == material) {
-      ++out_.back().high;
-    } else {
-      out_.push_back({column_, y, y + 1, material});
-    }
-  }
-
- private:
-  const std::span<const ColumnRun> runs_;
-  const std::size_t column_;
-  const std::size_t first_;
-  ColumnChanges& out_;
-};
 
 /// Returns how many voxels of ground lie without a gap from `surface` down to `bottom`, at most
 /// `most`.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/core/assert.hpp"
+#include "common/sculpt/column_writer.hpp"
 
 namespace runstone {
 namespace {
@@ -82,26 +83,16 @@ void add_even(const GroundColumns& columns, std::size_t column, std::int32_t sur
               ColumnChanges& out) {
   const VoxelBox& box = columns.box();
   if (way <= box.min.y || way + kPathHeadroom >= box.max.y) return;
-  const auto runs = columns.column(column);
-  const auto old = [&](std::int32_t y) { return material_in_column(runs, y); };
-  const auto set = [&](std::int32_t y, Material to) {
-    if (old(y) == to) return;
-    if (!out.empty() && out.back().column == column && out.back().high == y &&
-        out.back().material == to) {
-      ++out.back().high;
-    } else {
-      out.push_back({column, y, y + 1, to});
-    }
-  };
+  ColumnWriter writer(columns, column, out);
   if (surface < way && way - surface <= kPathFillMax) {
-    const Material fill = old(surface);
+    const Material fill = writer.old(surface);
     for (std::int32_t y = surface + 1; y < way; ++y) {
-      if (old(y) == kEmpty || materials.is_liquid(old(y))) set(y, fill);
+      if (writer.old(y) == kEmpty || materials.is_liquid(writer.old(y))) writer.set(y, fill);
     }
   }
-  set(way, material);
+  writer.set(way, material);
   for (std::int32_t y = way + 1; y <= way + kPathHeadroom; ++y) {
-    if (materials.is_ground(old(y))) set(y, kEmpty);
+    if (materials.is_ground(writer.old(y))) writer.set(y, kEmpty);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "common/formats/facing_words.hpp"
 #include "common/os/private_file.hpp"
 #include "common/shapes/shape_states.hpp"
 #include "server/textures/lua_tokens.hpp"

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "common/formats/facing_words.hpp"
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/os/private_file.hpp"
 #include "common/shapes/shape_states.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/formats/facing_words.hpp"
 #include "common/shapes/shape_states.hpp"
 
 namespace runstone {

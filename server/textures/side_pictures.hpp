@@ -3,7 +3,6 @@
 // luanti_pictures.hpp, minecraft_pictures.hpp).
 #pragma once
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +40,5 @@ class PictureSource {
   /// without a picture is empty.
   virtual SidePictures pictures_of(const MaterialInfo& material) = 0;
 };
-
-/// Returns the direction of facing=north, east, south, west, up or down: -z, +x, +z, -x, +y, -y.
-std::optional<Direction> direction_of_facing(std::string_view facing);
-
-/// Returns the direction that lies to the right of somebody who looks along a horizontal direction:
-/// east of north. Others stay.
-Direction right_of(Direction d);
 
 }  // namespace runstone

@@ -15,13 +15,14 @@ struct KnownFile {
   const char* type;
 };
 constexpr std::string_view kPage = "client.html";
-constexpr std::array<KnownFile, 12> kFiles = {{
+constexpr std::array<KnownFile, 13> kFiles = {{
     {kPage, "text/html; charset=utf-8"},
     {"client.css", "text/css; charset=utf-8"},
     {"client.js", "text/javascript; charset=utf-8"},
     {"program.js", "text/javascript; charset=utf-8"},
     {"typing.js", "text/javascript; charset=utf-8"},
     {"keys.js", "text/javascript; charset=utf-8"},
+    {"database.js", "text/javascript; charset=utf-8"},
     {"chunks.js", "text/javascript; charset=utf-8"},
     {"textures.js", "text/javascript; charset=utf-8"},
     {"ticker.js", "text/javascript; charset=utf-8"},

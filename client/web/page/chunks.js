@@ -30,23 +30,11 @@ const Chunks = (() => {
   let touched = new Set(); // names of rows that were used, which `used` does not show yet
   let last = Promise.resolve(); // the newest operation
 
-  function answered(request) {
-    return new Promise((resolve, reject) => {
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-    });
-  }
-  function completed(transaction) {
-    return new Promise((resolve, reject) => {
-      transaction.oncomplete = () => resolve();
-      transaction.onabort = () => reject(transaction.error ?? new Error("the transaction was aborted"));
-    });
-  }
   // Calls `body` with these stores in a transaction. If the body or the transaction fails, nothing is
   // changed.
   async function change(stores, body) {
     const transaction = database.transaction(stores, "readwrite");
-    const done = completed(transaction);
+    const done = Database.completed(transaction);
     try {
       await body(...stores.map((name) => transaction.objectStore(name)));
     } catch (error) {
@@ -77,7 +65,7 @@ const Chunks = (() => {
       for (const name of STORES) made.createObjectStore(name);
       request.transaction.objectStore("used").createIndex("stamp", "stamp");
     };
-    return answered(request);
+    return Database.answered(request);
   }
 
   // Takes the lock of the database until unlock().
@@ -98,7 +86,7 @@ const Chunks = (() => {
     const transaction = database.transaction(["worlds", "state"]);
     const worlds = transaction.objectStore("worlds"), state = transaction.objectStore("state");
     const [ids, texts, size, newest, lastWorld] = await Promise.all([worlds.getAllKeys(), worlds.getAll(),
-      ...["bytes", "stamp", "world"].map((key) => state.get(key))].map(answered));
+      ...["bytes", "stamp", "world"].map((key) => state.get(key))].map(Database.answered));
     bytes = size ?? 0;
     stamp = (newest ?? 0) + 1;
     if (lastWorld) await use(lastWorld);
@@ -113,7 +101,7 @@ const Chunks = (() => {
     } catch (error) {
       console.warn("the kept chunks cannot be read; they are deleted:", error);
       database?.close();
-      await answered(indexedDB.deleteDatabase(DATABASE));
+      await Database.answered(indexedDB.deleteDatabase(DATABASE));
       database = await openDatabase();
       return await load();
     }
@@ -131,11 +119,8 @@ const Chunks = (() => {
     bytesMax = sizeMax;
     await lock();
     const opened = openAndLoad();
-    const late = new Promise((resolve, reject) => {
-      setTimeout(() => reject(new Error("its database does not answer")), OPEN_MS);
-    });
     try {
-      return await Promise.race([opened, late]);
+      return await Database.inTime(opened, OPEN_MS);
     } catch (error) {
       opened.catch(() => {}).then(close); // it may still answer, and keeps the lock until then
       throw error;
@@ -160,7 +145,7 @@ const Chunks = (() => {
 
   async function use(id) {
     if (world === id) return;
-    const names = await answered(database.transaction("entries").objectStore("entries").getAllKeys(rangeOf(id)));
+    const names = await Database.answered(database.transaction("entries").objectStore("entries").getAllKeys(rangeOf(id)));
     world = id;
     lines = new Map();
     names.forEach(add);
@@ -171,7 +156,7 @@ const Chunks = (() => {
       const transaction = database.transaction(["worlds", "state"], "readwrite");
       transaction.objectStore("worlds").put(text, id);
       transaction.objectStore("state").put(id, "world");
-      completed(transaction).catch(fail); // no operation waits for it
+      Database.completed(transaction).catch(fail); // no operation waits for it
     });
   }
 
@@ -179,7 +164,7 @@ const Chunks = (() => {
   async function drop(wrong) {
     let left = bytes;
     await change(["chunks", "entries", "used", "state"], async (chunks, entries, used, state) => {
-      const dropped = await Promise.all(wrong.map((name) => answered(entries.get(name))));
+      const dropped = await Promise.all(wrong.map((name) => Database.answered(entries.get(name))));
       wrong.forEach((name, i) => {
         left -= dropped[i]?.bytes ?? 0;
         for (const store of [chunks, entries, used]) store.delete(name);
@@ -197,8 +182,8 @@ const Chunks = (() => {
     queue(async () => {
       await use(id);
       const entries = database.transaction("entries").objectStore("entries");
-      const [keys, values] = await Promise.all([answered(entries.getAllKeys(rangeOf(id))),
-        answered(entries.getAll(rangeOf(id)))]);
+      const [keys, values] = await Promise.all([Database.answered(entries.getAllKeys(rangeOf(id))),
+        Database.answered(entries.getAll(rangeOf(id)))]);
       const wrong = keys.filter((name, i) => isWrong(name, values[i]));
       await drop(wrong);
       Program.call("web_cache_dropped", wrong.length);
@@ -256,7 +241,7 @@ const Chunks = (() => {
       const chunks = ranges.length === 0 ? null : database.transaction("chunks").objectStore("chunks");
       for (let i = 0; i < ranges.length && hasRoom; i += RANGES_AT_A_TIME) {
         await Promise.all(ranges.slice(i, i + RANGES_AT_A_TIME).map(async (range) => {
-          const [names, rows] = await Promise.all([answered(chunks.getAllKeys(range)), answered(chunks.getAll(range))]);
+          const [names, rows] = await Promise.all([Database.answered(chunks.getAllKeys(range)), Database.answered(chunks.getAll(range))]);
           names.forEach((name, j) => give(name, rows[j]));
         }));
       }
@@ -272,7 +257,7 @@ const Chunks = (() => {
     const used = transaction.objectStore("used");
     for (const name of touched) if (has(name)) used.put({ stamp }, name);
     touched = new Set();
-    await completed(transaction);
+    await Database.completed(transaction);
   }
 
   // Writes rows. Each is a head of 32 bytes, see WebCache::keep(), and its bytes.
@@ -295,7 +280,7 @@ const Chunks = (() => {
       const evicted = [];
       await change(["chunks", "entries", "used", "state"], async (chunks, entries, used, state) => {
         const before = await Promise.all(rows.map(({ name }) =>
-          (has(name) ? answered(entries.get(name)) : null)));
+          (has(name) ? Database.answered(entries.get(name)) : null)));
         rows.forEach(({ name, row, entry }, i) => {
           size += entry.bytes - (before[i]?.bytes ?? 0);
           chunks.put(row, name);
@@ -304,11 +289,11 @@ const Chunks = (() => {
         });
         // The rows that were unused for longest are evicted.
         while (size > bytesMax) {
-          const oldest = await answered(used.index("stamp").getAllKeys(null, EVICTED_AT_A_TIME));
+          const oldest = await Database.answered(used.index("stamp").getAllKeys(null, EVICTED_AT_A_TIME));
           if (oldest.length === 0) break;
           for (const name of oldest) {
             if (size <= bytesMax) break;
-            size -= (await answered(entries.get(name))).bytes;
+            size -= (await Database.answered(entries.get(name))).bytes;
             for (const store of [chunks, entries, used]) store.delete(name);
             evicted.push(name);
           }

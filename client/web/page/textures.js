@@ -10,23 +10,11 @@ const Textures = (() => {
   const DATABASE = "runstone-textures";
   const LAYOUT = 1;
   const BYTES_MAX = 64 * 2 ** 20, HASH_BYTES = 32;
+  const OPEN_MS = 3000; // pictures wait for the database no longer
   const TOUCH_MS = 24 * 3600 * 1000; // a use is noted once a day
 
   let opened = null; // the promise of the database
   let last = Promise.resolve(); // the newest operation
-
-  function answered(request) {
-    return new Promise((resolve, reject) => {
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-    });
-  }
-  function completed(transaction) {
-    return new Promise((resolve, reject) => {
-      transaction.oncomplete = () => resolve();
-      transaction.onabort = () => reject(transaction.error ?? new Error("the transaction was aborted"));
-    });
-  }
 
   function openDatabase() {
     const request = indexedDB.open(DATABASE, LAYOUT);
@@ -37,7 +25,7 @@ const Textures = (() => {
       made.createObjectStore("entries").createIndex("used", "used");
     };
     request.onblocked = () => console.warn("another tab holds an older database of textures");
-    return answered(request);
+    return Database.inTime(Database.answered(request), OPEN_MS);
   }
 
   // Carries out an operation after all others. After a failure none is carried out.
@@ -54,11 +42,11 @@ const Textures = (() => {
     for (let at = 0; at < hashes.length; at += HASH_BYTES) names.push(nameOf(hashes.subarray(at, at + HASH_BYTES)));
     queue(async (database) => {
       const transaction = database.transaction(["pngs", "entries"], "readwrite");
-      const done = completed(transaction);
+      const done = Database.completed(transaction);
       const pngs = transaction.objectStore("pngs"), entries = transaction.objectStore("entries");
       const now = Date.now();
       await Promise.all(names.map(async (name, index) => {
-        const [png, entry] = await Promise.all([answered(pngs.get(name)), answered(entries.get(name))]);
+        const [png, entry] = await Promise.all([Database.answered(pngs.get(name)), Database.answered(entries.get(name))]);
         if (!(png instanceof Uint8Array)) return;
         if (entry && now - entry.used > TOUCH_MS) entries.put({ ...entry, used: now }, name);
         Program.buffer(png);
@@ -73,7 +61,7 @@ const Textures = (() => {
   function keep(rows) {
     queue(async (database) => {
       const transaction = database.transaction(["pngs", "entries"], "readwrite");
-      const done = completed(transaction);
+      const done = Database.completed(transaction);
       const pngs = transaction.objectStore("pngs"), entries = transaction.objectStore("entries");
       const view = new DataView(rows.buffer, rows.byteOffset, rows.byteLength);
       const used = Date.now();
@@ -85,12 +73,12 @@ const Textures = (() => {
         at = begin + bytes;
       }
       // The pictures that were unused for longest are dropped.
-      const all = await answered(entries.getAll());
+      const all = await Database.answered(entries.getAll());
       let size = all.reduce((sum, entry) => sum + entry.bytes, 0);
       if (size > BYTES_MAX) {
-        for (const name of await answered(entries.index("used").getAllKeys())) {
+        for (const name of await Database.answered(entries.index("used").getAllKeys())) {
           if (size <= BYTES_MAX) break;
-          size -= (await answered(entries.get(name))).bytes;
+          size -= (await Database.answered(entries.get(name))).bytes;
           for (const store of [pngs, entries]) store.delete(name);
         }
       }

@@ -59,7 +59,7 @@ TEST_CASE("each answer has the headers for the safety of browsers", "[integratio
 TEST_CASE("the gateway serves the files of the client for browsers", "[integration]") {
   const TempFolder folder;
   for (const char* name : {"client.html", "client.css", "client.js", "program.js", "typing.js",
-                           "keys.js", "chunks.js", "textures.js", "ticker.js",
+                           "keys.js", "database.js", "chunks.js", "textures.js", "ticker.js",
                            "runstone-web-client.js", "runstone-web-client.wasm", "DejaVuSans.ttf"})
     std::ofstream(folder.path() + "/" + name) << "plain " << name;
   WebConfig config = web_config_of(folder);

@@ -17,7 +17,7 @@ void write(const TempFolder& folder, const std::string& name, const std::string&
 
 void write_all(const TempFolder& folder) {
   for (const char* name : {"client.html", "client.css", "client.js", "program.js", "typing.js",
-                           "keys.js", "chunks.js", "textures.js", "ticker.js",
+                           "keys.js", "database.js", "chunks.js", "textures.js", "ticker.js",
                            "runstone-web-client.js", "runstone-web-client.wasm", "DejaVuSans.ttf"})
     write(folder, name, std::string("plain ") + name);
   write(folder, "client.js.gz", "gzip client.js");
