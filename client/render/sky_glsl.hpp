@@ -4,15 +4,16 @@
 
 namespace runstone {
 
-/// vec3 with_disc(vec3 c, vec3 d): `c` with the disc of the sun, or the moon, 2 degrees in radius.
-/// The moon is nearly full, and has darker plains.
+/// vec3 with_disc(vec3 c, vec3 d): `c` with the disc of the sun, or of the moon with RUNSTONE_MOON,
+/// 2 degrees in radius. The moon is nearly full, and has darker plains.
 #define RUNSTONE_DISC_GLSL                                                          \
-  "uniform float moon;\n"                                                           \
   "vec3 with_disc(vec3 c, vec3 d) {\n"                                              \
   "  float near = dot(d, sun_direction);\n"                                         \
   "  c += glow * (0.5 * pow(max(near, 0.0), 300.0));\n"                             \
   "  if (near < 0.998) return c;\n"                                                 \
-  "  if (moon < 0.5) return c + glow * (6.0 * smoothstep(0.9990, 0.9995, near));\n" \
+  "#ifndef RUNSTONE_MOON\n"                                                         \
+  "  return c + glow * (6.0 * smoothstep(0.9990, 0.9995, near));\n"                 \
+  "#else\n"                                                                         \
   "  vec3 right = normalize(cross(sun_direction, vec3(0.0, 1.0, 0.0)));\n"          \
   "  vec2 at = vec2(dot(d, right), dot(d, cross(right, sun_direction))) / 0.036;\n" \
   "  float rim = dot(at, at);\n"                                                    \
@@ -23,6 +24,7 @@ namespace runstone {
   "  float share = 1.0 - smoothstep(0.90, 1.0, rim);\n"                             \
   "  return mix(c, vec3(0.33, 0.34, 0.35) * bright + zenith,\n"                     \
   "             share * smoothstep(0.0, 0.08, glow.b));\n"                          \
+  "#endif\n"                                                                        \
   "}\n"
 
 /// vec3 starlight(vec3 d): the stars and the milky way in a direction. Each cell of a grid on the

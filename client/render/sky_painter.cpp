@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <string>
 
 #include "client/render/light_glsl.hpp"
 #include "client/render/sky_glsl.hpp"
@@ -36,10 +37,14 @@ constexpr const char* kSkyFragmentShader =
     "void main() {\n"
     "  vec3 d = normalize(direction);\n"
     "  vec3 c = sky(d);\n"
-    "  vec4 cloud = vec4(0.0);\n"
-    "  if (cloud_cover > 0.0) cloud = clouds(d);\n"
-    "  float open = 1.0 - cloud.a;\n"
-    "  if (stars > 0.0) c += starlight(d) * (stars * open * smoothstep(0.0, 0.20, d.y));\n"
+    "#ifdef RUNSTONE_CLOUDS\n"
+    "  vec4 cloud = clouds(d);\n"
+    "#else\n"
+    "  const vec4 cloud = vec4(0.0);\n"
+    "#endif\n"
+    "#ifdef RUNSTONE_STARS\n"
+    "  c += starlight(d) * (stars * (1.0 - cloud.a) * smoothstep(0.0, 0.20, d.y));\n"
+    "#endif\n"
     "  c = mix(with_disc(c, d), cloud.rgb, cloud.a);\n"
     "  fragment = vec4(display(c), 1.0);\n"
     "}\n";
@@ -56,29 +61,40 @@ glm::vec3 cloud_place(const glm::dvec3& eye, double seconds) {
       glm::dvec3{share(eye.x + kDriftASecond * seconds), share(eye.z), way / kCloudPeriod});
 }
 
-SkyPainter::SkyPainter()
-    : program_(link_program("sky", kSkyVertexShader, kSkyFragmentShader)),
-      array_(GlVertexArray::make()) {}
+SkyPainter::SkyPainter() : array_(GlVertexArray::make()) {}
+
+GlProgram& SkyPainter::program(bool has_stars, bool is_moon, bool has_clouds) {
+  GlProgram& out = programs_[(has_stars ? 1U : 0U) + (is_moon ? 2U : 0U) + (has_clouds ? 4U : 0U)];
+  if (!out) {
+    std::string text;
+    if (has_stars) text += "#define RUNSTONE_STARS\n";
+    if (is_moon) text += "#define RUNSTONE_MOON\n";
+    if (has_clouds) text += "#define RUNSTONE_CLOUDS\n";
+    out = link_program("sky", kSkyVertexShader, (text + kSkyFragmentShader).c_str());
+  }
+  return out;
+}
 
 void SkyPainter::draw(const SkyView& view, const DepthRange& depth, const DayLight& light,
                       const NoiseTexture& noise) {
-  glUseProgram(program_.get());
-  set_light(program_, light);
-  const auto at = [this](const char* name) { return glGetUniformLocation(program_.get(), name); };
+  const bool has_clouds = view.has_clouds && light.cloud_cover > 0;
+  const GlProgram& program = this->program(light.stars > 0, light.is_moon, has_clouds);
+  glUseProgram(program.get());
+  set_light(program, light);
+  const auto at = [&](const char* name) { return glGetUniformLocation(program.get(), name); };
   const glm::mat4 inverse = glm::inverse(view.clip);
   glUniformMatrix4fv(at("relative_from_clip"), 1, GL_FALSE, glm::value_ptr(inverse));
   glUniform1f(at("far_plane"), depth.is_reversed() ? 0.0F : 1.0F);
-  glUniform1f(at("moon"), light.is_moon ? 1.0F : 0.0F);
   glUniform1f(at("stars"), light.stars);
   glUniform1f(at("pixel"), static_cast<float>(view.pixel));
   // Back to the sky of midnight.
   glUniform2f(at("star_turn"), std::cos(light.star_angle), -std::sin(light.star_angle));
-  glUniform1f(at("cloud_cover"), view.has_clouds ? light.cloud_cover : 0.0F);
+  glUniform1f(at("cloud_cover"), light.cloud_cover);
   glUniform3fv(at("cloud_lit"), 1, glm::value_ptr(light.cloud_lit));
   glUniform3fv(at("cloud_shade"), 1, glm::value_ptr(light.cloud_shade));
   const glm::vec3 place = cloud_place(view.eye, view.seconds);
   glUniform3fv(at("cloud_place"), 1, glm::value_ptr(place));
-  noise.bind(program_, 0);
+  noise.bind(program, 0);
   glBindVertexArray(array_.get());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(depth.not_farther());

@@ -1,6 +1,7 @@
 // SkyPainter: fills what a frame leaves open with the sky: sun, moon, stars and clouds. Thread: the
 // GL thread.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 
 #include "client/render/day_light.hpp"
@@ -24,14 +25,18 @@ glm::vec3 cloud_place(const glm::dvec3& eye, double seconds);
 
 class SkyPainter {
  public:
-  /// Throws std::runtime_error with the driver's log if the shader does not compile.
   SkyPainter();
   /// Draws the pixels that have the depth of the far plane. So it costs nothing behind the ground.
+  /// Throws std::runtime_error with the driver's log if a shader does not compile.
   void draw(const SkyView& view, const DepthRange& depth, const DayLight& light,
             const NoiseTexture& noise);
 
  private:
-  GlProgram program_;
+  /// Returns the program that draws only these parts: drivers that draw with the processor compute
+  /// both sides of a branch. Compiles it at its first use.
+  GlProgram& program(bool has_stars, bool is_moon, bool has_clouds);
+
+  std::array<GlProgram, 8> programs_;
   GlVertexArray array_;
 };
 
