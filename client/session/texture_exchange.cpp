@@ -81,7 +81,7 @@ std::vector<TextureHash> TextureExchange::take(State from, State next, std::size
     move_to(slot, next);
     out.push_back(entry.hash);
   }
-  // They are of an earlier list.
+  // All pictures in this state belong to an earlier list.
   if (out.empty()) forget_unlisted(from);
   return out;
 }
@@ -131,7 +131,7 @@ void TextureExchange::decode(Arrival arrival) {
   Result<TexturePicture> picture = failure(Error{});
   if (is_right) picture = read_texture(part.png);
   if (!picture) {
-    // The server may have it whole.
+    // The row in the cache may be damaged, so the picture is requested from the server.
     move_to(slot, arrival.is_from_cache ? State::missing : State::failed);
     failed_ += arrival.is_from_cache ? 0U : 1U;
     return;
@@ -150,7 +150,7 @@ std::vector<Message> TextureExchange::step() {
     decode(std::move(next));
   }
   std::vector<Message> out;
-  // The server takes the next request once it has answered all of the last one.
+  // A client sends the next request when all hashes of the last one were answered.
   if (!asks() || count(State::asked) != 0) return out;
   const State unasked = has_cache_ ? State::missing : State::listed;
   TexturesWanted wanted{take(unasked, State::asked, kTexturesWantedMax)};

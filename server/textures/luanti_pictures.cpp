@@ -13,7 +13,7 @@ namespace {
 
 using Kind = LuaToken::Kind;
 
-/// A file in Lua has at most so many bytes, and all of a game together.
+/// The maximum bytes of one file, and of all files of a game together.
 constexpr std::size_t kLuaFileBytesMax = std::size_t{2} << 20, kLuaBytesMax = std::size_t{64} << 20;
 constexpr std::size_t kTileBytesMax = 256;
 

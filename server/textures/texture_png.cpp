@@ -119,7 +119,8 @@ Result<Bytes, std::string> texture_png(std::span<const Bytes> layers,
   }
   if (tint) colour(*picture, *tint);
   Bytes png = encoded(*picture);
-  // Not compressed, 64 x 64 pixels have fewer bytes.
+  // The encoder compresses. Even an uncompressed picture of 64 x 64 pixels is smaller than this
+  // limit.
   if (png.size() > kTextureBytesMax) return failure(std::string("takes more than 24,576 bytes"));
   return png;
 }
