@@ -19,7 +19,8 @@ class TextureFeed {
   /// The approximate number of pixels that one call of step() prepares.
   static constexpr std::size_t kPixels = 32 * 1024;
 
-  /// Returns the textures to draw from now on, if they changed. `is_on`: they are drawn.
+  /// Returns the textures to draw from now on, or nullopt if they have not changed. No textures are
+  /// drawn if `is_on` is false.
   std::optional<DrawnTexturesPtr> step(const TextureExchange& textures, bool is_on, TimeUs now_us);
   /// Returns a line for the player if something is wrong with the textures of the world, once per
   /// reason. `left_out`: the pictures for which the graphics driver has no room.

@@ -29,7 +29,7 @@ void TextureExchange::disconnected() {
 void TextureExchange::clear() {
   const std::uint64_t serial = serial_;
   const bool is_wanted = is_wanted_;
-  // Results of lookups still come, one for each.
+  // Each lookup in progress still gets one result.
   auto lookups = std::move(lookups_);
   *this = {};
   lookups_ = std::move(lookups);
@@ -73,7 +73,7 @@ void TextureExchange::forget_unlisted(std::optional<State> state) {
 std::vector<TextureHash> TextureExchange::take(State from, State next, std::size_t most) {
   std::vector<TextureHash> out;
   if (count(from) == 0) return out;
-  // In the order of the list, in which neighbours are often used together.
+  // The order is that of the list, because neighbours in the list are often used together.
   for (const TextureEntry& entry : table_.entries()) {
     if (out.size() == most) break;
     Slot& slot = slots_.at(entry.hash);
