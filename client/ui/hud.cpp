@@ -93,7 +93,6 @@ bool Hud::is_moving() const {
 void Hud::build(const HudState& state) {
   const double top = build_heads_up(state, name_seconds_, context_.scale());
   const double scale = context_.scale();
-  notices_.build(top, scale);
   if (chat_.is_open()) chat_.set_names(state.names);
   if (auto line = chat_.build(top, scale)) actions_.emplace_back(SendLine{*std::move(line)});
   if (state.shows_players) build_player_list(state, scale);
@@ -108,6 +107,7 @@ void Hud::build(const HudState& state) {
   const Material held = state.slots[state.slot];
   if (const auto chosen = palette_.build(*state.materials, held, scale))
     actions_.emplace_back(HoldMaterial{*chosen});
+  notices_.build(top, scale);
 }
 
 }  // namespace runstone

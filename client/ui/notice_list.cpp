@@ -23,21 +23,27 @@ void NoticeList::advance(double seconds) {
 }
 
 void NoticeList::build(double bottom, double scale) const {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float line = ImGui::GetTextLineHeightWithSpacing();
+  // The foreground is drawn after all windows.
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
   const auto padding = static_cast<float>(4 * scale);
-  float y = static_cast<float>(bottom) - line;
-  for (auto n = notices_.rbegin(); n != notices_.rend(); ++n, y -= line) {
+  const float wrap = std::max(1.0F, size.x - 4 * padding);
+  float y = std::min(static_cast<float>(bottom), size.y - 2 * padding);
+  for (auto n = notices_.rbegin(); n != notices_.rend(); ++n) {
     const std::string text =
         n->count == 1 ? n->text : n->text + " (" + std::to_string(n->count) + " times)";
+    const ImVec2 extent = wrapped_size(text, wrap);
+    y -= extent.y + padding;
+    // The newest notice is always shown. Older ones are left out where the window has no room.
+    if (y < 2 * padding && n != notices_.rbegin()) return;
+    y = std::max(y, 2 * padding);
     const double alpha = std::clamp((kShownSeconds + kFadeSeconds - n->age) / kFadeSeconds, 0., 1.);
-    const float width = width_of(text);
-    const float x = (ImGui::GetIO().DisplaySize.x - width) / 2;
-    list.AddRectFilled({x - padding, y - 1}, {x + width + padding, y + line - 3},
-                       IM_COL32(10, 12, 16, static_cast<int>(150 * alpha)), padding);
+    const float x = (size.x - extent.x) / 2;
+    list.AddRectFilled({x - padding, y - 1}, {x + extent.x + padding, y + extent.y + 1},
+                       IM_COL32(10, 12, 16, static_cast<int>(215 * alpha)), padding);
     const ImU32 colour = n->kind == NoticeKind::warning ? IM_COL32(255, 190, 110, 255)
                                                         : IM_COL32(235, 240, 245, 255);
-    shadowed_text(list, {x, y}, colour, text, alpha);
+    shadowed_text(list, {x, y}, colour, text, alpha, wrap);
   }
 }
 

@@ -15,16 +15,24 @@ ImU32 with_alpha(ImU32 colour, double alpha) {
 
 }  // namespace
 
-void shadowed_text(ImDrawList& list, ImVec2 at, ImU32 colour, std::string_view text, double alpha) {
+void shadowed_text(ImDrawList& list, ImVec2 at, ImU32 colour, std::string_view text, double alpha,
+                   float wrap) {
   const char* const begin = text.data();
   const char* const end = begin + text.size();
-  const ImU32 shadow = with_alpha(IM_COL32(0, 0, 0, 200), alpha);
-  list.AddText({at.x + 1, at.y + 1}, shadow, begin, end);
-  list.AddText(at, with_alpha(colour, alpha), begin, end);
+  const auto draw = [&](ImVec2 from, ImU32 with) {
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), from, with_alpha(with, alpha), begin, end,
+                 wrap);
+  };
+  draw({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200));
+  draw(at, colour);
 }
 
 float width_of(std::string_view text) {
   return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
+}
+
+ImVec2 wrapped_size(std::string_view text, float wrap) {
+  return ImGui::CalcTextSize(text.data(), text.data() + text.size(), false, wrap);
 }
 
 ImU32 shaded_colour(const MaterialColour& colour, double factor) {

@@ -15,10 +15,13 @@ inline constexpr ImGuiWindowFlags kShowOnly =
     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
 
 /// Draws text with a dark shadow, so that it can be read over any background. `alpha` is 0 to 1.
+/// Lines are wrapped to `wrap` pixels; 0 wraps nothing.
 void shadowed_text(ImDrawList& list, ImVec2 at, ImU32 colour, std::string_view text,
-                   double alpha = 1);
+                   double alpha = 1, float wrap = 0);
 /// Returns the width of a text in pixels.
 float width_of(std::string_view text);
+/// Returns the size in pixels of a text whose lines are wrapped to `wrap` pixels.
+ImVec2 wrapped_size(std::string_view text, float wrap);
 /// Returns an opaque colour of a material in ImGui's form, with its brightness multiplied by
 /// `factor`. A transparent material shows a light ground through it.
 ImU32 shaded_colour(const MaterialColour& colour, double factor);

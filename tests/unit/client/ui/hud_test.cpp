@@ -296,6 +296,29 @@ TEST_CASE("a notice stays for some seconds, and a repeated one is counted", "[cl
   CHECK_FALSE(hud.is_moving());
 }
 
+TEST_CASE("notices are drawn after all windows, wrapped, and inside the frame", "[client_ui]") {
+  Hud hud{KeyMap{}};
+  const HudState state = some_state();
+  hud.act(Action::help);
+  for (int i = 0; i < 3; ++i) hud.make_frame(state, kHudSize, 10);
+  const auto before = hud.make_frame(state, kHudSize, 0.1);
+  for (int i = 0; i < 20; ++i) {
+    std::string text = std::to_string(i);
+    for (int word = 0; word < 60; ++word) text += " the ground is protected";
+    hud.notify(std::move(text), NoticeKind::warning);
+  }
+  const auto after = hud.make_frame(state, kHudSize, 0.1);
+  REQUIRE(after->vertices.size() > before->vertices.size());
+  CHECK(std::equal(before->vertices.begin(), before->vertices.end(), after->vertices.begin()));
+  for (std::size_t i = before->vertices.size(); i < after->vertices.size(); ++i) {
+    const OverlayVertex& vertex = after->vertices[i];
+    REQUIRE(vertex.x >= 0);
+    REQUIRE(vertex.x <= static_cast<float>(kHudSize[0]));
+    REQUIRE(vertex.y >= 0);
+    REQUIRE(vertex.y <= static_cast<float>(kHudSize[1]));
+  }
+}
+
 TEST_CASE("the hint to click is shown while the mouse is free", "[client_ui]") {
   Hud hud{KeyMap{}};
   HudState state = some_state();
