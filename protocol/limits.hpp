@@ -40,6 +40,7 @@ inline constexpr std::uint64_t kFeatureTextures = 1 << 20;   // TexturesGiven to
 inline constexpr std::uint64_t kFeatureWorldTime = 1 << 22;  // WorldTime
 // SessionAccepted.place, and lines of the chat of the kind visit.
 inline constexpr std::uint64_t kFeatureVisits = 1 << 24;
+inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;  // LogMarksRequest.at
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
@@ -55,7 +56,8 @@ inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
-    kFeatureBuilds | kFeatureShapes | kFeatureTextures | kFeatureWorldTime | kFeatureVisits;
+    kFeatureBuilds | kFeatureShapes | kFeatureTextures | kFeatureWorldTime | kFeatureVisits |
+    kFeatureVoxelAuthors;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below

@@ -148,6 +148,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     session_.tick(now_us);
     flush();
     play_.step_previews(play_settings(), now_us);
+    play_.step_author(play_settings(), now_us);
     draw(now_us);
     if (stop != 0) end_requested_ = true;
     end = end_of_play(steady_now_us());
@@ -310,7 +311,8 @@ PlaySettings Client::play_settings() const {
   return {{now.sensitivity, now.invert_y},
           now.shows_previews,
           now.shares_previews,
-          now.shows_textures && !options_.no_textures};
+          now.shows_textures && !options_.no_textures,
+          now.shows_authors && hud_.is_shown()};
 }
 
 std::optional<double> Client::field_of_view() const {

@@ -1,5 +1,7 @@
 #include "client/play/edit_tool.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <variant>
 
@@ -186,6 +188,16 @@ std::string EditTool::text() const {
   if (!box_.points().empty()) out += ", places chosen: " + std::to_string(box_.points().size());
   if (box_.preview().missing_chunks() != 0) out += ", a part of the preview is not loaded";
   return out;
+}
+
+std::string EditTool::measure_text() const {
+  const auto box = session_.replica().opened() ? box_.spanned(aim()) : std::nullopt;
+  if (!box) return {};
+  const std::int64_t x = box->max.x - box->min.x, y = box->max.y - box->min.y,
+                     z = box->max.z - box->min.z;
+  return fmt::format("{} x {} x {} = {} {}   {} {} {} to {} {} {}", x, y, z, x * y * z,
+                     x * y * z == 1 ? "voxel" : "voxels", box->min.x, box->min.y, box->min.z,
+                     box->max.x - 1, box->max.y - 1, box->max.z - 1);
 }
 
 Result<void, std::string> EditTool::propose(const EditDescriptor& edit, TimeUs due_us,

@@ -104,6 +104,10 @@ class EditTool {
   /// for the plain voxel tool.
   std::string text() const;
 
+  /// Returns corners and size of the box that the next click would complete, as a line for the
+  /// player, or an empty text if there is none.
+  std::string measure_text() const;
+
   /// Proposes an edit that was due at `due_us`. Fails with the reason, which `on_refused` gets as
   /// well, if the client does not accept it. If the client had no room for it, the edit counts as
   /// infinitely late. Any other refusal, such as that of an edit while the view shows the past,

@@ -7,7 +7,9 @@
 #include "client/play/player_actions.hpp"
 #include "client/play/time_travel.hpp"
 #include "client/render/drawn_materials.hpp"
+#include "client/ui/log_words.hpp"
 #include "common/core/text.hpp"
+#include "common/core/utc_text.hpp"
 #include "common/core/world_time.hpp"
 
 namespace runstone {
@@ -270,6 +272,19 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
     notify(*std::move(notice), NoticeKind::warning);
 }
 
+void Play::step_author(const PlaySettings& settings, TimeUs now_us) {
+  const auto hit = settings.shows_authors ? tool_.pick() : std::nullopt;
+  session_.step_voxel_author(hit ? std::optional(hit->voxel) : std::nullopt, now_us);
+  const VoxelAuthor::Found* const found = session_.voxel_author().found();
+  std::string text;
+  if (found != nullptr) {
+    text = with_unseen_replaced(found->author) + ", " + utc_text(found->mark.utc_us);
+    if (found->mark.cause != Cause::player)
+      text += ", " + record_words(found->mark.kind, found->mark.cause);
+  }
+  if (std::exchange(author_text_, std::move(text)) != author_text_) pipeline_.moved();
+}
+
 void Play::keep_pace(bool has_focus, bool is_fading, TimeUs now_us) {
   const bool is_moving = panels_.take_moved(now_us) || is_fading;
   pace_.step(pipeline_, has_focus, player_.pose(), is_moving, now_us);
@@ -300,7 +315,9 @@ void Play::fill(HudState& state, const ShownPanels& shown) const {
   if (const auto sight = tool_.pick()) {
     state.aimed_at = sight->material;
     state.sight = sight->voxel;
+    state.author = author_text_;
   }
+  state.measure = tool_.measure_text();
   state.tools = &tool_.box();
   state.has_preview = tool_.has_preview();
   state.time_of_day = pipeline_.look().time_of_day();

@@ -5,7 +5,7 @@
 //   - handle_input(), and act() for each action of a key;
 //   - take_changes(), after the edits of this turn were sent;
 //   - follow(), before the tick of the session;
-//   - take_changes() and step_previews();
+//   - take_changes() and step_previews(), and step_author() if it shows authors;
 //   - frame(), if a frame is due.
 // One thread.
 #pragma once
@@ -73,6 +73,7 @@ struct PlaySettings {
   bool shows_previews = true;   // ghosts of what other players are about to do
   bool shares_previews = true;  // others see what this player is about to do
   bool shows_textures = true;   // the pictures that the world brings for its materials
+  bool shows_authors = true;    // who set the voxel at the crosshair
 };
 
 /// The contents of a frame, and its size in pixels.
@@ -125,6 +126,8 @@ class Play {
   /// Gets the textures of the world and gives them to the screen, if the settings want them and
   /// something is drawn. Call it before the tick of the session.
   void step_textures(const PlaySettings& settings, TimeUs now_us);
+  /// Asks now and then who set the voxel at the crosshair, if the settings want it.
+  void step_author(const PlaySettings& settings, TimeUs now_us);
   /// Makes a window draw often while something moves, see DisplayPace. `is_fading`: the interface
   /// draws something that moves.
   void keep_pace(bool has_focus, bool is_fading, TimeUs now_us);
@@ -214,6 +217,7 @@ class Play {
   DisplayPace pace_;
   ServerNotices server_notices_;
   std::vector<PlayerNotice> notices_;
+  std::string author_text_;          // who set the voxel at the crosshair, or empty
   std::optional<WorldId> world_;     // whose materials the hotbar has
   std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened

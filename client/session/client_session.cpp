@@ -41,6 +41,7 @@ void ClientSession::disconnected() {
   previews_.reset();
   history_.clear();
   timeline_.disconnected();
+  voxel_author_.disconnected();
   library_.disconnected();
   textures_.disconnected();
   chat_.disconnected();
@@ -62,6 +63,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       lost_.clear();
       chat_.clear();
       timeline_.clear();
+      voxel_author_.clear();
       library_.clear();
       textures_.clear();
       return replica_->reset();
@@ -119,7 +121,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, CommandOutput>) {
           on_command_output(std::move(m));
         } else if constexpr (std::is_same_v<T, LogMarks>) {
-          if (timeline_.receive(m, arrival.now_us)) ++timeline_serial_;
+          if (!voxel_author_.receive(m) && timeline_.receive(m, arrival.now_us)) ++timeline_serial_;
         } else if constexpr (std::is_same_v<T, Builds> || std::is_same_v<T, BuildPiece>) {
           library_.receive(std::move(m), arrival.now_us);
         } else if constexpr (std::is_same_v<T, BuildAnswer>) {
@@ -335,10 +337,29 @@ void ClientSession::step_timeline(TimeUs now_us) {
   if (!is_open()) return;
   if ((welcome()->features & kFeatureLogMarks) == 0)
     return timeline_.refuse("this server does not say who edited");
+  // A later request would replace one that the server has not answered.
+  if (voxel_author_.is_waiting()) return;
   // The server reads marks from its disk, so it has none of the edits that are not durable.
   const Sequence newest = replica_->durable();
   const auto& past = replica_->past();
   if (const auto request = timeline_.next_request(newest, past ? past->seq : newest, now_us))
+    connection_.send(*request);
+}
+
+void ClientSession::step_voxel_author(const std::optional<VoxelPos>& at, TimeUs now_us) {
+  const bool is_known =
+      is_open() && (welcome()->features & kFeatureVoxelAuthors) != 0 && !replica_->past();
+  std::optional<VoxelAuthor::Sight> sight;
+  if (at && is_known) {
+    const std::int32_t edge = replica_->chunk_edge();
+    const ChunkPtr chunk = replica_->confirmed({0, chunk_of(*at, edge)});
+    // The server reads its disk, which lacks edits that are not durable.
+    if (chunk != nullptr && chunk->version.seq <= replica_->durable()) {
+      const Material material = material_at(chunk->voxels, local_of(*at, edge));
+      if (replica_->shown_at(*at) == material) sight = {*at, material, chunk->version};
+    }
+  }
+  if (const auto request = voxel_author_.look(sight, !timeline_.is_waiting(), now_us))
     connection_.send(*request);
 }
 

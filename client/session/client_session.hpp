@@ -26,6 +26,7 @@
 #include "client/session/server_connection.hpp"
 #include "client/session/shared_previews.hpp"
 #include "client/session/texture_exchange.hpp"
+#include "client/session/voxel_author.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -140,6 +141,11 @@ class ClientSession {
   /// Returns a number that rises with each change of the timeline.
   std::uint64_t timeline_serial() const { return timeline_serial_; }
 
+  /// Follows the voxel at the crosshair, or none with nullopt, and asks who set it last if a request
+  /// is due. Does nothing unless open, in the past, and with servers that cannot say it.
+  void step_voxel_author(const std::optional<VoxelPos>& at, TimeUs now_us);
+  const VoxelAuthor& voxel_author() const { return voxel_author_; }
+
   /// Returns true if the server has a library of builds that clients use.
   bool has_library() const;
   /// Returns what this client does with the library. step_library() sends its messages.
@@ -252,6 +258,7 @@ class ClientSession {
   std::optional<RestorePreview> restore_preview_;
   LogTimeline timeline_;
   std::uint64_t timeline_serial_ = 0;
+  VoxelAuthor voxel_author_;
 
   LibraryExchange library_;
   TextureExchange textures_;

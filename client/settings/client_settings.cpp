@@ -112,6 +112,7 @@ const std::map<std::pair<std::string, std::string>, SetField>& fields() {
         {{"hand", "walks"}, switch_field(&S::walks)},
         {{"others", "show_previews"}, switch_field(&S::shows_previews)},
         {{"others", "share_previews"}, switch_field(&S::shares_previews)},
+        {{"others", "show_authors"}, switch_field(&S::shows_authors)},
         {{"interface", "scale"}, number_field(&S::interface_scale, 0.5, 4)},
     };
   }();
@@ -226,7 +227,9 @@ std::string to_toml(const ClientSettings& settings) {
   out += "# true: ghosts show what other players are about to do.\n";
   out += fmt::format("show_previews = {}\n", s.shows_previews);
   out += "# true: other players see what you are about to do.\n";
-  out += fmt::format("share_previews = {}\n\n[interface]\n", s.shares_previews);
+  out += fmt::format("share_previews = {}\n", s.shares_previews);
+  out += "# true: the display shows who set the voxel at the crosshair, and when.\n";
+  out += fmt::format("show_authors = {}\n\n[interface]\n", s.shows_authors);
   out += "# Size of text and windows, 0.5 to 4.\n";
   out += "scale = " + toml_float(s.interface_scale) + "\n\n";
   out += "# Keys that are not the default ones, such as undo = \"ctrl+Z\". F1 shows all keys.\n";

@@ -41,6 +41,7 @@ struct ClientSettings {
   bool walks = false;           // players begin on their feet; false: they fly
   bool shows_previews = true;   // ghosts of what other players are about to do
   bool shares_previews = true;  // others see what this player is about to do
+  bool shows_authors = true;    // who set the voxel at the crosshair
   /// The keys that differ from the defaults, by the name of their action. A value has the names of
   /// keys with blanks between them, such as "W up", or is empty. key_map_of() checks the names.
   std::map<std::string, std::string> keys;

@@ -50,6 +50,7 @@ class BoxTool final : public Tool {
   BoxTool() : Tool("box", "the box between two clicks", {mask_parameter()}) {}
   std::size_t points_before() const override { return 1; }
   std::string_view place_name(std::size_t) const override { return "corner"; }
+  bool spans_box() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 
@@ -251,6 +252,7 @@ class SelectTool final : public Tool {
   bool chooses_solid() const override { return true; }
   bool selects() const override { return true; }
   std::string_view place_name(std::size_t) const override { return "corner"; }
+  bool spans_box() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -24,6 +24,7 @@ class SolidTool final : public Tool {
               mask_parameter()}) {}
   std::size_t points_before() const override { return 1; }
   std::string_view place_name(std::size_t) const override { return "corner"; }
+  bool spans_box() const override { return value("height") == 0; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -77,6 +77,8 @@ class Tool {
   virtual bool chooses_solid() const { return false; }
   /// Returns true if the chosen places become the selection, and no edit is made.
   virtual bool selects() const { return false; }
+  /// Returns true if the first two places are opposite corners of the box that the tool works on.
+  virtual bool spans_box() const { return false; }
   /// Returns what the place with this number, from 0, is called for the player.
   virtual std::string_view place_name(std::size_t) const { return "voxel"; }
   /// Returns true if plan() may take longer than a frame with the present parameters. A preview then

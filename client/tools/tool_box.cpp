@@ -216,6 +216,13 @@ ToolEdits ToolBox::release(const Replica& replica, const Aim& aim) {
   return edits;
 }
 
+std::optional<VoxelBox> ToolBox::spanned(const Aim& aim) const {
+  if (points_.empty() || !tool().spans_box()) return std::nullopt;
+  const auto target = target_of(aim, button_);
+  if (!target) return std::nullopt;
+  return box_between(points_.front(), *target);
+}
+
 void ToolBox::type_places(std::optional<TypedPlaces> typed) {
   typed_ = std::move(typed);
   ++revision_;

@@ -47,6 +47,10 @@ class ToolBox {
   bool cancel();
   std::span<const VoxelPos> points() const { return points_; }
 
+  /// Returns the box between the first place chosen and the voxel that the next click chooses, or
+  /// nullopt if no place is chosen, or if the tool works on no box between two places.
+  std::optional<VoxelBox> spanned(const Aim& aim) const;
+
   /// Sets places by their coordinates, wherever the player looks. The preview then shows what
   /// apply_typed() does. With nullopt, clicks choose places again. Requires coordinates inside the
   /// world.

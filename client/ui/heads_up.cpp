@@ -80,6 +80,10 @@ void corner_lines(ImDrawList& list, const HudState& state, float scale) {
     shadowed_text(list, {x, y}, kDim,
                   "in sight: " + readable_name((*state.materials)[*state.aimed_at].name));
   }
+  if (!state.author.empty()) {
+    y += line;
+    shadowed_text(list, {x, y}, kDim, "set by " + state.author);
+  }
   if (!state.tool.empty()) {
     y += line;
     shadowed_text(list, {x, y}, IM_COL32(170, 220, 255, 255), state.tool);
@@ -107,6 +111,9 @@ double build_heads_up(const HudState& state, double name_seconds, double scale_v
     centred(list, top - line - 2 * scale, kBright, readable_name((*state.materials)[held].name),
             alpha);
   }
+  if (!state.measure.empty())
+    centred(list, ImGui::GetIO().DisplaySize.y / 2 + 14 * scale, IM_COL32(255, 225, 150, 255),
+            state.measure);
   if (!state.is_connected) {
     centred(list, ImGui::GetIO().DisplaySize.y * 0.4F, IM_COL32(255, 210, 120, 255),
             "connecting ...");

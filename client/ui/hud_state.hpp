@@ -73,7 +73,9 @@ struct HudState {
   std::optional<Material> aimed_at;  // the voxel in sight
   std::string state;                 // for example that the past is shown; empty: nothing special
   std::optional<VoxelPos> sight;     // its place
+  std::string author;                // who set it, and when; empty: not known
   std::string tool;                  // the chosen tool and its numbers; empty: the plain voxel tool
+  std::string measure;               // size and corners of the box that is dragged; empty: none
   const ToolBox* tools = nullptr;    // not null while the tool window is open
   bool has_preview = false;          // `tools` has the preview of the next click
   double time_of_day = 0.4;          // that frames show, as FrameLook::time_of_day

@@ -74,6 +74,7 @@ SettingsForm::Result SettingsForm::build(double scale) {
   ImGui::Checkbox("begin on the feet, not flying", &s.walks);
   ImGui::Checkbox("show what others are about to do", &s.shows_previews);
   ImGui::Checkbox("let others see what you are about to do", &s.shares_previews);
+  ImGui::Checkbox("show who set the voxel at the crosshair", &s.shows_authors);
   slider("size of text", s.interface_scale, 0.5, 4, "%.2f");
   ImGui::PopItemWidth();
   ImGui::Separator();

@@ -6,6 +6,11 @@
 namespace runstone {
 namespace {
 
+bool is_in_world(const VoxelPos& at) {
+  const auto is_inside = [](std::int32_t c) { return c >= -kWorldLimit && c < kWorldLimit; };
+  return is_inside(at.x) && is_inside(at.y) && is_inside(at.z);
+}
+
 Result<void> take_mark(const wire::LogMark& t, LogMark& mark) {
   if (t.seq() == 0 || t.seq() > kSequenceMax) return bad("log marks: seq is out of range");
   if (!is_time(t.utc_us())) return bad("log marks: time is out of range");
@@ -23,7 +28,12 @@ Result<Message> BodyReader::read(const wire::LogMarksRequest& t) const {
   if (t.first() == 0 || t.first() > t.last() || t.last() > kSequenceMax)
     return bad("log marks: not 1 <= first <= last");
   if (t.count() == 0 || t.count() > kLogMarksMax) return bad("log marks: count is not 1 .. 128");
-  return LogMarksRequest{t.request(), t.first(), t.last(), t.count()};
+  LogMarksRequest m{t.request(), t.first(), t.last(), t.count()};
+  if (const wire::Corner* const at = t.at()) {
+    m.at = VoxelPos{at->x(), at->y(), at->z()};
+    if (!is_in_world(*m.at)) return bad("log marks: the voxel is outside the world");
+  }
+  return m;
 }
 
 Result<Message> BodyReader::read(const wire::LogMarks& t) const {

@@ -2,9 +2,11 @@
 // bit 7).
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 
@@ -12,11 +14,13 @@ namespace runstone {
 
 /// Asks for `count` records of the log, evenly spaced from `first` to `last`, both included.
 /// Records that the log does not have are left out. A later request replaces an earlier one that
-/// was not answered.
+/// was not answered. With `at` (feature bit 25), asks for one mark instead, wherever it is in the
+/// log: that of the record that set this voxel last.
 struct LogMarksRequest {
-  std::uint32_t request = 1;     // from 1, ascending
-  Sequence first = 1, last = 1;  // 1 <= first <= last
-  std::uint8_t count = 1;        // 1 .. kLogMarksMax
+  std::uint32_t request = 1;                  // from 1, ascending
+  Sequence first = 1, last = 1;               // 1 <= first <= last
+  std::uint8_t count = 1;                     // 1 .. kLogMarksMax
+  std::optional<VoxelPos> at = std::nullopt;  // inside the world
   friend bool operator==(const LogMarksRequest&, const LogMarksRequest&) = default;
 };
 

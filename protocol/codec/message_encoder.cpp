@@ -270,7 +270,10 @@ struct BodyBuilder {
   Offset<wire::LogMarksRequest> operator()(const LogMarksRequest& m) {
     RUNSTONE_ASSERT(m.first != 0 && m.first <= m.last);
     RUNSTONE_ASSERT(m.count != 0 && m.count <= kLogMarksMax);
-    return wire::CreateLogMarksRequest(b, m.request, m.first, m.last, m.count);
+    const VoxelPos at = m.at.value_or(VoxelPos{});
+    const wire::Corner voxel(at.x, at.y, at.z);
+    return wire::CreateLogMarksRequest(b, m.request, m.first, m.last, m.count,
+                                       m.at ? &voxel : nullptr);
   }
   Offset<wire::LogMarks> operator()(const LogMarks& m) {
     RUNSTONE_ASSERT(m.marks.size() <= kLogMarksMax && m.authors.size() <= kLogMarksMax);

@@ -7,6 +7,7 @@
 #include "protocol/limits.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/history/log_marks.hpp"
+#include "server/history/voxel_mark.hpp"
 #include "server/runtime/logging.hpp"
 
 namespace runstone {
@@ -129,7 +130,10 @@ void WorldReaders::read_log_marks(const LogMarksRequest& request,
                                   std::function<void(FoundLogMarksResult)> then) {
   read_history<FoundLogMarks>(
       "the log cannot be read now",
-      [request](WorldReader& reader) { return runstone::read_log_marks(reader, request); },
+      [this, request](WorldReader& reader) {
+        return request.at ? read_voxel_mark(reader, generator_, *request.at)
+                          : runstone::read_log_marks(reader, request);
+      },
       std::move(then));
 }
 

@@ -45,7 +45,8 @@ void LogMarkReads::read_next(Viewer& viewer, const Clocks& now) {
     return send_marks(base_, viewer, refused(request, "your role does not allow to see the past"));
   due.is_reading = true;
   ++reads_;
-  base_.sessions.charge_reading(viewer.session, request.count * kLogMarkBytes);
+  base_.sessions.charge_reading(viewer.session,
+                                request.at ? kVoxelMarkBytes : request.count * kLogMarkBytes);
   base_.environment.read_log_marks(viewer.id(), request);
 }
 

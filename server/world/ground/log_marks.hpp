@@ -16,6 +16,8 @@ namespace runstone {
 inline constexpr std::size_t kLogMarkReadsMax = 2;
 /// A mark counts as so many bytes that were read from the session.
 inline constexpr std::size_t kLogMarkBytes = 128;
+/// The mark of a voxel counts as so many, because the records near the voxel are read for it.
+inline constexpr std::size_t kVoxelMarkBytes = 4096;
 
 class LogMarkReads {
  public:

@@ -517,6 +517,8 @@ LogMarksRequest any_log_marks_request(SplitMix64& rng) {
   m.first = 1 + rng.below(1'000'000);
   m.last = m.first + (any64(rng) >> 2);
   m.count = static_cast<std::uint8_t>(1 + rng.below(kLogMarksMax));
+  const auto place = [&] { return static_cast<std::int32_t>(rng.below(1 << 20)) - (1 << 19); };
+  if (rng.below(2) == 0) m.at = VoxelPos{place(), place(), place()};
   return m;
 }
 

@@ -99,6 +99,9 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
        "14000000000000000c00340004002c0008000c000c0000000700000003000000"
        "000000000000f83f00000000000000c00000000000000840004000e000000000"
        "2900000000000000"},
+      {LogMarksRequest{3, 1, 0x1'2345'6789, 128, VoxelPos{1, -2, 0x123'4567}},
+       "180000000000000000000e00280008001800200007000c000e00000000000080"
+       "0300000001000000feffffff6745230101000000000000008967452301000000"},
       {BuildAnswer{6, 100, 0, "the library is full"},
        "14000000000000000c00140004000c00000008000c000000060000000c000000"
        "640000000000000013000000746865206c6962726172792069732066756c6c00"},
@@ -119,6 +122,7 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureWorldTime == 1 << 22);
   CHECK(kFeatureClockRecords == 1 << 23);
   CHECK(kFeatureVisits == 1 << 24);
+  CHECK(kFeatureVoxelAuthors == 1 << 25);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {

@@ -180,6 +180,28 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   CHECK(act(Action::larger) == "tool: select, mirrored along x");
 }
 
+TEST_CASE_METHOD(Fixture, "the box between a corner and the crosshair is measured",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  for (const char* name : {"box", "select"}) {
+    REQUIRE(tool.box().choose(name).has_value());
+    CHECK(tool.measure_text().empty());
+    tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
+    REQUIRE(tool.press(ToolButton::clear, kNow).has_value());
+    CHECK(tool.measure_text() == "1 x 1 x 1 = 1 voxel   4 -1 7 to 4 -1 7");
+    tool.fix_aim(FixedAim{{1, -3, 8}, Direction::pos_y});
+    CHECK(tool.measure_text() == "4 x 3 x 2 = 24 voxels   1 -3 7 to 4 -1 8");
+    REQUIRE(tool.box().cancel());
+    CHECK(tool.measure_text().empty());
+  }
+  REQUIRE(tool.box().choose("sphere").has_value());
+  REQUIRE(tool.box().set_parameter("radius", 0).has_value());
+  REQUIRE(tool.press(ToolButton::clear, kNow).has_value());
+  CHECK(tool.measure_text().empty());  // its places are a centre and a place on the surface
+}
+
 TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the past",
                  "[client_app]") {
   runstone::test::AuthorityModel world(16);

@@ -132,6 +132,28 @@ TEST_CASE_METHOD(PlayBench, "frames show the time of the world, or the time that
   CHECK(shown() > noon);
 }
 
+TEST_CASE_METHOD(PlayBench, "the display names who set the voxel at the crosshair, and when",
+                 "[client]") {
+  server.features |= kFeatureLogMarks | kFeatureVoxelAuthors;
+  session.disconnected();
+  static_cast<void>(open());
+  show_ground();
+  const auto shown = [this] {
+    for (int i = 0; i < 40; ++i) {
+      turn();
+      play.step_author(settings, now);
+      for (const LogMarksRequest& request : take<LogMarksRequest>(sent()))
+        receive(LogMarks{request.request, 1, {{5, 1'000'000, 7, Cause::undo}}, {{7, "ann"}}, ""});
+    }
+    HudState state;
+    play.fill(state, {});
+    return state.author;
+  };
+  CHECK(shown() == "ann, 1970-01-01T00:00:01Z, undo");
+  settings.shows_authors = false;
+  CHECK(shown().empty());
+}
+
 TEST_CASE_METHOD(PlayBench, "hotbar and tool come back that were kept for a world", "[client]") {
   CHECK_FALSE(play.take_kit());
   play.hotbar().choose(2);

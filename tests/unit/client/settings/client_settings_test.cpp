@@ -22,6 +22,7 @@ ClientSettings unusual_settings() {
   out.walks = true;
   out.shows_previews = false;
   out.shares_previews = false;
+  out.shows_authors = false;
   out.keys = {{"undo", "ctrl+Z \\"}, {"live", ""}, {"odd name", "\""}};
   return out;
 }

@@ -319,6 +319,15 @@ TEST_CASE("notices are drawn after all windows, wrapped, and inside the frame", 
   }
 }
 
+TEST_CASE("the author of the voxel in sight is a line of the display", "[client_ui]") {
+  Hud hud{KeyMap{}};
+  HudState state = some_state();
+  hud.make_frame(state, kHudSize, 0);
+  const std::size_t without = hud.make_frame(state, kHudSize, 10)->vertices.size();
+  state.author = "ann, 1970-01-01T00:00:01Z";
+  CHECK(hud.make_frame(state, kHudSize, 0.1)->vertices.size() > without);
+}
+
 TEST_CASE("the hint to click is shown while the mouse is free", "[client_ui]") {
   Hud hud{KeyMap{}};
   HudState state = some_state();

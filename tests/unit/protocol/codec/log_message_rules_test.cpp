@@ -11,8 +11,9 @@ struct LogMarksRequestFields {
   std::uint32_t request = 1;
   std::uint64_t first = 1, last = 9;
   std::uint8_t count = 5;
+  wire::Corner at{1, -2, 3};
   Offset<wire::LogMarksRequest> operator()(FlatBufferBuilder& b) const {
-    return wire::CreateLogMarksRequest(b, request, first, last, count);
+    return wire::CreateLogMarksRequest(b, request, first, last, count, &at);
   }
 };
 
@@ -46,7 +47,8 @@ struct RestorePreviewFields {
 
 }  // namespace
 
-TEST_CASE("a request for log marks is refused with a bad number, range or count", "[protocol]") {
+TEST_CASE("a request for log marks is refused with a bad number, range, count or place",
+          "[protocol]") {
   refuses<LogMarksRequest, LogMarksRequestFields>({
       [](auto& r) { r.request = 0; },
       [](auto& r) { r.first = 0; },
@@ -54,6 +56,8 @@ TEST_CASE("a request for log marks is refused with a bad number, range or count"
       [](auto& r) { r.last = kSequenceMax + 1; },
       [](auto& r) { r.count = 0; },
       [](auto& r) { r.count = kLogMarksMax + 1; },
+      [](auto& r) { r.at = {kWorldLimit, 0, 0}; },
+      [](auto& r) { r.at = {0, -kWorldLimit - 1, 0}; },
   });
 }
 

@@ -61,6 +61,18 @@ TEST_CASE("a session gets marks of the log with the names of their authors", "[w
   CHECK(answer.refusal.empty());
 }
 
+TEST_CASE("the mark of a voxel is asked for by its place, and counts as more reading", "[world]") {
+  MarksBench bench;
+  const AuthorId author = bench.join_with(1, 1, kFeatureLogMarks | kFeatureVoxelAuthors);
+  const LogMarksRequest request{4, 1, kSequenceMax, 1, VoxelPos{1, -2, 3}};
+  bench.server.received(1, request, bench.now());
+  REQUIRE(bench.environment.mark_requests.size() == 1);
+  CHECK(bench.environment.mark_requests[0].second == request);
+  CHECK(bench.environment.charged[1] == kVoxelMarkBytes);
+  bench.answer_one(marks_of(author));
+  CHECK(bench.answers(1).size() == 1);
+}
+
 TEST_CASE("few requests for marks are read at a time, and of each session only the newest",
           "[world]") {
   MarksBench bench;
