@@ -14,6 +14,7 @@
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
 #include "client/report/exit_code.hpp"
+#include "client/settings/hotbars_file.hpp"
 #include "client/settings/world_kits.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/output_file.hpp"
@@ -68,6 +69,7 @@ PlayConfig play_config(const ClientOptions& options, const Script* script, bool 
     const auto line = load_kit(file, to_hex(world));
     return line ? parse_kit(*line) : std::nullopt;
   };
+  out.hotbars = load_hotbars(options.hotbars_file);
   return out;
 }
 
@@ -136,6 +138,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     if (now_us >= kit_due_us_) {
       kit_due_us_ = now_us + kKeepKitUs;
       keep_kit();
+      keep_hotbars();
     }
     show_news();
     if (runner_) runner_->step(now_us);
@@ -273,6 +276,14 @@ void Client::keep_kit() {
   if (!saved) spdlog::warn("{}", saved.error());
 }
 
+void Client::keep_hotbars() {
+  if (options_.hotbars_file.empty()) return;
+  const auto kept = play_.take_hotbars();
+  if (!kept) return;
+  const auto saved = save_hotbars(options_.hotbars_file, *kept);
+  if (!saved) spdlog::warn("{}", saved.error());
+}
+
 void Client::look_at_horizon(TimeUs now_us) {
   if (!session_.replica().opened() || tile_levels(session_.view()) == 0) return;
   horizon_due_us_ = now_us + kHorizonLookUs;
@@ -402,6 +413,7 @@ ClientReport Client::report() const {
 int Client::finish(int code) {
   look_at_horizon(steady_now_us());
   keep_kit();
+  keep_hotbars();
   network_.finish();
   if (runner_) {
     for (const std::string& failure : runner_->failures())

@@ -59,6 +59,7 @@ class Client {
   void look_at_horizon(TimeUs now_us);
   /// Keeps hotbar and tool of the world if they have changed.
   void keep_kit();
+  void keep_hotbars();
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Shows the notices and the new lines of the chat.

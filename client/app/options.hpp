@@ -35,6 +35,7 @@ struct ClientOptions {
   std::string password;            // of the world; empty: none was given
   bool asks_at_terminal = true;    // for the password, if there is a terminal
   std::string kits_file;           // the hotbars and tools by world; empty: they are not kept
+  std::string hotbars_file;        // the hotbars that were kept; empty: they are not kept
   std::string servers_file;        // the list of servers that were joined; empty: no list is kept
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical

@@ -204,6 +204,18 @@ std::string ScriptActions::show_library_answer() {
   return failed;
 }
 
+void ScriptActions::hold(Material material) { play_.hotbar().hold(material, steady_now_us()); }
+
+Result<void, std::string> ScriptActions::use_hotbar(const script::NamedHotbar& order) {
+  using What = script::NamedHotbar::What;
+  const HotbarOrder::What what = order.what == What::keep   ? HotbarOrder::What::keep
+                                 : order.what == What::take ? HotbarOrder::What::take
+                                                            : HotbarOrder::What::forget;
+  const auto done = play_.carry_out(HotbarOrder{what, order.name});
+  if (!done) return failure(done.error());
+  return {};
+}
+
 bool ScriptActions::screenshot(const std::string& file) {
   if (!play_.pipeline().draws()) return false;
   play_.pipeline().request_screenshot(screenshot_path(file), steady_now_us());

@@ -40,7 +40,8 @@ class ScriptActions final : public ScriptHost {
   const Replica& replica() const override { return session_.replica(); }
   Aim aim() const override { return play_.tool().aim(); }
   void fix_aim(std::optional<FixedAim> aim) override { play_.tool().fix_aim(aim); }
-  void hold(Material material) override { play_.hotbar().hold(material); }
+  void hold(Material material) override;
+  Result<void, std::string> use_hotbar(const script::NamedHotbar& order) override;
   void finish_preview() override;
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   TimeUs edit_wait_us(const EditDescriptor& edit, TimeUs now_us) override {

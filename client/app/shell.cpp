@@ -15,6 +15,7 @@
 #include "client/local/local_worlds.hpp"
 #include "client/net/key_file.hpp"
 #include "client/session/join_check.hpp"
+#include "client/settings/hotbars_file.hpp"
 #include "client/settings/recent_servers.hpp"
 #include "client/settings/world_kits.hpp"
 #include "common/os/steady_clock.hpp"
@@ -56,7 +57,10 @@ Shell::Shell(ClientOptions options, LoadedSettings loaded, std::string settings_
       display_(display),
       menu_(std::make_unique<Menu>(settings_)) {
   options_.asks_at_terminal = false;
-  if (options_.script.empty()) options_.kits_file = default_kits_file();
+  if (options_.script.empty()) {
+    options_.kits_file = default_kits_file();
+    options_.hotbars_file = default_hotbars_file();
+  }
   static_cast<void>(key_map_of(settings_, loaded.warnings));
   if (!loaded.warnings.empty()) {
     title_.failure.headline = "Some settings are not used";

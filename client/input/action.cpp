@@ -69,6 +69,8 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::earlier, "earlier", "go back by a hundredth of the log", time, "["},
     {Action::later, "later", "go forth by a hundredth of the log", time, "]"},
     {Action::live, "live", "return to the live world", time, "home"},
+    {Action::play_log, "play_log", "play the log from the shown moment on, or pause", time,
+     "ctrl+P"},
     {Action::help, "help", "show or hide this help", window, "F1"},
     {Action::screenshot, "screenshot", "write a picture to a file", window, "F2"},
     {Action::statistics, "statistics", "show or hide the measurements", window, "F3"},

@@ -67,6 +67,7 @@ enum class Action : std::uint8_t {
   earlier,
   later,
   live,
+  play_log,
   help,
   screenshot,
   statistics,

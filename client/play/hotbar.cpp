@@ -25,6 +25,7 @@ bool is_block(const MaterialInfo& material) {
 
 void Hotbar::fill(const MaterialTable& materials) {
   slots_.fill(kEmpty);
+  set_us_.fill(std::nullopt);
   std::size_t filled = 0;
   const auto add = [&](Material material) {
     const auto is_there = std::find(slots_.begin(), slots_.end(), material) != slots_.end();
@@ -69,15 +70,27 @@ void Hotbar::scroll(int steps) {
   choose(static_cast<std::size_t>((slot + count) % count));
 }
 
-void Hotbar::hold(Material material) {
+void Hotbar::hold(Material material, TimeUs now_us) {
   if (material == kEmpty) return;
   const auto found = std::find(slots_.begin(), slots_.end(), material);
   if (found != slots_.end()) {
     slot_ = static_cast<std::size_t>(found - slots_.begin());
   } else {
     slots_[slot_] = material;
+    set_us_[slot_] = now_us;
   }
   player_.hold(material);
+}
+
+void Hotbar::pick(Material material, TimeUs now_us) {
+  const bool has_it = std::find(slots_.begin(), slots_.end(), material) != slots_.end();
+  if (material != kEmpty && !has_it) {
+    std::size_t slot = slot_;
+    for (std::size_t i = 0; i < kSlotCount && is_fresh(slot, now_us); ++i)
+      slot = (slot + 1) % kSlotCount;
+    slot_ = slot;
+  }
+  hold(material, now_us);
 }
 
 bool Hotbar::act(Action action) {

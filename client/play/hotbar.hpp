@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "client/input/action.hpp"
 #include "client/play/player.hpp"
@@ -31,7 +32,12 @@ class Hotbar {
   void scroll(int steps);
   /// Puts a material into the player's hand. If a slot has it, chooses that slot; otherwise puts it
   /// into the chosen slot. Does nothing for kEmpty.
-  void hold(Material material);
+  void hold(Material material, TimeUs now_us);
+  /// Puts the material of the voxel in sight into the player's hand, as hold() does. But if the
+  /// chosen slot was set less than kFreshUs ago, puts it into the next slot that was not, so that
+  /// several materials can be picked one after another.
+  void pick(Material material, TimeUs now_us);
+  static constexpr TimeUs kFreshUs = 3'000'000;
   /// Carries out the action of a key that chooses a slot. Returns false if it is another action.
   bool act(Action action);
 
@@ -39,8 +45,13 @@ class Hotbar {
   const std::array<Material, kSlotCount>& slots() const { return slots_; }
 
  private:
+  bool is_fresh(std::size_t slot, TimeUs now_us) const {
+    return set_us_[slot] && now_us - *set_us_[slot] < kFreshUs;
+  }
+
   Player& player_;
   std::array<Material, kSlotCount> slots_{};
+  std::array<std::optional<TimeUs>, kSlotCount> set_us_{};  // when hold() or pick() set the slot
   std::size_t slot_ = 0;
 };
 

@@ -36,6 +36,7 @@ Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLo
       motion_(session.replica(), player_),
       clicks_(tool_),
       hotbar_(player_),
+      hotbars_(config.hotbars),
       chat_(session),
       view_(session, player_, config.wishes.radii, config.wishes.far_levels),
       limits_(config.wishes, session.replica(), pipeline_, view_),
@@ -72,7 +73,10 @@ void Play::open_world(TimeUs now_us) {
   const Welcome& welcome = *session_.welcome();
   player_.enter(welcome.world_id, welcome.spawn, session_.place());
   const bool is_another = std::exchange(world_, welcome.world_id) != welcome.world_id;
-  if (is_another) hotbar_.fill(welcome.materials);
+  if (is_another) {
+    hotbar_.fill(welcome.materials);
+    recent_.clear();
+  }
   set_materials(welcome.materials);
   if (is_another) take_up_kit();
   limits_.open_world(welcome.view_radius_max);
@@ -97,6 +101,34 @@ std::optional<KeptKit> Play::take_kit() {
   if (now == kept_kit_) return std::nullopt;
   kept_kit_ = now;
   return KeptKit{*world_, std::move(now)};
+}
+
+std::optional<HotbarLists> Play::take_hotbars() {
+  return hotbars_.take_changed() ? std::optional(hotbars_.lists()) : std::nullopt;
+}
+
+void Play::hold(Material material, bool is_picked, TimeUs now_us) {
+  if (is_picked) {
+    hotbar_.pick(material, now_us);
+  } else {
+    hotbar_.hold(material, now_us);
+  }
+  recent_.note(material);
+}
+
+Result<std::string, std::string> Play::carry_out(const HotbarOrder& order) {
+  const MaterialTable& materials = pipeline_.materials();
+  if (order.what == HotbarOrder::What::take) {
+    const auto slots = hotbars_.take(order.name, materials);
+    if (!slots) return failure(slots.error());
+    hotbar_.take(*slots, hotbar_.slot(), materials);
+    return "the hotbar \"" + order.name + "\" is taken";
+  }
+  const bool is_kept = order.what == HotbarOrder::What::keep;
+  const auto done =
+      is_kept ? hotbars_.keep(order.name, hotbar_.slots(), materials) : hotbars_.forget(order.name);
+  if (!done) return failure(done.error());
+  return "the hotbar \"" + order.name + (is_kept ? "\" is kept" : "\" is forgotten");
 }
 
 void Play::set_own_time(std::optional<double> share) { own_time_ = share; }
@@ -165,8 +197,9 @@ RoutedInput Play::handle_input(const UiFocus& focus, const PlaySettings& setting
   if (driver_ == Driver::person) move(input, std::min(seconds, kSecondsMax), settings.look);
   for (const std::string& why : clicks_.step(input, driver_ != Driver::script, now_us))
     notify(why, NoticeKind::warning);
+  if (input.place_clicks != 0) recent_.note(player_.held());
   if (input.pick_clicks != 0) {
-    if (const auto hit = tool_.pick()) hotbar_.hold(hit->material);
+    if (const auto hit = tool_.pick()) hold(hit->material, true, now_us);
   }
   if (const auto line = act_on_wheel(input, tool_, player_, hotbar_)) notify(*line);
   if (!input.actions.empty() || input.scroll != 0) pipeline_.moved();
@@ -218,7 +251,11 @@ bool Play::act(Action action, TimeUs now_us) {
 
 void Play::carry_out(const UiAction& action, TimeUs now_us) {
   if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
-  if (const auto* held = std::get_if<HoldMaterial>(&action)) hotbar_.hold(held->material);
+  if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material, false, now_us);
+  if (const auto* order = std::get_if<HotbarOrder>(&action)) {
+    const auto done = carry_out(*order);
+    notify(done ? *done : done.error(), done ? NoticeKind::information : NoticeKind::warning);
+  }
   if (const auto* chosen = std::get_if<SetInspection>(&action)) pipeline_.inspect(chosen->modes);
   if (const auto* time = std::get_if<SetTime>(&action)) set_own_time(time->share);
   if (const auto* moment = std::get_if<ShowMoment>(&action))
@@ -311,6 +348,8 @@ void Play::fill(HudState& state, const ShownPanels& shown) const {
   state.materials = &pipeline_.materials();
   state.slots = hotbar_.slots();
   state.slot = hotbar_.slot();
+  state.recent = recent_.all();
+  for (const auto& [name, materials] : hotbars_.lists()) state.hotbars.push_back(name);
   state.is_captured = input_.is_captured();
   if (const auto sight = tool_.pick()) {
     state.aimed_at = sight->material;

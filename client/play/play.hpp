@@ -28,9 +28,11 @@
 #include "client/play/edit_tool.hpp"
 #include "client/play/frame_scene.hpp"
 #include "client/play/hotbar.hpp"
+#include "client/play/named_hotbars.hpp"
 #include "client/play/others_previews.hpp"
 #include "client/play/player.hpp"
 #include "client/play/player_motion.hpp"
+#include "client/play/recent_materials.hpp"
 #include "client/play/server_notices.hpp"
 #include "client/play/texture_feed.hpp"
 #include "client/play/view_follower.hpp"
@@ -59,6 +61,7 @@ struct PlayConfig {
   std::optional<double> time_of_day;
   /// Returns the kit that the program has kept for a world. Empty: none is kept.
   std::function<std::optional<WorldKit>(const WorldId&)> kit_of;
+  HotbarLists hotbars = {};  // that the program has kept
 };
 
 /// The kit that the program stores for a world.
@@ -140,6 +143,10 @@ class Play {
   /// Returns the kit of the world if it has changed since the last call, or since the world was
   /// opened.
   std::optional<KeptKit> take_kit();
+  /// Returns the hotbars of this player if one was kept or forgotten since the last call.
+  std::optional<HotbarLists> take_hotbars();
+  /// Keeps, takes or forgets a hotbar. Returns a line for the player, as value or as failure.
+  Result<std::string, std::string> carry_out(const HotbarOrder& order);
   /// Returns the notices for the player since the last call.
   std::vector<PlayerNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns a line about what is shown: a moment of the past, or why ground is missing. The line
@@ -191,6 +198,8 @@ class Play {
   void set_materials(const MaterialTable& materials);
   void limit_memory(TimeUs now_us);
   void move(const WindowInput& input, double seconds, const LookSettings& look);
+  /// Puts a material into the player's hand, that of a voxel in sight if it `is_picked`.
+  void hold(Material material, bool is_picked, TimeUs now_us);
   void notify(std::string text, NoticeKind kind = NoticeKind::information) {
     notices_.push_back({std::move(text), kind});
   }
@@ -206,6 +215,8 @@ class Play {
   PlayerMotion motion_;
   ClickEdits clicks_;
   Hotbar hotbar_;
+  NamedHotbars hotbars_;
+  RecentMaterials recent_;
   InputRouter input_;
   Chat chat_;
   ViewFollower view_;

@@ -224,6 +224,12 @@ struct AimAt {
 struct Hold {
   std::string material;
 };
+/// Keeps the slots of the hotbar under a name, takes those of a name, or forgets them.
+struct NamedHotbar {
+  enum class What : std::uint8_t { keep, take, forget };
+  What what = What::take;
+  std::string name;
+};
 /// A mouse button with the chosen tool.
 struct UseTool {
   enum class Part : std::uint8_t { click, press, drag, release };
@@ -261,13 +267,14 @@ struct FileOfClipboard {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Roam, Look, TimeOfDay, SmoothEdges, LookAt, Set, Box, Sphere,
-                          Stroke, Copy, Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect,
-                          Repeat, End, Burst, Digests, HistoryRequest, Say, WaitChat, Command,
-                          PressKey, Type, Click, ShowInterface, Inspect, ShowMap, ZoomMap,
-                          ShowTimeline, Rollback, ShowLibrary, ListBuilds, TakeBuild, AddBuild,
-                          ChooseTool, SetParameter, AimAt, Hold, UseTool, Select, SelectionEdit,
-                          SetSymmetry, TypePlaces, RunToolCommand, FileOfClipboard, Quit>;
+using Step =
+    std::variant<Move, Walk, Roam, Look, TimeOfDay, SmoothEdges, LookAt, Set, Box, Sphere, Stroke,
+                 Copy, Paste, Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst,
+                 Digests, HistoryRequest, Say, WaitChat, Command, PressKey, Type, Click,
+                 ShowInterface, Inspect, ShowMap, ZoomMap, ShowTimeline, Rollback, ShowLibrary,
+                 ListBuilds, TakeBuild, AddBuild, ChooseTool, SetParameter, AimAt, Hold,
+                 NamedHotbar, UseTool, Select, SelectionEdit, SetSymmetry, TypePlaces,
+                 RunToolCommand, FileOfClipboard, Quit>;
 
 }  // namespace script
 

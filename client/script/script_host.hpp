@@ -56,6 +56,8 @@ class ScriptHost {
   virtual void fix_aim(std::optional<FixedAim> aim) = 0;
   /// Puts a material into the player's hand.
   virtual void hold(Material material) = 0;
+  /// Keeps, takes or forgets a hotbar. Fails with one line of text.
+  virtual Result<void, std::string> use_hotbar(const script::NamedHotbar& order) = 0;
   /// Makes the preview of the next click completely, if previews are shown.
   virtual void finish_preview() = 0;
   /// Returns the y of the highest shown voxel of the column that is not empty, or nullopt if there

@@ -101,6 +101,7 @@ class ScriptRunner {
   Progress run(const script::SetParameter& c);
   Progress run(const script::AimAt& c);
   Progress run(const script::Hold& c);
+  Progress run(const script::NamedHotbar& c);
   Progress run(const script::UseTool& c);
   Progress run(const script::Select& c);
   Progress run(const script::SelectionEdit& c);

@@ -81,6 +81,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::Hold& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::NamedHotbar& c) {
+  const auto done = host_.use_hotbar(c);
+  return done ? Progress::done : give_up(done.error());
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::UseTool& c) {
   using Part = script::UseTool::Part;
   ToolBox& box = host_.tool_box();

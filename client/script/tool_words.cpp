@@ -165,6 +165,17 @@ script::Step clipboard_step(ScriptWords& words) {
   return step;
 }
 
+script::Step hotbar_step(ScriptWords& words) {
+  using What = script::NamedHotbar::What;
+  const std::string_view verb = words.word("keep, take or forget");
+  if (verb != "keep" && verb != "take" && verb != "forget")
+    throw LineError{"\"" + std::string(verb) + "\" is none of keep, take, forget"};
+  const What what = verb == "keep" ? What::keep : verb == "take" ? What::take : What::forget;
+  script::NamedHotbar out{what, std::string(words.rest())};
+  if (out.name.empty()) throw LineError{"expected NAME"};
+  return out;
+}
+
 }  // namespace
 
 std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words) {
@@ -177,6 +188,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
   }
   if (verb == "aim") return aim_step(words);
   if (verb == "hold") return script::Hold{read_material(words)};
+  if (verb == "hotbar") return hotbar_step(words);
   if (verb == "use") return use_step(Part::click, words);
   if (verb == "press") return use_step(Part::press, words);
   if (verb == "drag") return script::UseTool{Part::drag, {}};

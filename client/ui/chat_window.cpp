@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/ui/scroll_keys.hpp"
 #include "client/ui/ui_draw.hpp"
 
 namespace runstone {
@@ -111,6 +112,12 @@ void ChatWindow::build_newest(double bottom, double scale) const {
   ImGui::SetNextWindowBgAlpha(0.35F);
   ImGui::Begin("chat lines", nullptr, kShowOnly);
   const std::size_t first = lines_.size() - std::min(lines_.size(), kNewestShown);
+  const auto hidden =
+      std::count_if(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(first),
+                    [](const Line& line) { return line.age < kShownSeconds; });
+  if (hidden != 0)
+    wrapped_text({std::to_string(hidden) + " more above: open the chat, then page up or the wheel"},
+                 0.7);
   for (std::size_t i = first; i < lines_.size(); ++i) {
     const double left = kShownSeconds + kFadeSeconds - lines_[i].age;
     if (left > 0) wrapped_text(lines_[i].entry, std::clamp(left / kFadeSeconds, 0.0, 1.0));
@@ -128,6 +135,7 @@ std::optional<std::string> ChatWindow::build_open(double bottom, double scale) {
   const float field_height = ImGui::GetFrameHeightWithSpacing();
   ImGui::BeginChild("lines", {0, -field_height});
   for (const Line& line : lines_) wrapped_text(line.entry, 1);
+  scroll_by_pages(pressed_step(ImGuiKey_PageDown, ImGuiKey_PageUp));
   if (std::exchange(has_new_line_, false)) ImGui::SetScrollHereY(1);
   ImGui::EndChild();
   ImGui::SetNextItemWidth(-1);
@@ -136,8 +144,8 @@ std::optional<std::string> ChatWindow::build_open(double bottom, double scale) {
                                          ImGuiInputTextFlags_CallbackHistory |
                                          ImGuiInputTextFlags_CallbackCompletion;
   const bool is_entered =
-      ImGui::InputTextWithHint("##line", "a line, or /command   (tab completes)", &field_, kFlags,
-                               &ChatFieldCallback::run, this);
+      ImGui::InputTextWithHint("##line", "a line, or /command   (tab completes, page up scrolls)",
+                               &field_, kFlags, &ChatFieldCallback::run, this);
   // The field takes the keyboard in the frame after the request, and selects its text. A slash that
   // opened the window must not be selected, because the next character would replace it.
   if (ImGui::IsItemActive() && std::exchange(takes_focus_, false)) {

@@ -2,7 +2,6 @@
 
 #include "client/input/key_rows.hpp"
 #include "client/ui/heads_up.hpp"
-#include "client/ui/help_window.hpp"
 #include "client/ui/inspection_panel.hpp"
 #include "client/ui/player_list.hpp"
 #include "client/ui/statistics_window.hpp"
@@ -26,7 +25,12 @@ bool Hud::act(Action action) {
       }
       return true;
     case Action::help:
-      shows_help_ = !shows_help_;
+      help_.toggle();
+      return true;
+    case Action::next_tool:
+    case Action::previous_tool:
+      if (!help_.is_open()) return false;
+      help_.scroll(action == Action::next_tool ? 1 : -1);
       return true;
     case Action::statistics:
       shows_statistics_ = !shows_statistics_;
@@ -41,8 +45,7 @@ bool Hud::act(Action action) {
 bool Hud::close_top() {
   if (chat_.is_open()) return chat_.close(), true;
   if (palette_.is_open()) return palette_.close(), true;
-  return std::exchange(shows_help_, false) || panels_.close_one() ||
-         std::exchange(shows_statistics_, false);
+  return help_.close() || panels_.close_one() || std::exchange(shows_statistics_, false);
 }
 
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
@@ -54,7 +57,8 @@ UiFocus Hud::focus() const {
   const bool has_fields = out.has_window || panels_.has_fields();
   out.types = has_fields && (context_.types() || takes_focus());
   out.over_window = context_.over_window();
-  out.panels = panels_.count_with_mouse() + (shows_help_ ? 1U : 0U) + (shows_statistics_ ? 1U : 0U);
+  out.panels =
+      panels_.count_with_mouse() + (help_.is_open() ? 1U : 0U) + (shows_statistics_ ? 1U : 0U);
   return out;
 }
 
@@ -87,7 +91,8 @@ std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::
 bool Hud::is_moving() const {
   const double name_left = kSlotNameSeconds - name_seconds_;
   const bool name_fades = name_left > 0 && (name_left < kSlotNameFadeSeconds || name_seconds_ == 0);
-  return has_news_ || name_fades || notices_.is_fading() || chat_.is_fading();
+  return has_news_ || name_fades || panels_.timeline().is_playing() || notices_.is_fading() ||
+         chat_.is_fading();
 }
 
 void Hud::build(const HudState& state) {
@@ -103,10 +108,8 @@ void Hud::build(const HudState& state) {
     if (modes != state.inspection) actions_.emplace_back(SetInspection{modes});
   }
   panels_.build(state, context_, actions_);
-  if (shows_help_) build_help(key_rows(keys_), shows_help_);
-  const Material held = state.slots[state.slot];
-  if (const auto chosen = palette_.build(*state.materials, held, scale))
-    actions_.emplace_back(HoldMaterial{*chosen});
+  help_.build(key_rows(keys_));
+  palette_.build(state, scale, actions_);
   notices_.build(top, scale);
 }
 

@@ -11,6 +11,7 @@
 
 #include "client/input/input_router.hpp"
 #include "client/ui/chat_window.hpp"
+#include "client/ui/help_window.hpp"
 #include "client/ui/hud_state.hpp"
 #include "client/ui/notice_list.hpp"
 #include "client/ui/palette_window.hpp"
@@ -60,7 +61,8 @@ class Hud {
   PaletteWindow palette_;
   PanelWindows panels_{keys_};
   bool has_news_ = false;  // since the last frame
-  bool shows_help_ = false, shows_statistics_ = false;
+  HelpWindow help_;
+  bool shows_statistics_ = false;
   std::vector<UiAction> actions_;
   double name_seconds_ = kLong;  // since the held material changed
   Material held_ = 0;            // of the last frame

@@ -66,8 +66,10 @@ struct FileState {
 struct HudState {
   const MaterialTable* materials = nullptr;  // not null; it must outlive the call
   std::array<Material, kSlotCount> slots{};
-  std::size_t slot = 0;      // the chosen one
-  bool is_captured = false;  // the mouse moves the player
+  std::size_t slot = 0;              // the chosen one
+  std::vector<Material> recent;      // used last, newest first
+  std::vector<std::string> hotbars;  // names of those that the player has kept, ascending
+  bool is_captured = false;          // the mouse moves the player
   bool is_connected = false;
   std::string place;                 // position, and how the player moves
   std::optional<Material> aimed_at;  // the voxel in sight

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "client/ui/block_icon.hpp"
+#include "client/ui/text_field.hpp"
+#include "client/ui/ui_draw.hpp"
 #include "common/materials/readable_name.hpp"
 
 namespace runstone {
@@ -57,15 +59,79 @@ void PaletteWindow::open() {
 }
 
 void PaletteWindow::update_matches(const MaterialTable& table) {
-  if (matched_ == search_ && matched_count_ == table.size()) return;
-  matched_ = search_;
-  matched_count_ = table.size();
+  Matched wanted{search_, table.size(), order_};
+  if (matched_ == wanted) return;
   matches_ = matching_materials(table, search_);
+  sort_materials(matches_, table, order_);
+  matched_ = std::move(wanted);
 }
 
-std::optional<Material> PaletteWindow::build(const MaterialTable& table, Material held,
-                                             double scale) {
-  if (!is_open_) return std::nullopt;
+void PaletteWindow::build_orders() {
+  constexpr std::array<std::pair<MaterialOrder, const char*>, 3> kOrders = {
+      {{MaterialOrder::table, "as in the world"},
+       {MaterialOrder::name, "by name"},
+       {MaterialOrder::colour, "by colour"}}};
+  for (const auto& [order, label] : kOrders) {
+    if (order != kOrders.front().first) ImGui::SameLine();
+    if (ImGui::RadioButton(label, order_ == order)) order_ = order;
+  }
+}
+
+std::optional<Material> PaletteWindow::build_recent(const HudState& state, double scale) {
+  std::optional<Material> chosen;
+  const auto side = static_cast<float>(26 * scale);
+  bool is_first = true;
+  for (const Material material : state.recent) {
+    if (!state.materials->knows(material)) continue;
+    if (!is_first) {
+      ImGui::SameLine();
+      if (ImGui::GetContentRegionAvail().x < side) {
+        ImGui::NewLine();
+        break;
+      }
+    }
+    is_first = false;
+    const MaterialInfo& info = (*state.materials)[material];
+    ImGui::PushID(int{material});
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##recent", false, 0, {side, side})) chosen = material;
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("used lately: %s", readable_name(info.name).c_str());
+    block_icon(*ImGui::GetWindowDrawList(), {from.x + 2, from.y + 2},
+               {from.x + side - 2, from.y + side - 2}, info);
+    ImGui::PopID();
+  }
+  return chosen;
+}
+
+std::optional<HotbarOrder> PaletteWindow::build_hotbars(const std::vector<std::string>& names) {
+  using What = HotbarOrder::What;
+  std::optional<HotbarOrder> out;
+  const float wide = ImGui::GetContentRegionAvail().x;
+  ImGui::SetNextItemWidth(wide * 0.3F);
+  text_field("##hotbar", "name of a hotbar", hotbar_);
+  ImGui::SameLine();
+  if (enabled_button("Keep hotbar", !hotbar_.empty())) out = HotbarOrder{What::keep, hotbar_};
+  ImGui::SameLine();
+  const bool is_kept = std::find(names.begin(), names.end(), hotbar_) != names.end();
+  if (enabled_button("Forget", is_kept)) out = HotbarOrder{What::forget, hotbar_};
+  if (names.empty()) return out;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##hotbars", "Take a hotbar")) {
+    for (const std::string& name : names) {
+      if (!ImGui::Selectable(name.c_str())) continue;
+      hotbar_ = name;
+      out = HotbarOrder{What::take, name};
+    }
+    ImGui::EndCombo();
+  }
+  return out;
+}
+
+void PaletteWindow::build(const HudState& state, double scale, std::vector<UiAction>& out) {
+  if (!is_open_) return;
+  const MaterialTable& table = *state.materials;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x / 2, size.y * 0.45F}, ImGuiCond_Appearing, {0.5F, 0.5F});
   ImGui::SetNextWindowSize({size.x * 0.6F, size.y * 0.66F}, ImGuiCond_Appearing);
@@ -77,18 +143,22 @@ std::optional<Material> PaletteWindow::build(const MaterialTable& table, Materia
   const bool is_entered = ImGui::InputTextWithHint("##search", "search", &search_,
                                                    ImGuiInputTextFlags_EnterReturnsTrue);
   if (ImGui::IsItemActive()) takes_focus_ = false;
+  build_orders();
+  std::optional<Material> chosen = build_recent(state, scale);
   update_matches(table);
-  std::optional<Material> chosen = build_grid(table, held, scale);
+  if (const auto in_grid = build_grid(table, state.slots[state.slot], scale)) chosen = in_grid;
   if (is_entered && !matches_.empty()) chosen = matches_.front();
+  const auto order = build_hotbars(state.hotbars);
   ImGui::End();
-  if (chosen) close();
-  return chosen;
+  if (chosen) out.emplace_back(HoldMaterial{*chosen});
+  if (order) out.emplace_back(*order);
+  if (chosen || (order && order->what == HotbarOrder::What::take)) close();
 }
 
 std::optional<Material> PaletteWindow::build_grid(const MaterialTable& table, Material held,
                                                   double scale) {
   std::optional<Material> chosen;
-  ImGui::BeginChild("grid");
+  ImGui::BeginChild("grid", {0, -ImGui::GetFrameHeightWithSpacing()});  // the hotbars are below
   if (matches_.empty()) ImGui::TextDisabled("no material has this name");
   const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
   const float wide = ImGui::GetContentRegionAvail().x;

@@ -1,11 +1,14 @@
-// PaletteWindow: a list of all materials of the world, with a field that searches their names. One
-// thread.
+// PaletteWindow: a list of all materials of the world, with a field that searches their names, the
+// materials that were used last, and the hotbars that the player has kept. One thread.
 #pragma once
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "client/ui/hud_state.hpp"
+#include "client/ui/material_order.hpp"
+#include "client/ui/ui_action.hpp"
 #include "common/core/ids.hpp"
 #include "common/materials/material_table.hpp"
 
@@ -26,18 +29,29 @@ class PaletteWindow {
   bool is_open() const { return is_open_; }
   /// Returns true from open() until the field has the keyboard.
   bool takes_focus() const { return is_open_ && takes_focus_; }
-  /// Makes the window with ImGui. Returns the material that the user chose, and closes the window:
-  /// a click chooses a material, and enter chooses the first one.
-  std::optional<Material> build(const MaterialTable& table, Material held, double scale);
+  /// Makes the window with ImGui, and appends what the user did: HoldMaterial by a click, or by enter
+  /// for the first one, or HotbarOrder. The window closes when a material or a hotbar was taken.
+  void build(const HudState& state, double scale, std::vector<UiAction>& out);
 
  private:
   void update_matches(const MaterialTable& table);
+  void build_orders();
+  static std::optional<Material> build_recent(const HudState& state, double scale);
+  std::optional<HotbarOrder> build_hotbars(const std::vector<std::string>& names);
   std::optional<Material> build_grid(const MaterialTable& table, Material held, double scale);
 
   bool is_open_ = false, takes_focus_ = false;
   std::string search_;
-  std::optional<std::string> matched_;  // the text that matches_ belongs to
-  std::size_t matched_count_ = 0;       // materials of the table then
+  MaterialOrder order_ = MaterialOrder::table;
+  std::string hotbar_;  // in the field for the name of a hotbar
+  /// What matches_ belongs to: the search, the number of materials and the order.
+  struct Matched {
+    std::string search;
+    std::size_t count = 0;
+    MaterialOrder order = MaterialOrder::table;
+    friend bool operator==(const Matched&, const Matched&) = default;
+  };
+  std::optional<Matched> matched_;
   std::vector<Material> matches_;
 };
 

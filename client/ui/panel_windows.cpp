@@ -10,6 +10,8 @@ bool PanelWindows::act(Action action) {
       return tools_.toggle(), true;
     case Action::timeline:
       return timeline_.toggle(), true;
+    case Action::play_log:
+      return timeline_.toggle_play(), true;
     case Action::map:
       return map_.toggle(), true;
     case Action::rollback:

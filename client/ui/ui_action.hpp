@@ -22,6 +22,12 @@ struct SendLine {
 struct HoldMaterial {
   Material material = 0;
 };
+/// A hotbar is kept under a name, taken, or forgotten.
+struct HotbarOrder {
+  enum class What : std::uint8_t { keep, take, forget };
+  What what = What::take;
+  std::string name;
+};
 /// The user moved to this moment of the log, or to the live world if `is_live`.
 struct ShowMoment {
   Sequence seq = 0;
@@ -42,7 +48,8 @@ struct SetInspection {
   InspectionModes modes;
 };
 
-using UiAction = std::variant<SendLine, HoldMaterial, ShowMoment, SetInspection, RollbackOrder,
-                              LibraryOrder, ToolCommand, ClipboardOfFile, FileStop, SetTime>;
+using UiAction =
+    std::variant<SendLine, HoldMaterial, HotbarOrder, ShowMoment, SetInspection, RollbackOrder,
+                 LibraryOrder, ToolCommand, ClipboardOfFile, FileStop, SetTime>;
 
 }  // namespace runstone

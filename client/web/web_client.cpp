@@ -198,7 +198,9 @@ std::shared_ptr<const OverlayFrame> WebClient::make_windows(TimeUs now_us) {
 
 void WebClient::act(Action action) {
   if (play_.act(action, steady_now_us())) return;
-  if (action != Action::timeline && windows_.act(action)) return;
+  // The page has a timeline of its own, which does not play.
+  const bool is_of_page = action == Action::timeline || action == Action::play_log;
+  if (!is_of_page && windows_.act(action)) return;
   switch (action) {
     case Action::chat:
     case Action::command:

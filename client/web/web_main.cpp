@@ -213,7 +213,7 @@ EMSCRIPTEN_KEEPALIVE void web_choose_slot(int slot) {
 
 EMSCRIPTEN_KEEPALIVE void web_hold(int material) {
   if (client && material > 0 && static_cast<std::size_t>(material) < kMaterialCountMax)
-    client->play().hotbar().hold(static_cast<Material>(material));
+    client->play().hotbar().hold(static_cast<Material>(material), steady_now_us());
 }
 
 EMSCRIPTEN_KEEPALIVE void web_say(const char* line) {

@@ -1,5 +1,6 @@
 #include "client/play/hotbar.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 #include <string>
@@ -79,12 +80,42 @@ TEST_CASE_METHOD(HotbarBench,
   bar.scroll(-2);
   CHECK(bar.slot() == 1);
   const Material gold = *find_material(default_material_table(), "gold");
-  bar.hold(gold);
+  bar.hold(gold, 0);
   CHECK(bar.slot() == 1);
   CHECK(player.held() == gold);
   bar.choose(4);
-  bar.hold(gold);  // slot 1 has it
+  bar.hold(gold, 0);  // slot 1 has it
   CHECK(bar.slot() == 1);
+}
+
+TEST_CASE_METHOD(HotbarBench, "materials that are picked one after another take one slot each",
+                 "[client_app]") {
+  const MaterialTable& table = default_material_table();
+  bar.fill(table);
+  std::vector<Material> others;
+  for (Material id = 1; others.size() < kSlotCount + 1; ++id) {
+    if (std::find(bar.slots().begin(), bar.slots().end(), id) == bar.slots().end())
+      others.push_back(id);
+  }
+  bar.choose(7);
+  const Material eighth = bar.slots()[8];
+  bar.pick(others[0], 1'000'000);
+  CHECK(bar.slot() == 7);
+  bar.pick(others[1], 2'000'000);
+  CHECK(bar.slot() == 8);
+  CHECK(bar.slots()[8] != eighth);
+  bar.pick(others[2], 3'000'000);
+  CHECK(bar.slot() == 0);
+  bar.pick(others[0], 3'100'000);  // a slot has it
+  CHECK(bar.slot() == 7);
+  CHECK(player.held() == others[0]);
+  bar.pick(others[3], 1'000'000 + Hotbar::kFreshUs);  // the slot is not fresh any more
+  CHECK(bar.slot() == 7);
+  CHECK(bar.slots()[8] == others[1]);
+  bar.hold(others[4], 4'100'000);  // a choice is for the chosen slot
+  CHECK(bar.slot() == 7);
+  for (std::size_t i = 5; i < others.size(); ++i) bar.pick(others[i], 4'200'000);
+  CHECK(bar.slots()[7] == others[4]);
 }
 
 TEST_CASE_METHOD(HotbarBench, "a player holds the material of the chosen slot", "[client]") {
@@ -98,7 +129,7 @@ TEST_CASE_METHOD(HotbarBench, "a player holds the material of the chosen slot", 
   bar.choose(kSlotCount);  // there is no such slot
   CHECK(bar.slot() == 1);
   const Material stone = bar.slots()[0];
-  bar.hold(stone);
+  bar.hold(stone, 0);
   CHECK(bar.slot() == 0);
   CHECK(player.held() == stone);
 }
@@ -112,7 +143,7 @@ TEST_CASE_METHOD(HotbarBench, "a player never holds an empty slot", "[client]") 
   REQUIRE(player.held() == *block);
   bar.choose(5);
   CHECK(player.held() == *block);
-  bar.hold(kEmpty);
+  bar.hold(kEmpty, 0);
   CHECK(player.held() == *block);
   CHECK(bar.slots()[5] == kEmpty);
 }

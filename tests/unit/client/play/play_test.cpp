@@ -175,6 +175,40 @@ TEST_CASE_METHOD(PlayBench, "hotbar and tool come back that were kept for a worl
   CHECK_FALSE(again.take_kit());
 }
 
+TEST_CASE_METHOD(PlayBench, "hotbars are kept, taken and forgotten by their names", "[client]") {
+  using What = HotbarOrder::What;
+  const auto before = play.hotbar().slots();
+  CHECK_FALSE(play.take_hotbars());
+  play.carry_out(HotbarOrder{What::keep, "first"}, now);
+  CHECK(notices() == std::vector<std::string>{"the hotbar \"first\" is kept"});
+  const auto kept = play.take_hotbars();
+  REQUIRE(kept);
+  CHECK(kept->at("first").size() == kSlotCount);
+  CHECK_FALSE(play.take_hotbars());
+  play.carry_out(HoldMaterial{*default_material_table().find("gold")}, now);
+  CHECK(play.hotbar().slots() != before);
+  REQUIRE(play.carry_out(HotbarOrder{What::take, "first"}));
+  CHECK(play.hotbar().slots() == before);
+  HudState state;
+  play.fill(state, {});
+  CHECK(state.hotbars == std::vector<std::string>{"first"});
+  CHECK(state.recent == std::vector<Material>{*default_material_table().find("gold")});
+  REQUIRE(play.carry_out(HotbarOrder{What::forget, "first"}));
+  CHECK_FALSE(play.carry_out(HotbarOrder{What::take, "first"}));
+  CHECK(play.take_hotbars()->empty());
+}
+
+TEST_CASE_METHOD(PlayBench, "the middle button picks the voxel in sight into a slot", "[client]") {
+  show_ground();
+  play.input().capture();
+  const Material seen = *session.replica().shown_at({8, -1, 8});
+  play.hotbar().choose(5);
+  play.input().push(
+      {ButtonEvent{MouseButton::middle, true}, ButtonEvent{MouseButton::middle, false}});
+  turn();
+  CHECK(play.player().held() == seen);
+}
+
 TEST_CASE_METHOD(PlayBench, "a click edits the ground, and a key of a tool changes the tool",
                  "[client]") {
   show_ground();

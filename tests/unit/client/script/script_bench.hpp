@@ -96,6 +96,13 @@ struct FakeScriptHost final : ScriptHost {
   }
   void fix_aim(std::optional<FixedAim> aim) override { fixed_aim = aim; }
   void hold(Material material) override { held = material; }
+  std::vector<std::string> hotbars;
+  Result<void, std::string> use_hotbar(const script::NamedHotbar& order) override {
+    if (order.what == script::NamedHotbar::What::forget) return failure("there is none");
+    hotbars.push_back((order.what == script::NamedHotbar::What::keep ? "keep " : "take ") +
+                      order.name);
+    return {};
+  }
   void finish_preview() override { ++previews; }
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
     if (x > 1000) return std::nullopt;

@@ -37,6 +37,16 @@ TEST_CASE_METHOD(ToolScript, "a script clicks with a tool, its parameters and th
         EditDescriptor{FillSphere{{3, 3, 3}, 2}, {MaskKind::only_empty, 0}, kEmpty});
 }
 
+TEST_CASE_METHOD(ToolScript, "a script keeps and takes hotbars by their names", "[bots]") {
+  run("hotbar keep red walls\nhotbar take roofs");
+  CHECK(runner->failures().empty());
+  CHECK(host.hotbars == std::vector<std::string>{"keep red walls", "take roofs"});
+  run("hotbar forget roofs");
+  CHECK(runner->failures().size() == 1);
+  CHECK(error_of("hotbar eat roofs").find("none of keep, take, forget") != std::string::npos);
+  CHECK(error_of("hotbar keep").find("expected NAME") != std::string::npos);
+}
+
 TEST_CASE_METHOD(ToolScript, "a script draws a stroke, and one click of it is a sphere", "[bots]") {
   run("tool stroke\nhold sand\naim 3 3 3 +y\npress\naim 6 3 3 +y\ndrag\naim 6 3 9 +y\nrelease\n"
       "aim 1 3 1 +y\nuse");

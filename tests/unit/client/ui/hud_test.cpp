@@ -157,6 +157,28 @@ TEST_CASE_METHOD(HudBench,
   CHECK(take<HoldMaterial>().material != kEmpty);
 }
 
+TEST_CASE_METHOD(HudBench, "the palette offers what was used lately, and keeps hotbars",
+                 "[client_ui]") {
+  press(Key::e);
+  frame();
+  const std::size_t without = frame();
+  state.recent = {5, 6};
+  state.hotbars = {"roofs"};
+  frame();
+  CHECK(frame() > without);
+  click(150, 150);  // the first icon, below the orders
+  CHECK(take<HoldMaterial>().material == 5);
+  press(Key::e);
+  frame();
+  click(180, 354);  // the field for a name, at the lower edge
+  type("walls");
+  click(285, 354);
+  const auto order = take<HotbarOrder>();
+  CHECK(order.what == HotbarOrder::What::keep);
+  CHECK(order.name == "walls");
+  CHECK(hud.focus().has_window);  // the window stays open
+}
+
 TEST_CASE("materials match by all words of a search, and a name that begins with it comes first",
           "[client_ui]") {
   const MaterialTable& table = default_material_table();
@@ -190,6 +212,52 @@ TEST_CASE_METHOD(HudBench, "help opens and closes by its key and by escape", "[c
   press(Key::f1);
   CHECK(press(Key::escape).empty());
   CHECK(frame() == without);
+}
+
+TEST_CASE("help fits a frame of 1024 x 576 in its width, and scrolls to its last row by keys",
+          "[client_ui]") {
+  constexpr std::array<int, 2> kSmall = {1024, 576};
+  Hud hud{KeyMap{}};
+  const HudState state = some_state();
+  hud.act(Action::help);
+  const auto frame = [&] { return hud.make_frame(state, kSmall, 0.016); };
+  for (int i = 0; i < 4; ++i) frame();
+  const auto top = frame();
+  // Texts that are cut by the window would have corners outside of it.
+  float right = 0, bottom = 0;
+  for (const OverlayVertex& vertex : top->vertices) {
+    right = std::max(right, vertex.x);
+    bottom = std::max(bottom, vertex.y);
+  }
+  CHECK(right <= 1024);
+  CHECK(bottom <= 576);
+  CHECK_FALSE(hud.act(Action::earlier));
+  CHECK(hud.act(Action::next_tool));
+  for (int i = 0; i < 2; ++i) frame();
+  const auto below = frame();
+  CHECK(below->vertices != top->vertices);
+  for (int i = 0; i < 20; ++i) hud.act(Action::previous_tool);
+  for (int i = 0; i < 2; ++i) frame();
+  CHECK(frame()->vertices == top->vertices);
+  hud.feed({hud_key(Key::down, true), hud_key(Key::down, false)});
+  for (int i = 0; i < 3; ++i) frame();
+  CHECK(frame()->vertices != top->vertices);
+  hud.act(Action::help);
+  CHECK_FALSE(hud.act(Action::next_tool));
+}
+
+TEST_CASE_METHOD(HudBench, "page up scrolls an open chat to its older lines", "[client_ui]") {
+  for (int i = 0; i < 200; ++i) hud.hear({"line " + std::to_string(i), ChatTone::answer});
+  press(Key::t);
+  for (int i = 0; i < 3; ++i) frame();
+  const auto shown = [this] { return hud.make_frame(state, kHudSize, 0.016)->vertices; };
+  const auto newest = shown();
+  press(Key::page_up);
+  frame();
+  CHECK(shown() != newest);
+  for (int i = 0; i < 3; ++i) press(Key::page_down);
+  frame();
+  CHECK(shown() == newest);
 }
 
 TEST_CASE_METHOD(HudBench,

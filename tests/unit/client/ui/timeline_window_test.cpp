@@ -103,3 +103,42 @@ TEST_CASE("a timeline without marks says why", "[client_ui]") {
   bench.state.newest = bench.state.shown = 0;  // nobody has built yet
   CHECK_FALSE(bench.frame().has_value());
 }
+
+TEST_CASE_METHOD(TimelineBench, "a key plays the log until its end, or until the slider is moved",
+                 "[client_ui]") {
+  state.newest = state.shown = 10'000;
+  const auto play = [this](int frames) {
+    std::vector<ShowMoment> out;
+    for (int i = 0; i < frames; ++i) {
+      if (const auto moment = frame()) {
+        out.push_back(*moment);
+        state.is_past = !moment->is_live;
+        state.shown = moment->seq;
+      }
+    }
+    return out;
+  };
+  CHECK(play(10).empty());
+  window.toggle_play();
+  CHECK(window.is_playing());
+  const auto first = play(50);
+  REQUIRE(first.size() == 50);
+  CHECK(first.front().seq < 10);  // of the whole log
+  CHECK(std::is_sorted(first.begin(), first.end(),
+                       [](const auto& a, const auto& b) { return a.seq < b.seq; }));
+  window.toggle_play();
+  play(1);
+  CHECK_FALSE(window.is_playing());
+  CHECK(play(10).empty());
+  window.toggle_play();  // from the shown moment on
+  const auto all = play(4'000);
+  REQUIRE_FALSE(all.empty());
+  CHECK(all.front().seq >= first.back().seq);
+  CHECK(all.back().is_live);
+  CHECK_FALSE(window.is_playing());
+  window.toggle_play();
+  play(5);
+  for (const bool is_pressed : {true, false})
+    frame({CursorEvent{640, 78, 0, 0}, ButtonEvent{MouseButton::left, is_pressed}});
+  CHECK_FALSE(window.is_playing());
+}
