@@ -25,7 +25,8 @@ std::optional<Marker> ground_marker(const GroundBox& box, const WorldPos& eye, d
              230,
              50,
              40,
-             false};
+             false,
+             !box.admits};
   if (box.admits) out.r = 50, out.g = 200, out.b = 80;
   return out;
 }

@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-/// Returns the edges of the box, green if it admits the player and red otherwise. Parts of the box
+/// Returns the edges of the box, green if it admits the player, and otherwise red and crossed. Parts of the box
 /// that lie farther than `far` from the eye along an axis are left out, because a box may reach
 /// through the whole world: the edges that are drawn there instead are farther than the view.
 /// Returns nullopt if nothing of the box is within `far`.

@@ -1,9 +1,11 @@
 #include "client/display/player_body.hpp"
 
+#include <array>
+#include <cstdint>
 #include <numbers>
 
+#include "client/render/author_rgb.hpp"
 #include "client/render/renderer.hpp"
-#include "common/core/hash.hpp"
 
 namespace runstone {
 namespace {
@@ -16,13 +18,6 @@ constexpr double kTooNear = 2 * Camera{}.near;
 
 }  // namespace
 
-std::array<std::uint8_t, 3> player_colour(AuthorId author) {
-  const auto shade = [author](AuthorId channel) {
-    return static_cast<std::uint8_t>(96 + mix64(author + channel) % 160);
-  };
-  return {shade(0), shade(1), shade(2)};
-}
-
 std::optional<Body> player_body(AuthorId author, const Pose& pose, const WorldPos& eye) {
   const WorldPos& at = pose.at;
   const auto near = [](double v, double from, double to) {
@@ -32,7 +27,7 @@ std::optional<Body> player_body(AuthorId author, const Pose& pose, const WorldPo
   if (near(eye.x, at.x - kHalfWidth, at.x + kHalfWidth) && near(eye.y, feet, feet + kHeight) &&
       near(eye.z, at.z - kHalfWidth, at.z + kHalfWidth))
     return std::nullopt;
-  const std::array<std::uint8_t, 3> colour = player_colour(author);
+  const std::array<std::uint8_t, 3> colour = author_rgb(author);
   return Body{at.x,
               feet,
               at.z,

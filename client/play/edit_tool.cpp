@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -16,6 +17,8 @@ namespace {
 constexpr std::size_t kPreviewChunks = 64;
 /// The edits of an action that are offered in one turn. Each is predicted in up to some thirty chunks.
 constexpr std::size_t kBuildEdits = 8;
+/// The greatest radius of a stroke that others see while it is drawn.
+constexpr std::int32_t kStrokeRadiusShared = 16;
 
 const char* name_of(SymmetryKind kind) {
   switch (kind) {
@@ -188,6 +191,34 @@ std::string EditTool::text() const {
   if (!box_.points().empty()) out += ", places chosen: " + std::to_string(box_.points().size());
   if (box_.preview().missing_chunks() != 0) out += ", a part of the preview is not loaded";
   return out;
+}
+
+std::optional<EditDescriptor> EditTool::drawn_stroke() const {
+  if (!box_.tool().is_drawn() || box_.points().size() < 2) return std::nullopt;
+  const std::int32_t edge = session_.replica().chunk_edge();
+  const std::vector<EditDescriptor>& edits = box_.preview().edits();
+  if (!edits.empty() && may_be_shared(edits, edge)) return std::nullopt;
+  std::int32_t radius = 1;
+  for (const ToolParameter& parameter : box_.tool().parameters()) {
+    if (parameter.name == "radius") radius = parameter.value;
+    if (parameter.name == "width") radius = parameter.value / 2;
+  }
+  FillStroke stroke{{box_.points().begin(), box_.points().end()},
+                    static_cast<std::uint16_t>(std::clamp(radius, 1, kStrokeRadiusShared))};
+  const Material material = box_.button() == ToolButton::place ? player_.held() : kEmpty;
+  for (;;) {
+    EditDescriptor edit{stroke, {}, material};
+    if (may_be_shared({edit}, edge)) return edit;
+    if (stroke.radius > 1) {
+      stroke.radius = static_cast<std::uint16_t>(stroke.radius / 2);
+    } else if (stroke.points.size() > 2) {
+      const auto half = static_cast<std::ptrdiff_t>(stroke.points.size() / 2);
+      stroke.points.erase(stroke.points.begin(), stroke.points.begin() + half);
+      if (stroke.points.size() < 2) return std::nullopt;
+    } else {
+      return std::nullopt;
+    }
+  }
 }
 
 std::string EditTool::measure_text() const {

@@ -57,6 +57,7 @@ FrameContents FrameScene::contents(bool outlines_aim, bool shows_ground) const {
   for (const std::span<const GhostChunk> ghosts : {tool_.ghosts(), panels_.rollback().ghosts()})
     out.ghosts.insert(out.ghosts.end(), ghosts.begin(), ghosts.end());
   others_.append_ghosts(out.ghosts);
+  others_.append_outlines(out.markers);
   return out;
 }
 

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "client/display/player_body.hpp"
+#include "client/render/author_rgb.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 
@@ -43,8 +44,22 @@ bool OthersPreviews::clear() {
 void OthersPreviews::append_ghosts(std::vector<GhostChunk>& out) const {
   for (const auto& [author, preview] : previews_) {
     for (GhostChunk ghost : preview.ghosts()) {
-      ghost.tint = player_colour(author);
+      ghost.tint = author_rgb(author);
       out.push_back(std::move(ghost));
+    }
+  }
+}
+
+void OthersPreviews::append_outlines(std::vector<Marker>& out) const {
+  constexpr double kGap = 0.03;  // so that the outline lies before the faces of the ghost
+  for (const auto& [author, preview] : previews_) {
+    const auto [r, g, b] = author_rgb(author);
+    for (const EditDescriptor& edit : preview.edits()) {
+      const VoxelBox box = bounding_box(edit);
+      if (box.empty()) continue;
+      out.push_back({box.min.x - kGap, box.min.y - kGap, box.min.z - kGap,
+                     box.max.x - box.min.x + 2 * kGap, box.max.y - box.min.y + 2 * kGap,
+                     box.max.z - box.min.z + 2 * kGap, r, g, b});
     }
   }
 }

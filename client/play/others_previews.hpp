@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/render/ghost.hpp"
+#include "client/render/marker.hpp"
 #include "client/replica/replica.hpp"
 #include "client/session/shared_previews.hpp"
 #include "client/tools/edit_preview.hpp"
@@ -32,6 +33,8 @@ class OthersPreviews {
   bool clear();
   /// Appends the ghosts, each in the colour of its player.
   void append_ghosts(std::vector<GhostChunk>& out) const;
+  /// Appends the outline of each edit of the shown previews, in the colour of its player.
+  void append_outlines(std::vector<Marker>& out) const;
 
  private:
   MeshMaterialsPtr materials_ = std::make_shared<const MeshMaterials>();

@@ -289,7 +289,12 @@ void Play::step_previews(const PlaySettings& settings, TimeUs now_us) {
   if (tool_.step_preview()) pipeline_.moved();
   const bool is_on = tool_.box().is_preview_shown();
   const bool is_shared = is_on && settings.shares_previews && tool_.has_preview();
-  session_.share_preview(is_shared ? tool_.box().preview().edits() : kNothing, now_us);
+  const auto stroke = is_shared ? tool_.drawn_stroke() : std::nullopt;
+  if (stroke) {
+    session_.share_preview({*stroke}, now_us);
+  } else {
+    session_.share_preview(is_shared ? tool_.box().preview().edits() : kNothing, now_us);
+  }
   const Replica& replica = session_.replica();
   const bool is_shown = is_on && settings.shows_previews && replica.opened() && !replica.past();
   const bool has_changed =

@@ -16,10 +16,11 @@ struct GhostChunk {
   ChunkKey key;
   std::int32_t edge = 0;  // of the chunk, in voxels
   /// placed: the quads of voxels that the edit would set, drawn in the colours of their materials.
-  /// removed: the quads of voxels that it would clear, drawn in red. Either may be null.
+  /// removed: the quads of voxels that it would clear, drawn in red with a cross on each cell of a
+  /// face. Either may be null.
   std::shared_ptr<const ChunkMesh> placed, removed;
   /// The colour of the player whose preview it is, r, g, b; nullopt: of this player. Ghosts of
-  /// others are drawn lighter, in their colour.
+  /// others are drawn in their colour.
   std::optional<std::array<std::uint8_t, 3>> tint = std::nullopt;
   /// Added to the place that the key gives. A build may be pasted anywhere.
   VoxelPos shift{};

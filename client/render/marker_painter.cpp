@@ -9,12 +9,14 @@
 namespace runstone {
 namespace {
 
-/// The corners of the unit cube as the ends of 12 edges and as 12 triangles. Bits 0, 1, 2 of a
-/// corner are x, y, z.
-constexpr int kEdgeVertices = 24;
+/// The corners of the unit cube as the ends of 12 edges and of 12 diagonals of faces, and as 12
+/// triangles. Bits 0, 1, 2 of a corner are x, y, z.
+constexpr int kEdgeVertices = 24, kDiagonalVertices = 24;
 constexpr int kCubeVertices = 36;
 constexpr std::array<std::uint8_t, kEdgeVertices> kEdges = {0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7,
                                                             7, 6, 6, 4, 0, 4, 1, 5, 2, 6, 3, 7};
+constexpr std::array<std::uint8_t, kDiagonalVertices> kDiagonals = {
+    0, 6, 2, 4, 1, 7, 3, 5, 0, 5, 1, 4, 2, 7, 3, 6, 0, 3, 1, 2, 4, 7, 5, 6};
 constexpr std::array<std::uint8_t, kCubeVertices> kFaces = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5,
                                                             0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3,
                                                             0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
@@ -43,6 +45,7 @@ MarkerPainter::MarkerPainter()
                                    static_cast<float>(c >> 2)});
   };
   std::for_each(kEdges.begin(), kEdges.end(), add);
+  std::for_each(kDiagonals.begin(), kDiagonals.end(), add);
   std::for_each(kFaces.begin(), kFaces.end(), add);
   glBindVertexArray(array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, corners_.get());
@@ -70,9 +73,9 @@ void MarkerPainter::draw(std::span<const Marker> markers, const glm::dvec3& eye,
     glUniform4f(glGetUniformLocation(program_.get(), "colour"), static_cast<float>(m.r) / 255.0F,
                 static_cast<float>(m.g) / 255.0F, static_cast<float>(m.b) / 255.0F, 1.0F);
     if (m.filled) {
-      glDrawArrays(GL_TRIANGLES, kEdgeVertices, kCubeVertices);
+      glDrawArrays(GL_TRIANGLES, kEdgeVertices + kDiagonalVertices, kCubeVertices);
     } else {
-      glDrawArrays(GL_LINES, 0, kEdgeVertices);
+      glDrawArrays(GL_LINES, 0, kEdgeVertices + (m.crossed ? kDiagonalVertices : 0));
     }
   }
 }

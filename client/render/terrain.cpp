@@ -54,16 +54,19 @@ constexpr const char* kGhostFragmentShader =
     "flat in vec4 colour;\n"
     "uniform vec4 tint;\n"  // colour, and its share
     "uniform float opaque;\n"
+    "uniform float crossed;\n"  // 1: each cell of a face has its diagonals
     "out vec4 fragment;\n"
     "void main() {\n"
     "  vec3 face = abs(normal);\n"
     "  vec2 st = face.x > 0.5 ? voxel.zy : face.y > 0.5 ? voxel.xz : voxel.xy;\n"
     "  vec2 edge = abs(fract(st) - 0.5);\n"
     "  float rim = step(0.46, max(edge.x, edge.y));\n"
+    "  rim = max(rim, crossed * step(abs(edge.x - edge.y), 0.03));\n"
     // Where a cell has few pixels, lines between cells would flicker and make patterns of their
-    // own. There their mean is drawn instead: lines cover 1 - 0.92 * 0.92 of a face.
+    // own. There their mean is drawn instead: lines cover 1 - 0.92 * 0.92 of a face, and diagonals
+    // cover 1 - 0.94 * 0.94 of the rest.
     "  float pixel = max(fwidth(st.x), fwidth(st.y));\n"
-    "  rim = mix(0.15, rim, clamp(1.5 - 3.0 * pixel, 0.0, 1.0));\n"
+    "  rim = mix(0.15 + 0.10 * crossed, rim, clamp(1.5 - 3.0 * pixel, 0.0, 1.0));\n"
     "  vec3 c = sqrt(mix(colour.rgb, tint.rgb, tint.a)) * (0.80 + 0.20 * normal.y);\n"
     "  fragment = vec4(c + 0.25 * rim, opaque);\n"
     "}\n";
@@ -693,6 +696,9 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
   const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;
+    // The form tells what is removed, too, because not everybody sees that red is red.
+    const float crossed = mesh == ghost.removed ? 1 : 0;
+    glUniform1f(glGetUniformLocation(ghost_program_.get(), "crossed"), crossed);
     const glm::dvec3 shift{ghost.shift.x, ghost.shift.y, ghost.shift.z};
     const glm::vec3 at(origin_in_world(ghost.key, ghost.edge) + shift - view.eye);
     const glm::vec3 pattern = pattern_of(ghost.key, ghost.edge);
@@ -709,9 +715,9 @@ void Terrain::draw_ghosts(const FrameView& view, std::span<const GhostChunk> gho
       const auto channel = [&](std::size_t i) {
         return static_cast<float>((*ghost.tint)[i]) / 255;
       };
-      const glm::vec4 tint{channel(0), channel(1), channel(2), 0.7F};
-      draw(ghost, ghost.removed, tint * glm::vec4{0.5F, 0.5F, 0.5F, 1.2F}, 0.22F);
-      draw(ghost, ghost.placed, tint, 0.30F);
+      const glm::vec4 tint{channel(0), channel(1), channel(2), 0.8F};
+      draw(ghost, ghost.removed, tint * glm::vec4{0.5F, 0.5F, 0.5F, 1.1F}, 0.38F + pulse);
+      draw(ghost, ghost.placed, tint, 0.50F + pulse);
       continue;
     }
     draw(ghost, ghost.removed, {0.80F, 0.02F, 0.02F, 0.85F}, 0.42F + pulse);

@@ -46,6 +46,8 @@ class ToolBox {
   /// Forgets the places chosen so far. Returns false if there were none.
   bool cancel();
   std::span<const VoxelPos> points() const { return points_; }
+  /// Returns the button that chose the first of points().
+  ToolButton button() const { return button_; }
 
   /// Returns the box between the first place chosen and the voxel that the next click chooses, or
   /// nullopt if no place is chosen, or if the tool works on no box between two places.

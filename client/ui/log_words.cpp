@@ -2,8 +2,7 @@
 
 #include <imgui.h>
 
-#include <cmath>
-
+#include "client/render/author_rgb.hpp"
 #include "common/edits/descriptor/edit_kind_name.hpp"
 
 namespace runstone {
@@ -54,15 +53,8 @@ std::string record_words(EditKind kind, Cause cause) {
 }
 
 std::uint32_t author_colour(AuthorId author) {
-  if (author == 0) return IM_COL32(150, 155, 160, 255);
-  // Steps of the golden section spread hues evenly, however many there are.
-  constexpr double kGolden = 0.6180339887;
-  double whole = 0;
-  const auto hue = static_cast<float>(std::modf(author * kGolden, &whole));
-  const float value = author % 2 == 0 ? 0.80F : 0.97F;
-  float r = 0, g = 0, b = 0;
-  ImGui::ColorConvertHSVtoRGB(hue, 0.62F, value, r, g, b);
-  return ImGui::ColorConvertFloat4ToU32({r, g, b, 1});
+  const auto [r, g, b] = author_rgb(author);
+  return IM_COL32(r, g, b, 255);
 }
 
 }  // namespace runstone

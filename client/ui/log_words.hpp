@@ -11,8 +11,7 @@ namespace runstone {
 /// Returns what a record did, for people: "box", "undo", "new materials".
 std::string record_words(EditKind kind, Cause cause);
 
-/// Returns a colour for an author in ImGui's form. Authors with near numbers have different
-/// colours; the server (0) is grey.
+/// Returns author_rgb() in ImGui's form.
 std::uint32_t author_colour(AuthorId author);
 
 }  // namespace runstone

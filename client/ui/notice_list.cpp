@@ -30,8 +30,8 @@ void NoticeList::build(double bottom, double scale) const {
   const float wrap = std::max(1.0F, size.x - 4 * padding);
   float y = std::min(static_cast<float>(bottom), size.y - 2 * padding);
   for (auto n = notices_.rbegin(); n != notices_.rend(); ++n) {
-    const std::string text =
-        n->count == 1 ? n->text : n->text + " (" + std::to_string(n->count) + " times)";
+    std::string text = n->kind == NoticeKind::warning ? "! " + n->text : n->text;
+    if (n->count != 1) text += " (" + std::to_string(n->count) + " times)";
     const ImVec2 extent = wrapped_size(text, wrap);
     y -= extent.y + padding;
     // The newest notice is always shown. Older ones are left out where the window has no room.

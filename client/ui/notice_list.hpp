@@ -19,7 +19,7 @@ class NoticeList {
   /// Lets time pass, and drops notices that have faded.
   void advance(double seconds);
   bool is_fading() const { return !notices_.empty() && notices_.front().age > kShownSeconds; }
-  /// Makes the notices with ImGui, over all windows, with their lowest line above `bottom` pixels.
+  /// Makes the notices with ImGui, warnings with a mark before them, over all windows, with their lowest line above `bottom` pixels.
   /// Texts are wrapped to the width of the frame.
   void build(double bottom, double scale) const;
 

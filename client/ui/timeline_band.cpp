@@ -21,6 +21,27 @@ std::string date_text(TimeUs utc_us) {
                      fmt::gmtime(static_cast<std::time_t>(utc_us / 1'000'000)));
 }
 
+/// Draws lines over a rectangle in the colour of an author, so that the form tells authors apart,
+/// too: none, lines that rise, lines that fall, or lines along it.
+void hatch(ImDrawList& list, ImVec2 from, ImVec2 to, AuthorId author) {
+  constexpr ImU32 kLine = IM_COL32(0, 0, 0, 150);
+  constexpr float kStep = 6;
+  const float height = to.y - from.y;
+  const AuthorId form = author % 4;
+  if (form == 0) return;
+  list.PushClipRect(from, to, true);
+  if (form == 3) {
+    for (float y = from.y + kStep / 2; y < to.y; y += kStep)
+      list.AddLine({from.x, y}, {to.x, y}, kLine);
+  } else {
+    const float rise = form == 1 ? height : -height;
+    const float start = form == 1 ? to.y : from.y;
+    for (float x = from.x - height; x < to.x; x += kStep)
+      list.AddLine({x, start}, {x + height, start - rise}, kLine);
+  }
+  list.PopClipRect();
+}
+
 /// Returns the last mark at or before an edit. Requires marks.
 const LogMark& mark_at(const std::vector<LogMark>& marks, Sequence seq) {
   const auto after = std::upper_bound(marks.begin(), marks.end(), seq,
@@ -76,8 +97,9 @@ std::optional<Sequence> build_band(const TimelineState& state, double scale) {
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Sequence end = i + 1 < segments.size() ? segments[i + 1].first - 1 : state.newest;
     const float left = x_of(segments[i].first - 1);
-    list.AddRectFilled({left, from.y}, {std::max(left + 1, x_of(end)), from.y + height},
-                       author_colour(segments[i].author));
+    const ImVec2 corner{left, from.y}, opposite{std::max(left + 1, x_of(end)), from.y + height};
+    list.AddRectFilled(corner, opposite, author_colour(segments[i].author));
+    hatch(list, corner, opposite, segments[i].author);
   }
   const float shown = x_of(state.shown);
   list.AddLine({shown, from.y - 3}, {shown, from.y + height + 3}, IM_COL32(255, 255, 255, 255), 2);
@@ -118,8 +140,9 @@ void build_legend(const TimelineState& state) {
     is_first = false;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float top = at.y + (ImGui::GetTextLineHeight() - size) / 2;
-    ImGui::GetWindowDrawList()->AddRectFilled({at.x, top}, {at.x + size, top + size},
-                                              author_colour(author));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({at.x, top}, {at.x + size, top + size}, author_colour(author));
+    hatch(list, {at.x, top}, {at.x + size, top + size}, author);
     ImGui::Dummy({size, size});
     ImGui::SameLine(0, 6);
     ImGui::TextUnformatted(name.c_str());

@@ -4,8 +4,9 @@
 
 namespace runstone::test {
 
-TEST_CASE("a protected box is outlined in a colour that says whether it admits the player",
-          "[display]") {
+TEST_CASE(
+    "a protected box is outlined in a colour and a form that say whether it admits the player",
+    "[display]") {
   GroundBox box;
   box.box = {{-4, 0, 2}, {4, 10, 5}};
   const auto refuses = ground_marker(box, {0, 5, 0}, 100);
@@ -14,7 +15,9 @@ TEST_CASE("a protected box is outlined in a colour that says whether it admits t
   CHECK((refuses->x == -4 && refuses->y == 0 && refuses->z == 2));
   CHECK((refuses->size_x == 8 && refuses->size_y == 10 && refuses->size_z == 3));
   CHECK(refuses->r > refuses->g);
+  CHECK(refuses->crossed);
   box.admits = true;
+  CHECK_FALSE(ground_marker(box, {0, 5, 0}, 100)->crossed);
   CHECK(ground_marker(box, {0, 5, 0}, 100)->g > ground_marker(box, {0, 5, 0}, 100)->r);
 }
 

@@ -202,6 +202,43 @@ TEST_CASE_METHOD(Fixture, "the box between a corner and the crosshair is measure
   CHECK(tool.measure_text().empty());  // its places are a centre and a place on the surface
 }
 
+TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may be shared",
+                 "[client_app]") {
+  runstone::test::AuthorityModel world(16);
+  for (const std::int32_t y : {-1, 0})
+    receive(runstone::test::chunks_of(world.snapshot({0, y, 0})));
+  player.hold(2);
+  REQUIRE(tool.box().choose("terrain").has_value());
+  REQUIRE(tool.box().set_parameter("radius", 100).has_value());
+  CHECK_FALSE(tool.drawn_stroke().has_value());
+  tool.fix_aim(FixedAim{{1, -1, 1}, Direction::pos_y});
+  REQUIRE(tool.press(ToolButton::place, kNow).has_value());
+  CHECK_FALSE(tool.drawn_stroke().has_value());  // one place is no stroke
+  for (const std::int32_t x : {4, 7, 12}) {
+    tool.fix_aim(FixedAim{{x, -1, 1}, Direction::pos_y});
+    tool.drag();
+  }
+  const auto stroke = tool.drawn_stroke();
+  REQUIRE(stroke.has_value());
+  CHECK(may_be_shared({*stroke}, 16));
+  const auto& shape = std::get<FillStroke>(stroke->shape);
+  CHECK(shape.points.size() == 4);
+  CHECK(shape.points.back().x == 12);
+  CHECK(shape.radius <= 16);
+  CHECK(stroke->material == 2);
+  // Of a long stroke the end is seen.
+  for (std::int32_t i = 0; i < 200; ++i) {
+    tool.fix_aim(FixedAim{{1 + i % 14, -1 - i % 15, 1 + i % 13}, Direction::pos_y});
+    tool.drag();
+  }
+  REQUIRE(tool.drawn_stroke().has_value());
+  CHECK(may_be_shared({*tool.drawn_stroke()}, 16));
+  CHECK(std::get<FillStroke>(tool.drawn_stroke()->shape).points.back() ==
+        tool.box().points().back());
+  static_cast<void>(tool.release(kNow));
+  CHECK_FALSE(tool.drawn_stroke().has_value());
+}
+
 TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the past",
                  "[client_app]") {
   runstone::test::AuthorityModel world(16);

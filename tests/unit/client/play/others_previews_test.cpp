@@ -1,6 +1,6 @@
 #include "client/play/others_previews.hpp"
 
-#include "client/display/player_body.hpp"
+#include "client/render/author_rgb.hpp"
 #include "client/render/drawn_materials.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
@@ -40,16 +40,25 @@ TEST_CASE_METHOD(OthersBench, "the previews of others are ghosts in the colours 
   bool has_placed = false, has_removed = false;
   for (const GhostChunk& ghost : ghosts()) {
     REQUIRE(ghost.tint.has_value());
-    const bool is_of_7 = ghost.tint == player_colour(7);
-    CHECK((is_of_7 || ghost.tint == player_colour(9)));
+    const bool is_of_7 = ghost.tint == author_rgb(7);
+    CHECK((is_of_7 || ghost.tint == author_rgb(9)));
     has_placed = has_placed || (is_of_7 && ghost.placed);
     has_removed = has_removed || (!is_of_7 && ghost.removed);
   }
   CHECK(has_placed);
   CHECK(has_removed);
+  std::vector<Marker> outlines;
+  others.append_outlines(outlines);
+  REQUIRE(outlines.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto rgb = author_rgb(i == 0 ? 7 : 9);
+    CHECK(std::array{outlines[i].r, outlines[i].g, outlines[i].b} == rgb);
+    CHECK(outlines[i].x == Approx(i == 0 ? 3 : 8).margin(0.1));
+    CHECK(outlines[i].size_x == Approx(2).margin(0.1));
+  }
   CHECK(settle({{7, box_of(3)}, {9, box_of(8, kEmpty)}}) == 0);
   CHECK(settle({{7, box_of(3)}}) == 1);
-  for (const GhostChunk& ghost : ghosts()) CHECK(ghost.tint == player_colour(7));
+  for (const GhostChunk& ghost : ghosts()) CHECK(ghost.tint == author_rgb(7));
   CHECK(others.clear());
   CHECK(ghosts().empty());
   CHECK_FALSE(others.clear());

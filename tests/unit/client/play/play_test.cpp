@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "client/display/player_body.hpp"
+#include "client/render/author_rgb.hpp"
 #include "common/core/world_time.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
@@ -269,7 +269,7 @@ TEST_CASE_METHOD(PlayBench, "players see the previews of one another", "[client]
   receive(PlayerPreview{8, {{FillBox{{{3, -1, 3}, {5, 1, 5}}}, {}, 2}}});
   for (int i = 0; i < 5; ++i) turn();
   REQUIRE_FALSE(tints().empty());
-  CHECK(tints()[0] == player_colour(8));
+  CHECK(tints()[0] == author_rgb(8));
   settings.shows_previews = false;
   turn();
   CHECK(tints().empty());

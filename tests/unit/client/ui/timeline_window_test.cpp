@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "client/render/author_rgb.hpp"
 #include "client/ui/log_words.hpp"
 #include "client/ui/timeline_band.hpp"
 #include "client/ui/ui_context.hpp"
@@ -74,6 +75,13 @@ TEST_CASE("the legend begins with the authors of most marks", "[client_ui]") {
 TEST_CASE("authors have different colours, and records have words", "[client_ui]") {
   for (AuthorId author = 0; author < 20; ++author)
     CHECK(author_colour(author) != author_colour(author + 1));
+  CHECK(author_colour(0) == 0xFFA09B96);  // grey
+  // One channel of a player is bright, and one is not, so that the colour has a hue.
+  for (AuthorId author = 1; author < 20; ++author) {
+    const auto rgb = author_rgb(author);
+    CHECK(*std::max_element(rgb.begin(), rgb.end()) >= 200);
+    CHECK(*std::min_element(rgb.begin(), rgb.end()) <= 95);
+  }
   CHECK(record_words(EditKind::fill_sphere, Cause::player) == "sphere");
   CHECK(record_words(EditKind::paste, Cause::undo) == "undo");
   CHECK(record_words(EditKind::materials, Cause::materials) == "new materials");
