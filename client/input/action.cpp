@@ -83,6 +83,8 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
      "F7"},
     {Action::inspect_layers, "inspect_layers", "show or hide layers as they are meshed again",
      window, "F8"},
+    {Action::keyboard, "keyboard",
+     "let the keyboard work the open windows, or move the player again", window, "F9"},
     {Action::release, "release", "close a window; otherwise open the menu", window, "escape"},
 }};
 

@@ -77,6 +77,7 @@ enum class Action : std::uint8_t {
   inspect_runs,
   inspect_orders,
   inspect_layers,
+  keyboard,
   release,
 };
 /// The slots of the hotbar, each with an action hold_slot_N.

@@ -9,6 +9,7 @@
 #include "client/input/key.hpp"
 #include "client/render/inspection.hpp"
 #include "client/replica/ray_pick.hpp"
+#include "client/script/script.hpp"
 #include "client/tools/action_part.hpp"
 #include "client/tools/tool_box.hpp"
 #include "common/builds/build.hpp"

@@ -32,6 +32,12 @@ bool Hud::act(Action action) {
       if (!help_.is_open()) return false;
       help_.scroll(action == Action::next_tool ? 1 : -1);
       return true;
+    case Action::keyboard:
+      if (!has_window()) return notify("open a window first"), true;
+      uses_keyboard_ = !uses_keyboard_;
+      context_.set_keyboard(uses_keyboard_);
+      if (uses_keyboard_) context_.focus_window();
+      return true;
     case Action::statistics:
       shows_statistics_ = !shows_statistics_;
       return true;
@@ -48,6 +54,10 @@ bool Hud::close_top() {
   return help_.close() || panels_.close_one() || std::exchange(shows_statistics_, false);
 }
 
+bool Hud::has_window() const {
+  return palette_.is_open() || shows_statistics_ || panels_.is_any_open();
+}
+
 bool Hud::takes_focus() const { return chat_.takes_focus() || palette_.takes_focus(); }
 
 UiFocus Hud::focus() const {
@@ -55,10 +65,10 @@ UiFocus Hud::focus() const {
   out.has_window = chat_.is_open() || palette_.is_open();
   // ImGui still names a text field whose window was closed after the last frame.
   const bool has_fields = out.has_window || panels_.has_fields();
-  out.types = has_fields && (context_.types() || takes_focus());
+  out.types = uses_keyboard_ || (has_fields && (context_.types() || takes_focus()));
   out.over_window = context_.over_window();
-  out.panels =
-      panels_.count_with_mouse() + (help_.is_open() ? 1U : 0U) + (shows_statistics_ ? 1U : 0U);
+  out.panels = panels_.count_with_mouse() + (help_.is_open() ? 1U : 0U) +
+               (shows_statistics_ ? 1U : 0U) + (uses_keyboard_ ? 1U : 0U);
   return out;
 }
 
@@ -75,6 +85,7 @@ void Hud::hear(ShownLine line) {
 std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::array<int, 2> size,
                                                     double seconds) {
   has_news_ = false;
+  if (!has_window() && std::exchange(uses_keyboard_, false)) context_.set_keyboard(false);
   notices_.advance(seconds);
   chat_.advance(seconds);
   name_seconds_ += seconds;

@@ -53,6 +53,8 @@ class Hud {
   bool close_top();
   /// Returns true while a text field was opened and does not have the keyboard yet.
   bool takes_focus() const;
+  /// Returns true if a window is open that the keyboard can work.
+  bool has_window() const;
 
   KeyMap keys_;
   UiContext context_;
@@ -60,7 +62,8 @@ class Hud {
   ChatWindow chat_;
   PaletteWindow palette_;
   PanelWindows panels_{keys_};
-  bool has_news_ = false;  // since the last frame
+  bool has_news_ = false;       // since the last frame
+  bool uses_keyboard_ = false;  // windows take the keyboard
   HelpWindow help_;
   bool shows_statistics_ = false;
   std::vector<UiAction> actions_;

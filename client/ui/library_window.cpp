@@ -249,7 +249,7 @@ std::optional<LibraryOrder> LibraryWindow::build(const LibraryState& state, UiCo
   ImGui::SetNextWindowSize({static_cast<float>(kWindowWidth * scale), 0});
   ImGui::Begin("Builds", &is_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   if (!state.unavailable.empty()) {
     show_wrapped(state.unavailable);
     is_new_ = false;

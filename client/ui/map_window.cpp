@@ -166,8 +166,8 @@ void MapWindow::build(const MapState& state, const MaterialTable& materials, UiC
   // A window of its own for each size: ImGui keeps the place of the small one.
   ImGui::Begin(is_full_ ? "Map###map full" : "Map###map", &is_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoScrollbar |
-                   ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   build_buttons(state);
   if (follows_) {
     centre_x_ = state.me.x;

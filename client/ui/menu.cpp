@@ -74,7 +74,7 @@ std::optional<std::uint64_t> number_in(const std::string& text) {
 
 Menu::Menu(const ClientSettings& settings)
     : context_(settings.interface_scale), settings_(settings) {
-  context_.enable_keyboard();
+  context_.set_keyboard(true);
 }
 
 void Menu::reset() {

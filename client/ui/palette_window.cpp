@@ -135,9 +135,8 @@ void PaletteWindow::build(const HudState& state, double scale, std::vector<UiAct
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x / 2, size.y * 0.45F}, ImGuiCond_Appearing, {0.5F, 0.5F});
   ImGui::SetNextWindowSize({size.x * 0.6F, size.y * 0.66F}, ImGuiCond_Appearing);
-  ImGui::Begin(
-      "Materials", &is_open_,
-      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+  ImGui::Begin("Materials", &is_open_,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (takes_focus_) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
   const bool is_entered = ImGui::InputTextWithHint("##search", "search", &search_,

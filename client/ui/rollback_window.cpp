@@ -95,7 +95,7 @@ std::optional<RollbackOrder> RollbackWindow::build(const RollbackState& state, d
   ImGui::SetNextWindowSize({static_cast<float>(430 * scale), 0});
   ImGui::Begin("Rollback", &is_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   std::optional<RollbackOrder> out;
   if (!state.is_allowed) {
     ImGui::PushTextWrapPos(0);

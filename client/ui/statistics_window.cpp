@@ -126,7 +126,7 @@ void build_statistics(const StatisticsState& state, const KeyMap& keys, double s
   ImGui::SetNextWindowBgAlpha(0.8F);
   ImGui::Begin("Measurements", &is_open,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   build_inspection_boxes(keys, modes);
   ImGui::Separator();
   frame_plot(state, scale);

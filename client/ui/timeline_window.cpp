@@ -36,7 +36,7 @@ std::optional<ShowMoment> TimelineWindow::build(const TimelineState& state, doub
   ImGui::SetNextWindowSize({width, 0});
   ImGui::Begin("Timeline", &is_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   std::optional<ShowMoment> out;
   const auto newest = static_cast<double>(state.newest);
   double at = play_.is_playing()

@@ -144,7 +144,7 @@ void ToolWindow::build(const HudState& state, double scale, std::vector<ToolComm
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, size.y * 0.86F});
   ImGui::Begin("Tools", &is_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize);
+                   ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(static_cast<float>(210 * scale));
   build_tools(*state.tools, out);
   ImGui::Separator();

@@ -182,9 +182,26 @@ UiContext::UiContext(double scale, std::optional<ByteView> font)
 
 UiContext::~UiContext() = default;
 
-void UiContext::enable_keyboard() {
+void UiContext::set_keyboard(bool is_on) {
   ImGui::SetCurrentContext(context_.get());
-  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
+  flags = is_on ? flags | ImGuiConfigFlags_NavEnableKeyboard
+                : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
+void UiContext::focus_window() {
+  ImGui::SetCurrentContext(context_.get());
+  constexpr ImGuiWindowFlags kOther = ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_ChildWindow |
+                                      ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoNavInputs;
+  // The windows are in the order in which they are drawn.
+  for (int i = context_->Windows.Size - 1; i >= 0; --i) {
+    ImGuiWindow* const window = context_->Windows[i];
+    if (!window->Active || window->IsFallbackWindow || (window->Flags & kOther) != 0) continue;
+    ImGui::FocusWindow(window);
+    ImGui::NavInitWindow(window, true);
+    context_->NavDisableHighlight = false;
+    return;
+  }
 }
 
 void UiContext::release_all() {

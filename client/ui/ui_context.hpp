@@ -27,8 +27,11 @@ class UiContext {
   UiContext(const UiContext&) = delete;
   UiContext& operator=(const UiContext&) = delete;
 
-  /// Lets arrows, space and enter choose and press buttons.
-  void enable_keyboard();
+  /// Lets arrows, tab, space and enter choose and press buttons, or not any more. Control and tab
+  /// change the window.
+  void set_keyboard(bool is_on);
+  /// Gives the keyboard to the window that was used last, with its first button chosen.
+  void focus_window();
   /// Queues events for the next frame.
   void feed(const std::vector<InputEvent>& events);
   /// Drops the events that wait, and takes every key and button as released.

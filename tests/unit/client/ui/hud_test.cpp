@@ -260,6 +260,33 @@ TEST_CASE_METHOD(HudBench, "page up scrolls an open chat to its older lines", "[
   CHECK(shown() == newest);
 }
 
+TEST_CASE_METHOD(HudBench, "a key lets the keyboard press the buttons of the open windows",
+                 "[client_ui]") {
+  CHECK(press(Key::f9).empty());  // no window is open
+  CHECK(press(Key::b) == std::vector<Action>{Action::select});
+  state.timeline = {1'000, 500, true, false, ""};
+  press(Key::h);
+  for (int i = 0; i < 3; ++i) frame();
+  CHECK(press(Key::b) == std::vector<Action>{Action::select});
+  press(Key::f9);
+  CHECK(press(Key::b).empty());
+  bool has_moved = false;
+  for (int i = 0; i < 12 && !has_moved; ++i) {
+    press(i < 2 ? Key::down : Key::right);
+    press(Key::space);
+    for (const UiAction& action : actions)
+      has_moved = has_moved || std::holds_alternative<ShowMoment>(action);
+    actions.clear();
+  }
+  CHECK(has_moved);
+  press(Key::f9);
+  CHECK(press(Key::b) == std::vector<Action>{Action::select});
+  press(Key::f9);
+  CHECK(press(Key::escape).empty());  // closes the window, and the player has the keyboard
+  frame();
+  CHECK(press(Key::b) == std::vector<Action>{Action::select});
+}
+
 TEST_CASE_METHOD(HudBench,
                  "the timeline asks for a moment where its slider is clicked, and for live",
                  "[client_ui]") {
