@@ -90,8 +90,8 @@ class Changes {
   Result<Sequence, std::string> give_textures(std::span<const GivenTexturePtr> textures,
                                               const Clocks& now);
 
-  /// Orders the addition of a build by an author (0: the console), whose file is in the store. Returns
-  /// its number, which is the sequence of the record, or why it was refused, as a sentence.
+  /// Orders the addition of a build by an author (0: the console), whose file is in the store.
+  /// Returns its number, which is the sequence of the record, or why it was refused, as a sentence.
   Result<Sequence, std::string> add_build(const AddBuild& build, AuthorId author,
                                           const Clocks& now);
   /// Returns a content number for the file of a build, which was never used in the world.
@@ -108,8 +108,8 @@ class Changes {
  private:
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);
-  /// Orders materials and shapes of the console, but none of them if the log lacks room for all. They
-  /// are one commit, so a crash does not leave materials without their shapes either.
+  /// Orders materials and shapes of the console, but none of them if the log lacks room for all.
+  /// They are one commit, so a crash does not leave materials without their shapes either.
   ServerEditsResult order_materials(const std::vector<EditOffer>& offers, const Clocks& now);
   /// Appends the offers that give shapes. Requires rows that ascend by material.
   void offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
