@@ -53,7 +53,9 @@ void preview_textures_of(const CommandCall& call, const std::string& place) {
   use_textures_of(call, place, TexturesUse::shown);
 }
 
-constexpr std::array<CommandRow, 2> kTextureRows = {{
+constexpr std::array<CommandRow, 3> kTextureRows = {{
+    // Without a folder the line would list the materials whose names have this word.
+    {"materials textures", kLocal, "", parsed_by<parse_picture_folder, give_textures_of>()},
     {"materials textures FILE", kLocal,
      "materials textures FILE   give materials the pictures of a folder: of PNGs that are named\n"
      "                          for them, of a game of Luanti, or of a resource pack of Minecraft\n"

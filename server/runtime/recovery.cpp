@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "server/runtime/logging.hpp"
 #include "server/textures/stored_textures.hpp"
 
 namespace runstone {
@@ -54,6 +55,16 @@ StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
   return store.append_history(players, records);
 }
 
+/// Returns the state that is kept besides the log. If it is damaged, logs a warning and returns an
+/// empty state, because no edit depends on it.
+StoreResult<SavedState> saved_or_none(WorldReader& store) {
+  auto saved = store.saved_state();
+  if (saved || saved.error().kind != StoreError::Kind::corrupt) return saved;
+  logger("store").warn("{}: the places of the players and the time of the world are lost",
+                       saved.error().message());
+  return SavedState{};
+}
+
 }  // namespace
 
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
@@ -98,7 +109,7 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto textures = read_stored_textures(store);
   if (!textures) return failure(textures.error());
   start.textures = std::move(textures->given);
-  auto saved = store.saved_state();
+  auto saved = saved_or_none(store);
   if (!saved) return failure(saved.error().message());
   start.saved = *std::move(saved);
   if (const auto counted = store.check_counts(); !counted)
@@ -139,7 +150,7 @@ Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<L
   auto read = read_missed_log(store, std::max<Sequence>(1, last.seq), SIZE_MAX);
   if (!read) return failure(read.error());
   out.read = *std::move(read);
-  auto saved = store.saved_state();
+  auto saved = saved_or_none(store);
   if (!saved) return failure(saved.error().message());
   out.places = std::move(saved->places);
   return out;

@@ -68,7 +68,8 @@ class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
 
-  /// Returns all rows. Each checksum is verified.
+  /// Returns all rows. Each checksum is verified. The rows that saved_state() reads are left out if
+  /// they are damaged, because no edit depends on them: saved_state() fails then.
   StoreResult<MetaRows> read_all();
   /// Writes a row in the caller's transaction, as do put_fold() and put_log_head().
   StoreResult<void> put(const std::string& key, const MetaValue& value);
@@ -95,6 +96,10 @@ class MetaTable {
   /// Returns the rows `world_clock` and `player_places`. Fails (corrupt) if one has an impossible
   /// value.
   StoreResult<SavedState> saved_state();
+  /// Returns row `world_clock`, or nullopt if there is none.
+  StoreResult<std::optional<SavedClock>> clock();
+  /// Returns row `player_places`, or an empty list if there is none.
+  StoreResult<std::vector<LastPlace>> places();
   StoreResult<void> put_clock(const SavedClock& clock);
   StoreResult<void> put_places(const std::vector<LastPlace>& places);
 
@@ -107,8 +112,6 @@ class MetaTable {
   StoreResult<MetaValue> read_row(sql::Statement& row, std::string_view key);
   StoreResult<std::optional<MetaValue>> find(const std::string& key);
   StoreResult<MetaValue> get(const std::string& key);
-  StoreResult<std::optional<SavedClock>> clock();
-  StoreResult<std::vector<LastPlace>> places();
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;
 
   std::string file_;

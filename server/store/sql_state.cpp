@@ -12,14 +12,19 @@ StoreResult<SavedState> SqlStore::saved_state() {
 
 StoreResult<void> SqlStore::save_state(const SavedState& state) {
   return write([&]() -> StoreResult<void> {
-    const auto present = meta_table_.saved_state();
-    if (!present) return failed(present.error());
-    if (state.places != present->places) {
+    // A damaged row is replaced: no edit depends on it.
+    const auto is_damaged = [](const auto& row) {
+      return !row && row.error().kind == StoreError::Kind::corrupt;
+    };
+    const auto places = meta_table_.places();
+    if (!places && !is_damaged(places)) return failed(places.error());
+    if (!places || state.places != *places) {
       if (auto put = meta_table_.put_places(state.places); !put) return put;
     }
-    const bool is_newest = state.clock && present->clock &&
-                           state.clock->record == present->clock->record &&
-                           state.clock != present->clock;
+    const auto clock = meta_table_.clock();
+    if (!clock && !is_damaged(clock)) return failed(clock.error());
+    const bool is_newest = state.clock && clock && *clock &&
+                           state.clock->record == (*clock)->record && state.clock != *clock;
     return is_newest ? meta_table_.put_clock(*state.clock) : StoreResult<void>();
   });
 }

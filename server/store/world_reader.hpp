@@ -44,8 +44,9 @@ class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
   /// players are lost, so that no number is given to two players.
   virtual AuthorId author_max() const = 0;
 
-  /// Returns what is kept besides the log, as it was saved last. Fails (corrupt) if it is damaged.
-  virtual StoreResult<SavedState> saved_state() { return SavedState{}; }
+  /// Returns the state that is kept besides the log, as it was saved last. Fails (corrupt) if it is
+  /// damaged.
+  virtual StoreResult<SavedState> saved_state() = 0;
 
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.

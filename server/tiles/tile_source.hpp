@@ -6,9 +6,8 @@
 //   3. the table of tiles of the world;
 //   4. its eight children, which are chunks or tiles of the level below.
 // A tile of 1 or 3 is used only if no edit below it is newer, and if it was made by the rules that
-// TileVisibility names. A damaged row of a tile is reported
-// and the tile is made again. A damaged chunk is reported, and the tiles above it show nothing
-// there.
+// TileVisibility names. A damaged row of a tile is reported and the tile is made again. A damaged
+// chunk is reported, and the tiles above it show nothing there.
 // Threads: any. Calls block on the disk, so workers make them.
 #pragma once
 #include <atomic>
@@ -69,12 +68,13 @@ class TileSource {
                                           const TileVisibility& visibility,
                                           const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now.
-  /// Requires that the copy was made by `rules`, which are those in force. It makes no tile and reads none from the disk. If the tile with its veil is in memory, the
-  /// digests are compared. Otherwise the version must be that of the newest edit below the tile.
+  /// Requires that the copy was made by `rules`, which are those in force. It makes no tile and
+  /// reads none from the disk. If the tile with its veil is in memory, the digests are compared.
+  /// Otherwise the version must be that of the newest edit below the tile.
   /// Returns false before the first make(), because the edits before the start are not known then.
   /// Cost: two look-ups. It may wait for other threads for a moment.
   bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest,
-                  std::uint32_t rules = kTileRules);
+                  std::uint32_t rules);
 
  private:
   class Making;  // one call of make()

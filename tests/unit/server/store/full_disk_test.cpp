@@ -30,6 +30,11 @@ class FillingSink final : public WorldSink {
     names += changes.size();
     return {};
   }
+  StoreResult<void> save_state(const SavedState& /*state*/) override {
+    if (is_full) return no_room();
+    ++states;
+    return {};
+  }
   StoreResult<void> save_snapshots(ChunkSpan /*chunks*/,
                                    std::optional<Sequence> /*checkpoint*/) override {
     return is_full || is_full_for_snapshots ? no_room() : StoreResult<void>{};
@@ -43,8 +48,8 @@ class FillingSink final : public WorldSink {
   }
 
   std::atomic<bool> is_full{false}, is_full_for_snapshots{false};
-  std::vector<Sequence> written;  // read it after stop()
-  std::size_t names = 0;          // likewise
+  std::vector<Sequence> written;      // read it after stop()
+  std::size_t names = 0, states = 0;  // likewise
 
  private:
   static StoreResult<void> no_room() {
