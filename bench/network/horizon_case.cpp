@@ -28,11 +28,11 @@ FarViews views_of(const NetOptions& options) {
 
 constexpr double kHorizonSeconds = 120;
 constexpr double kCoarseMsMax = 1'000, kAllMsMax = 5'000;  // the targets on broadband
-// Those of a landscape, of whose views the third is measured.
+// The targets of a landscape. The third of its views is measured.
 constexpr double kLandscapeMsMax = 6'000, kLandscapeBytesMax = 2e6;
 constexpr std::size_t kLandscapeView = 2;
 
-/// A join that is measured.
+/// The generator and the levels of a join that is measured.
 struct HorizonView {
   const char* generator;
   unsigned levels;

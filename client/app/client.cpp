@@ -287,7 +287,7 @@ std::array<int, 2> Client::frame_size() const {
 void Client::use_look() {
   if (menu_ == nullptr || !menu_->settings()) return;
   LookControl& look = pipeline_.look();
-  if (!options_.given.antialiasing) look.set_antialiasing(antialiasing_of(settings()));
+  if (!options_.given.antialiasing) look.set_antialiasing(settings().antialiasing);
   const auto quality = quality_of(settings());
   if (!options_.given.quality && quality != look.quality()) look.set_quality(quality);
 }

@@ -51,7 +51,7 @@ SessionConfig session_config(const ClientOptions& options, bool has_cache) {
     config.pinned = load_pinned_servers(options.key_file);
     config.features |= kFeatureNames;
   }
-  // A script and a benchmark begin at the spawn, and lines about others do not disturb them.
+  // Scripts and benchmarks begin at the spawn, and get no lines about players who join or leave.
   if (!options.script.empty() || options.benchmark) config.features &= ~kFeatureVisits;
   config.name = options.name;
   config.instance = random_instance();

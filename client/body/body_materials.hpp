@@ -13,8 +13,9 @@ struct BodyMaterials {
   MaterialSet liquid;  // the whole voxel
 };
 
-/// Returns those of a table. `shapes` are its shapes; null: the function makes them, if a body
-/// meets any. Cost: O(materials), and for null that of ShapeTable.
+/// Returns the solid and the liquid materials of a table. `shapes` are the shapes of the table. If
+/// it is a null pointer and a solid material is not a cube, the function makes the shapes. Cost:
+/// O(materials), and that of ShapeTable if the function makes the shapes.
 BodyMaterials body_materials(const MaterialTable& table, ShapeTablePtr shapes = nullptr);
 
 }  // namespace runstone

@@ -39,7 +39,7 @@ class CacheThread {
   /// Returns the results of lookups since the last call, in order: the chunks that were found.
   std::vector<std::vector<KeyedChunk>> drain_results();
   void look_up_textures(std::vector<TextureHash> hashes);
-  /// Queues pictures, which a world bounds (TextureTable).
+  /// Queues pictures to be stored. TextureTable bounds their number and bytes.
   void keep_textures(std::vector<TexturePart> parts);
   /// Returns the results of lookups of textures since the last call, in order: the pictures that
   /// were found.

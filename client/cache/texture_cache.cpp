@@ -99,7 +99,8 @@ void TextureCache::keep(std::span<const TexturePart> parts) {
     if (database_->changes() != 0) {
       bytes_ += part.png.size();
     } else {
-      // The row is damaged, or the server would not have been asked.
+      // A picture that is stored again replaces its row: the client requests a picture only if its
+      // row is missing or damaged.
       database_->run(t.replace.bind(1, part.hash).bind(2, ByteView(part.png)));
     }
   }

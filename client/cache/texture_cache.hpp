@@ -1,7 +1,7 @@
 // TextureCache: pictures of textures that a client keeps on disk between its runs, by their hash.
-// All servers share them. A row may be damaged: the reader checks the hash (TextureExchange). A
-// database that cannot be read is replaced by a new one. Beyond `bytes_max` the pictures that were
-// unused for longest are evicted. Calls wait for the disk.
+// The cache is shared by all servers. A row may be damaged: the reader checks the hash
+// (TextureExchange). A database that cannot be read is replaced by a new one. Beyond `bytes_max`
+// the pictures that were unused for longest are evicted. Calls wait for the disk.
 // Thread: one at a time.
 #pragma once
 #include <cstdint>

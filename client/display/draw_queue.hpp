@@ -83,7 +83,7 @@ class DrawQueue {
 
   /// Queues materials. `shapes` are their shapes; null: the thread that draws makes them.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes = nullptr);
-  /// Queues the textures of the world; null: none.
+  /// Queues the textures of the world. A null pointer means that there are none.
   void set_textures(DrawnTexturesPtr textures);
   /// Queues new quads. They replace a queued change of the same chunk, which is then never reported
   /// as done.

@@ -49,7 +49,7 @@ class MeshPipeline {
     set_materials(materials, mesh_materials_of(materials));
   }
   const MaterialTable& materials() const { return materials_; }
-  /// Sets the textures of the world; null: none.
+  /// Sets the textures of the world. A null pointer means that there are none.
   void set_textures(DrawnTexturesPtr textures) {
     if (draw_queue_ != nullptr) draw_queue_->set_textures(std::move(textures));
     changed_ = true;

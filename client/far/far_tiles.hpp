@@ -39,8 +39,9 @@ class FarTiles {
   /// O(tiles).
   void reopen(std::uint32_t rules, const std::function<bool(const Version&)>& trusts);
 
-  /// Reports that the server makes tiles by other rules from now on, whose number is not known before
-  /// the next reopen(). Until then, tiles that come cannot be kept, and none is taken from a cache.
+  /// Reports that the server makes tiles by other rules from now on, whose number is not known
+  /// before the next reopen(). Until then, tiles that come cannot be kept, and none is taken from a
+  /// cache.
   void end_rules() { rules_ = 0; }
 
   /// Takes a tile. Returns false and ignores it if the view does not have it or its extent is

@@ -79,7 +79,7 @@ void Play::open_world(TimeUs now_us) {
 void Play::take_up_kit() {
   if (const auto kept = kit_of_ ? kit_of_(*world_) : std::nullopt) {
     hotbar_.take(kept->slots, kept->slot, session_.welcome()->materials);
-    // A tool of another version of this client is left out.
+    // A tool that this version of the client does not have is ignored.
     static_cast<void>(tool_.box().choose(kept->tool));
   }
   kept_kit_ = kit();

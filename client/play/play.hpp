@@ -61,7 +61,7 @@ struct PlayConfig {
   std::function<std::optional<WorldKit>(const WorldId&)> kit_of;
 };
 
-/// A kit to keep for a world.
+/// The kit that the program stores for a world.
 struct KeptKit {
   WorldId world{};
   WorldKit kit;

@@ -26,7 +26,7 @@ class Player {
   /// Makes the player walk, with a body that falls and that voxels stop, or fly.
   void set_walking(bool is_walking);
   /// Call it when a world opens. The player keeps the position if the world is the one of the last
-  /// call, and otherwise moves to `place`, and to `spawn` without one.
+  /// call. Otherwise the player moves to `place`, or to `spawn` if `place` is nullopt.
   void enter(const WorldId& world, const WorldPos& spawn,
              const std::optional<Pose>& place = std::nullopt);
   /// Sets the direction, in radians. The pitch is limited to just less than straight up and down.

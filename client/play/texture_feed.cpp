@@ -34,7 +34,7 @@ std::optional<DrawnTexturesPtr> TextureFeed::step(const TextureExchange& texture
     drawn->pictures.push_back(std::move(levels));
   }
   levels_ = std::move(used);
-  // The next call prepares the rest.
+  // The next call prepares the rest of the pictures.
   if (pixels >= kPixels) return std::nullopt;
   serial_ = textures.serial();
   if (!is_any) return take_nothing();

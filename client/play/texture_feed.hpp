@@ -16,17 +16,18 @@ class TextureFeed {
  public:
   /// While pictures arrive, they are drawn in batches that are this far apart.
   static constexpr TimeUs kBatchUs = 250'000;
-  /// One call of step() prepares pictures with about so many pixels.
+  /// The approximate number of pixels that one call of step() prepares.
   static constexpr std::size_t kPixels = 32 * 1024;
 
-  /// Returns the textures to draw from now on, if they changed. `is_on`: they are drawn.
+  /// Returns the textures to draw from now on, or nullopt if they have not changed. No textures are
+  /// drawn if `is_on` is false.
   std::optional<DrawnTexturesPtr> step(const TextureExchange& textures, bool is_on, TimeUs now_us);
   /// Returns a line for the player if something is wrong with the textures of the world, once per
   /// reason. `left_out`: the pictures for which the graphics driver has no room.
   std::optional<std::string> take_notice(const TextureExchange& textures, std::size_t left_out);
 
  private:
-  /// Returns that no textures are drawn, if some were.
+  /// Returns a null pointer (draw no textures) if textures were drawn before, otherwise nullopt.
   std::optional<DrawnTexturesPtr> take_nothing();
 
   std::map<TexturePicturePtr, TextureLevelsPtr> levels_;  // of the pictures that are drawn

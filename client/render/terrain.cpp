@@ -35,6 +35,8 @@ constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kNoiseUnit = 4
                 kDepthUnit = 6;
 static_assert(kDepthUnit < QuadBuffer::kShapeUnit);
 constexpr GLint kTextureUnit = 14;
+// TextureArray::bind() takes two units. A fragment shader has at least 16.
+static_assert(QuadBuffer::kShapeUnit < kTextureUnit && kTextureUnit + 1 < 16);
 
 constexpr const char* kDepthVertexShader = RUNSTONE_QUAD_GLSL
     "uniform mat4 clip;\n"

@@ -118,7 +118,8 @@ class ScriptRunner {
   Progress propose(const EditDescriptor& edit, ActionPart part = ActionPart::alone);
   /// Proposes an edit with the joins of its voxels (joined_action()).
   Progress propose_joined(const EditDescriptor& edit);
-  /// Does the same, unless the script names the states of the material: then it means them.
+  /// Proposes an edit with joins (propose_joined()), or the edit alone if the script names the
+  /// states of the material.
   Progress propose_named(const EditDescriptor& edit);
   /// Starts a command with its edits. If they are refused, the command fails, and the script goes on.
   void start_edits(ToolEdits made);

@@ -35,7 +35,8 @@ ScriptRunner::Progress ScriptRunner::propose_edits() {
   for (; state_.count < edits.size(); ++state_.count) {
     const EditDescriptor& edit = edits[state_.count];
     if (made_.has_followers && state_.count > 0) {
-      // It waits for no budget: a neighbour that cannot follow at once does not.
+      // The edit of a neighbour does not wait for the edit budget. If the budget is used up, it is
+      // left out.
       static_cast<void>(host_.propose(edit, now_us_, now_us_, ActionPart::next));
       continue;
     }

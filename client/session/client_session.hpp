@@ -149,7 +149,7 @@ class ClientSession {
   /// everything that is wanted of it fails. Call it every turn.
   void step_library(TimeUs now_us);
 
-  /// Returns what this client does to get the textures of the world. tick() sends its messages.
+  /// Returns the exchange that gets the textures of the world. tick() sends its messages.
   TextureExchange& textures() { return textures_; }
   const TextureExchange& textures() const { return textures_; }
 

@@ -29,7 +29,7 @@ void TextureExchange::disconnected() {
 void TextureExchange::clear() {
   const std::uint64_t serial = serial_;
   const bool is_wanted = is_wanted_;
-  // Results of lookups still come, one for each.
+  // Each lookup in progress still gets one result.
   auto lookups = std::move(lookups_);
   *this = {};
   lookups_ = std::move(lookups);
@@ -73,7 +73,7 @@ void TextureExchange::forget_unlisted(std::optional<State> state) {
 std::vector<TextureHash> TextureExchange::take(State from, State next, std::size_t most) {
   std::vector<TextureHash> out;
   if (count(from) == 0) return out;
-  // In the order of the list, in which neighbours are often used together.
+  // The order is that of the list, because neighbours in the list are often used together.
   for (const TextureEntry& entry : table_.entries()) {
     if (out.size() == most) break;
     Slot& slot = slots_.at(entry.hash);
@@ -81,7 +81,7 @@ std::vector<TextureHash> TextureExchange::take(State from, State next, std::size
     move_to(slot, next);
     out.push_back(entry.hash);
   }
-  // They are of an earlier list.
+  // All pictures in this state belong to an earlier list.
   if (out.empty()) forget_unlisted(from);
   return out;
 }
@@ -131,7 +131,7 @@ void TextureExchange::decode(Arrival arrival) {
   Result<TexturePicture> picture = failure(Error{});
   if (is_right) picture = read_texture(part.png);
   if (!picture) {
-    // The server may have it whole.
+    // The row in the cache may be damaged, so the picture is requested from the server.
     move_to(slot, arrival.is_from_cache ? State::missing : State::failed);
     failed_ += arrival.is_from_cache ? 0U : 1U;
     return;
@@ -150,7 +150,7 @@ std::vector<Message> TextureExchange::step() {
     decode(std::move(next));
   }
   std::vector<Message> out;
-  // The server takes the next request once it has answered all of the last one.
+  // A client sends the next request when all hashes of the last one were answered.
   if (!asks() || count(State::asked) != 0) return out;
   const State unasked = has_cache_ ? State::missing : State::listed;
   TexturesWanted wanted{take(unasked, State::asked, kTexturesWantedMax)};

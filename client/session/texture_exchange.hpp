@@ -47,7 +47,7 @@ class TextureExchange {
 
   /// Takes a part of the list. Fails, with words for the server, if it is not valid.
   Result<void> receive(const TexturesGiven& given);
-  /// Takes pictures. Those that were not asked for change nothing.
+  /// Takes pictures. Pictures that were not requested change nothing.
   void receive(TextureParts answer);
   /// Decodes some of the pictures that arrived. Returns the messages to send now.
   std::vector<Message> step();

@@ -12,7 +12,7 @@ std::optional<SetTime> build_time_slider(const HudState& state) {
   std::optional<SetTime> out;
   const double share = state.time_of_day - std::floor(state.time_of_day);
   int minute = static_cast<int>(std::lround(share * kMinutes)) % kMinutes;
-  // The text of the slider is the time, in place of the number.
+  // The slider shows the time instead of the number of minutes.
   const std::string text = day_time_text(static_cast<std::uint32_t>(minute) * 60'000);
   if (ImGui::SliderInt("for you alone", &minute, 0, kMinutes - 1, text.c_str(),
                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput))

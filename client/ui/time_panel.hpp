@@ -6,13 +6,13 @@
 
 namespace runstone {
 
-/// The user chose a time of day, for this client alone. nullopt: the world's again.
+/// The user chose a time of day for this client alone, or the time of the world (nullopt).
 struct SetTime {
   std::optional<double> share;  // of the day, as FrameLook::time_of_day
 };
 
-/// Adds a slider for the time of day, and a button that shows the world's again, to the window that
-/// is being made with ImGui. Returns what the user did.
+/// Adds a slider for the time of day, and a button that shows the time of the world again, to the
+/// window that is being made with ImGui. Returns what the user did.
 std::optional<SetTime> build_time_slider(const HudState& state);
 
 }  // namespace runstone

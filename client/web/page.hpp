@@ -41,7 +41,7 @@ void page_typing(int is_typing);
 void page_load_font(void);
 /// Keeps the key of a world's server for later visits. Both are in hex.
 void page_keep_server(const char* world, const char* key);
-/// Keeps hotbar and tool of a world (in hex) for later visits, a line of text.
+/// Stores a line with the hotbar and the tool of a world (in hex) for later visits.
 void page_keep_kit(const char* world, const char* line);
 /// Writes the line that page_keep_kit() has kept for a world, and a 0 behind it, to `out`, which
 /// has `bytes` bytes. Writes an empty line if there is none, or if it is too long.

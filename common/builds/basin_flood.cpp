@@ -110,7 +110,7 @@ class BasinFiller {
     end_lines(edge * edge);
   }
 
-  /// Reaches the stretches of a line that share a place of [first, last) along x.
+  /// Marks the stretches of a line as reached that share a place of [first, last) along x.
   void reach(ChunkCoord chunk, Lines* lines, std::int32_t y, std::int32_t z, int first, int last) {
     const auto line = static_cast<std::size_t>(y + edge_ * z);
     for (std::uint32_t i = lines->begins[line]; i < lines->begins[line + 1]; ++i) {
@@ -129,7 +129,7 @@ class BasinFiller {
     }
   }
 
-  /// Reaches the stretches beside one.
+  /// Marks the stretches beside a stretch as reached.
   void spread(const Reached& from) {
     const Stretch s = from.lines->stretches[from.stretch];
     if (s.first != 0) {

@@ -24,9 +24,9 @@ namespace runstone {
 /// bytes).
 std::optional<Shape> shape_of_material_name(std::string_view name);
 
-/// Returns true if a name, with the states in it and beside it, is that of a node of Luanti, although
-/// a rule of Minecraft may know its words: it has a param2, or it is of the games MineClone2 and
-/// VoxeLibre. Such a node has no states of Minecraft. Other nodes may return false.
+/// Returns true if a name, with the states in it and beside it, is that of a node of Luanti,
+/// although a rule of Minecraft may know its words: it has a param2, or it is of the games
+/// MineClone2 and VoxeLibre. Such a node has no states of Minecraft. Other nodes may return false.
 bool is_luanti_node(std::string_view name, std::string_view states = {});
 
 /// Returns the name of the material for a node of Luanti with states, such as "param2=3". They are

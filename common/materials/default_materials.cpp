@@ -58,7 +58,7 @@ constexpr PaletteRow kPalette[] = {
     {"wool_brown", 0x6d4a2fff, kWool},
 };
 
-/// What grows in a landscape beside the materials above.
+/// The materials of trees and forest ground in a landscape, besides the materials above.
 constexpr PaletteRow kGrowth[] = {
     {"forest_floor", 0x5c7434ff, {18, 32, 100, 0, none}},
     {"pine_leaves", 0x2f5a3cff, {22, 42, 100, 0, none}},

@@ -16,8 +16,9 @@ struct TexturesGiven {
   friend bool operator==(const TexturesGiven&, const TexturesGiven&) = default;
 };
 
-/// Asks for pictures. Each hash is answered in a TextureParts. A session has at most one of these
-/// messages unanswered: the next one follows when all hashes of the last one were answered.
+/// Asks for pictures. Each hash is answered in a TextureParts. A client sends the next message when
+/// all hashes of the last one were answered. A server allows kTexturesUnansweredMax unanswered
+/// hashes.
 struct TexturesWanted {
   std::vector<TextureHash> hashes;  // 1 .. kTexturesWantedMax, all different
   friend bool operator==(const TexturesWanted&, const TexturesWanted&) = default;
@@ -29,8 +30,8 @@ struct TexturePart {
   friend bool operator==(const TexturePart&, const TexturePart&) = default;
 };
 
-/// Answers a TexturesWanted, in several messages and in any order. That the bytes have the hash,
-/// and are a picture, is not checked.
+/// Answers a TexturesWanted, in several messages, in the order in which the hashes were wanted. The
+/// codec does not check that the bytes have the hash and are a picture.
 struct TextureParts {
   std::vector<TexturePart>
       parts;  // 1 .. kTexturesWantedMax, together kTexturePartsBytesMax at most

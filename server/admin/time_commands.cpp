@@ -38,7 +38,8 @@ void set_time(const CommandCall& call, const WorldTime& time) {
                                         std::to_string(*record) + ")");
 }
 
-/// What `time` shows or sets: nothing, a time of day, or a rate.
+/// The arguments of the command time. It shows the time if both are absent. Otherwise it sets the
+/// time of day or the rate.
 struct TimeWish {
   std::optional<std::uint32_t> day_ms, rate;
 };

@@ -29,8 +29,8 @@ struct LuantiImportOptions {
   bool keep_all = false;
   /// Chooses materials, if it is not null. It must outlive the import.
   const MaterialMap* map = nullptr;
-  /// True: the materials are those of material_of_luanti_cube(). The benchmarks measure worlds so,
-  /// as their figures were measured.
+  /// If it is true, the materials are those of material_of_luanti_cube(). The benchmarks use it, so
+  /// that their figures stay comparable.
   bool only_cubes = false;
 };
 

@@ -285,8 +285,8 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
     mapped = made.get();
     all = std::move(made);
   }
-  // A map has the names of the file, so the build is turned after it. A model was turned when it
-  // was read.
+  // A map has the names of the file, so the build is turned after the map was applied. A model was
+  // turned when it was read.
   const int quarters = request.model.quarters;
   if (request.kind == ImportKind::file && quarters != 0 && !is_model_file(request.source)) {
     all = std::make_unique<TurnedParts>(std::move(all), Orientation{}.rotated_about_y(quarters));

@@ -18,9 +18,9 @@ class SliceEdits {
   SliceEdits(const WorldServer& world, AuthorId author, std::int32_t chunk_edge)
       : world_(world), author_(author), chunk_edge_(chunk_edge) {}
 
-  /// Adds an edit. If it is a fill that shares a whole side with the fill before it, has its
-  /// material, mask and subject, and the role of the author allows both as one edit, it becomes a
-  /// part of that.
+  /// Adds an edit. A fill is merged into the fill before it if
+  ///   - the two share a whole side, and have equal materials, masks and subjects, and
+  ///   - the role of the author allows both as one edit.
   void add(const EditDescriptor& edit, Sequence subject);
   /// Returns edit_work() of all edits together.
   std::size_t work() const { return work_; }

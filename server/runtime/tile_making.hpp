@@ -49,9 +49,9 @@ class TileMaking {
   Sequence newest_edit(const ChunkKey& tile);
   /// Returns true if the client's copy is the tile as it is now; see TileSource::is_current().
   bool is_current(const CachedChunk& copy, std::uint32_t rules);
-  /// Writes tiles, which were made by `rules`, when the earlier ones are written. Drops tiles if too
-  /// many wait, and those of other rules that wait. The writer must not call back after the strand
-  /// has ended.
+  /// Writes tiles, which were made by `rules`, when the earlier ones are written. Drops tiles if
+  /// too many wait, and those of other rules that wait. The writer must not call back after the
+  /// strand has ended.
   void save(Tiles tiles, std::uint32_t rules, LogWriter& writer);
 
   /// Ends the threads. Waits for the tiles that are being made, and drops the requests that wait.

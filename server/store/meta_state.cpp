@@ -1,5 +1,5 @@
-// The part of MetaTable that keeps what belongs to no record: how far the clock of the world has
-// come, and where players were last.
+// The part of MetaTable that stores the state that belongs to no record: the time of the world, and
+// the last places of players.
 #include <cmath>
 #include <utility>
 

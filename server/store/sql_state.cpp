@@ -1,5 +1,5 @@
-// The part of SqlStore that keeps what belongs to no record (SavedState), and the clock that the
-// newest record has set.
+// The part of SqlStore that stores the state that belongs to no record (SavedState), and the clock
+// that the newest record has set.
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
 #include "server/store/world_schema.hpp"

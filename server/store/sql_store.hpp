@@ -289,7 +289,7 @@ class SqlStore final : public Store {
   std::optional<RowCounts> counts_;
   ChunkTable base_, snapshots_;
   KeyframeTable keyframes_;
-  // nullopt: a world without the table that is open for reading only
+  // nullopt: the world lacks the table and is open for reading only
   std::optional<TileTable> tiles_;
   std::optional<BuildTable> library_;  // nullopt: the world has no library, or it is not open yet
   StoreAccess access_;

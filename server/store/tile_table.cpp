@@ -20,8 +20,8 @@ std::string has_key() {
          kFits + " AND z" + kFits + ")";
 }
 
-/// True if the tiles were made by the rules that the parameter names. One statement reads row and
-/// rules at one moment: another program may replace both meanwhile.
+/// Returns a condition in SQL: the tiles were made by the rules that the parameter names. One
+/// statement reads the row and the rules at one moment, because another program may replace both.
 std::string has_rules(const sql::Database& database, const std::string& parameter) {
   const char* const value = database.dialect() == sql::Dialect::sqlite ? "value" : "integer_value";
   return parameter + " = (SELECT " + value + " FROM meta WHERE key = 'tile_rules')";

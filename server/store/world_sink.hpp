@@ -75,8 +75,8 @@ class WorldSink {
   virtual StoreResult<void> remove_build_file(std::uint64_t /*content*/) { return {}; }
   /// Inserts or replaces tiles. Requires that each was made of chunks of this world, after it was
   /// opened for writing, and contains all edits below it up to its version. A tile is left out if a
-  /// snapshot below it was saved meanwhile that is newer. All are left out if `rules`, by which they
-  /// were made, are not those of the materials that are written (tile_rules_of()). Fails
+  /// snapshot below it was saved meanwhile that is newer. All are left out if `rules`, by which
+  /// they were made, are not those of the materials that are written (tile_rules_of()). Fails
   /// (bad_request) if a tile is ahead of the log.
   virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) = 0;
 };

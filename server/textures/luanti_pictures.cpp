@@ -13,7 +13,7 @@ namespace {
 
 using Kind = LuaToken::Kind;
 
-/// A file in Lua has at most so many bytes, and all of a game together.
+/// The maximum bytes of one file, and of all files of a game together.
 constexpr std::size_t kLuaFileBytesMax = std::size_t{2} << 20, kLuaBytesMax = std::size_t{64} << 20;
 constexpr std::size_t kTileBytesMax = 256;
 
@@ -96,7 +96,7 @@ std::array<Direction, 6> turned_tiles(unsigned facedir) {
     }
     return out;
   }
-  // The top lies elsewhere. The four sides around it are taken as they come.
+  // The node does not stand upright. The turn of the four sides around its top is ignored.
   constexpr std::array<Direction, 6> kTops = {Direction::pos_y, Direction::pos_z, Direction::neg_z,
                                               Direction::pos_x, Direction::neg_x, Direction::neg_y};
   out[0] = kTops[axis];

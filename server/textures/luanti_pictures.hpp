@@ -16,7 +16,7 @@ namespace runstone {
 /// The nodes that files in Lua define, at most.
 inline constexpr std::size_t kLuantiNodesMax = 65'536;
 
-/// What the scan finds.
+/// The nodes that scan_lua() found.
 struct LuantiNodes {
   /// The tiles of each node by its name: +y, -y, +x, -x, +z, -z. A tile that is not plain text is
   /// empty.

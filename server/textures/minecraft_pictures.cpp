@@ -14,10 +14,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A file of JSON has at most so many bytes, and all of a pack together.
+/// The maximum bytes of one file, and of all files of a pack together.
 constexpr std::size_t kJsonBytesMax = std::size_t{1} << 20,
                       kAllJsonBytesMax = std::size_t{64} << 20;
-/// Models above a model, and texts that name each other.
+/// The maximum length of a chain of parent models, or of texture names that refer to each other.
 constexpr int kChainMax = 16;
 /// Lists and objects within each other. Deeper ones are left out of what was read.
 constexpr int kJsonDepthMax = 64;

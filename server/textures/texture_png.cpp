@@ -27,7 +27,7 @@ TexturePicture scaled(std::uint32_t edge, const std::vector<std::uint8_t>& rgba)
   const std::uint32_t block = std::max(1U, edge / to), times = std::max(1U, to / edge);
   for (std::uint32_t y = 0; y < to; ++y) {
     for (std::uint32_t x = 0; x < to; ++x) {
-      // Colours count by their alpha.
+      // Colours are weighted by their alpha.
       std::uint64_t sum[4] = {};
       for (std::uint32_t j = 0; j < block; ++j) {
         for (std::uint32_t i = 0; i < block; ++i) {
@@ -119,7 +119,8 @@ Result<Bytes, std::string> texture_png(std::span<const Bytes> layers,
   }
   if (tint) colour(*picture, *tint);
   Bytes png = encoded(*picture);
-  // Not compressed, 64 x 64 pixels have fewer bytes.
+  // The encoder compresses. Even an uncompressed picture of 64 x 64 pixels is smaller than this
+  // limit.
   if (png.size() > kTextureBytesMax) return failure(std::string("takes more than 24,576 bytes"));
   return png;
 }

@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-/// Cost: O(boxes of the materials).
+/// Returns how tiles see the materials of a table. Cost: O(boxes of the materials).
 inline TileVisibility tile_visibility_of(const MaterialTable& materials) {
   return {VisibilityTable(half_filled_visibilities(materials)),
           VisibilityTable(cube_visibilities(materials)),

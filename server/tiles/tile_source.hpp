@@ -68,11 +68,11 @@ class TileSource {
                                           const TileVisibility& visibility,
                                           const PastChunk& past_chunk = {});
   /// Returns true if a copy of this version and with this claim_digest() is the tile as it is now.
-  /// Requires that the copy was made by `rules`, which are those in force. It makes no tile and
+  /// Requires that the copy was made by `rules`, the rules in force. The function makes no tile and
   /// reads none from the disk. If the tile with its veil is in memory, the digests are compared.
-  /// Otherwise the version must be that of the newest edit below the tile.
-  /// Returns false before the first make(), because the edits before the start are not known then.
-  /// Cost: two look-ups. It may wait for other threads for a moment.
+  /// Otherwise the version must be that of the newest edit below the tile. Returns false before the
+  /// first make(), because the edits before the start are not known then. Cost: two look-ups. The
+  /// function may wait for other threads for a moment.
   bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest,
                   std::uint32_t rules);
 

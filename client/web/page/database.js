@@ -9,7 +9,7 @@ const Database = (() => {
       request.onerror = () => reject(request.error);
     });
   }
-  // Returns a promise that is kept when the transaction is complete.
+  // Returns a promise that is fulfilled when the transaction is complete.
   function completed(transaction) {
     return new Promise((resolve, reject) => {
       transaction.oncomplete = () => resolve();

@@ -26,7 +26,7 @@
 namespace runstone {
 
 /// The tags of the kinds, as they are stored. 5 is unused, because fill_box with the mask
-/// only_material replaces a material in a box. 12 is unused, too.
+/// only_material replaces a material in a box.
 enum class EditKind : std::uint8_t {
   set_voxel = 1,
   fill_box = 2,

@@ -100,7 +100,7 @@ void Followers::on_follow_request(SessionId link, const FollowRequest& request, 
     for (const LogPart& part : feed.unwritten().parts()) feed.send(link, encode_message(part));
   }
   feed.send(link, encode_message(receipts_.durable()));
-  // The records that the follower reads say when the clock was set, not how far it has come.
+  // The records that the follower reads set the clock, but do not have the present time of it.
   if (const auto time = order_.clock().at(now.steady_us)) feed.send(link, encode_message(*time));
 }
 

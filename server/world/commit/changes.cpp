@@ -18,8 +18,8 @@ Unexpected<MaterialsRefusal> refusal(std::string what,
 
 constexpr const char* kNoRoomInLog = "the log has no room now (log_queue_records)";
 
-/// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it was
-/// not.
+/// Returns why a change was not ordered, as a sentence for the one who makes it. Requires that it
+/// was not.
 std::string why_not_ordered(const ServerEditsResult& result) {
   switch (result.state) {
     case ServerEditsResult::State::closed:

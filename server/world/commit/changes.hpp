@@ -90,8 +90,8 @@ class Changes {
   Result<Sequence, std::string> give_textures(std::span<const GivenTexturePtr> textures,
                                               const Clocks& now);
 
-  /// Orders the addition of a build by an author (0: the console), whose file is in the store. Returns
-  /// its number, which is the sequence of the record, or why it was refused, as a sentence.
+  /// Orders the addition of a build by an author (0: the console), whose file is in the store.
+  /// Returns its number, which is the sequence of the record, or why it was refused, as a sentence.
   Result<Sequence, std::string> add_build(const AddBuild& build, AuthorId author,
                                           const Clocks& now);
   /// Returns a content number for the file of a build, which was never used in the world.

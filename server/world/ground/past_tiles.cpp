@@ -38,8 +38,8 @@ void want_differing(const WorldEnvironment& environment, TileInterest& tiles, co
     want_differing(environment, tiles, tile_child(key, i), move, left);
 }
 
-/// Makes the past tiles wanted again that a session has, below a tile and this one. Appends them to
-/// `left`.
+/// Requests again all past tiles that the session has: this tile and those below it. Appends them
+/// to `left`.
 void want_past_again(const WorldEnvironment& environment, TileInterest& tiles, const ChunkKey& key,
                      Sequence at, std::vector<ChunkKey>& left) {
   if (environment.newest_tile_edit(key) <= at) return;

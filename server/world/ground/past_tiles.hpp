@@ -35,9 +35,9 @@ class PastTiles {
   /// look-up for each tile of the view's highest level, and for the children of each tile that
   /// differs.
   void move_in_time(Viewer& viewer, const Clocks& now);
-  /// Makes the past tiles wanted again that the session has. Requires that it sees the past. Call it
-  /// when the rules of tiles have changed. Cost: a look-up for each tile of the view's highest level, and for the children of each
-  /// past tile.
+  /// Requests again all past tiles that the session has. Requires that the session sees the past.
+  /// Call it when the rules of tiles have changed. Cost: a look-up for each tile of the view's
+  /// highest level, and for the children of each past tile.
   void want_all_again(Viewer& viewer, const Clocks& now);
   /// Returns true if the session sees the past and the tile of that moment differs from the present
   /// one. Requires TileBoard::mark_outdated().

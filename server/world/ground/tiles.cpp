@@ -13,7 +13,8 @@ namespace {
 /// So many wanted tiles of a session are looked at if past ones have to wait.
 constexpr std::size_t kWantedLookedAtMax = 64;
 
-/// The digest is that of the voxels that clients get: other rules may change the veil alone.
+/// Returns the state of a tile. Its digest is that of the voxels that clients get, because other
+/// rules may change the veil alone.
 TileState state_of(const MadeTile& made) {
   const bool is_complete = made.is_complete();
   return {made.tile->version, is_complete ? made.for_clients()->digest : made.voxel_digest,
@@ -55,7 +56,8 @@ void Tiles::resend_changed(const ChunkKey& key, const MadeTile& made, const Cloc
       receivers.push_back(session);
     }
   }
-  // Those who did not get the state before come first, and were paid for then.
+  // Sessions that did not get the state before are served first. The queue was charged for them
+  // then.
   const auto waits = [&lagging](SessionId session) {
     return std::ranges::find(lagging, session) != lagging.end();
   };
@@ -132,7 +134,7 @@ void Tiles::request(Viewer& viewer, const Clocks& now) {
         base_.deliveries.insert(viewer.id());  // the others have a task of their own
         break;
       }
-      // A copy that may be of other rules is compared with the tile.
+      // A copy that other rules may have made is compared with the tile.
       if (viewer.session.tile_rules == rules_ && base_.environment.is_tile_current(*claim)) {
         tiles.set_waiting(*key);
         sending_.send_same(viewer, *key, claim->version.seq);
@@ -171,7 +173,7 @@ void Tiles::made(const ChunkKey& key, const std::vector<MadeTile>& made, const C
     board_.queue().failed(key, now.steady_us + kTileRetryUs);
     return board_.drop_if_unused(key);
   }
-  // Materials got shapes meanwhile.
+  // The tile is outdated if materials got shapes while it was made.
   if (made.back().rules != base_.order.tile_rules()) return stopped(key, made, now);
   const std::vector<SessionId> waiting = board_.queue().finished(key);
   const MadeTile& tile = made.back();

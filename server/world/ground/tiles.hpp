@@ -62,8 +62,8 @@ class Tiles {
 
   // Answers of the workers.
   /// Sends a tile that workers made, the last one of `made`, to the sessions that wait for it or
-  /// have it at an earlier state. A tile of earlier rules is made again instead. Saves those that are worth it. `made` is empty if the tile could
-  /// not be made.
+  /// have it at an earlier state. A tile of earlier rules is made again instead. Saves the tiles
+  /// that are worth saving. `made` is empty if the tile could not be made.
   void made(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
   /// Saves tiles that were made on the way to a tile. The tile is requested again when others had
   /// their turn.
@@ -76,8 +76,8 @@ class Tiles {
  private:
   void charge(const ChunkKey& key, const std::vector<MadeTile>& made, const Clocks& now);
   void resend_changed(const ChunkKey& key, const MadeTile& made, const Clocks& now);
-  /// If the rules of tiles have changed, because materials got shapes, makes all tiles outdated that
-  /// sessions have.
+  /// If the rules of tiles have changed, because materials got shapes, makes all tiles outdated
+  /// that sessions have.
   void follow_rules(const Clocks& now);
 
   GroundBase& base_;

@@ -16,7 +16,8 @@ using GivenTexturePtr = std::shared_ptr<const GivenTexture>;
 
 class WorldTextures {
  public:
-  /// `start`: what the log gave before this run, in order. Requires that a table takes all of them.
+  /// `start` has the textures of the log before this run, in order. Requires that a table accepts
+  /// all of them.
   explicit WorldTextures(std::span<const GivenTexturePtr> start);
 
   /// Applies the textures among records that were ordered just now. Returns true if there are any.
@@ -25,7 +26,7 @@ class WorldTextures {
   const TextureTable& table() const { return table_; }
   /// Returns the bytes of entry `index` of the table.
   const Bytes& png(std::size_t index) const { return pictures_[index]->png; }
-  /// Returns what was given, in the order of the log: one entry for each record.
+  /// Returns one entry for each record that gives a texture, in the order of the log.
   std::span<const TextureEntry> given() const { return given_; }
   /// Returns the record that gave a texture last in this run, or 0.
   Sequence newest() const { return newest_; }

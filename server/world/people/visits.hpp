@@ -4,9 +4,9 @@
 //     about one who leaves comes that much later.
 //   - A player who changes the server, or whose server begins to follow another owner, has neither
 //     joined nor left.
-//   - All lines together are at most kVisitLinesPerSecond, with kVisitLineBurst at once. More are
-//     not sent: the list of players has the truth.
-// The lines are in no log, and nobody who joins later gets them. Thread: the world strand.
+//   - All lines together are at most kVisitLinesPerSecond, with kVisitLineBurst at once. Further
+//     lines are dropped. The list of players (PlayerList) is always complete.
+// The lines are in no log, and players who join later do not get them. Thread: the world strand.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -26,7 +26,7 @@ enum class TileVeil { veiled, none };
 
 class FarWorld {
  public:
-  /// `parameters` are those of the generator.
+  /// `parameters` are the parameters of the generator.
   FarWorld(std::int32_t edge, const MaterialTable& materials, const std::string& parameters,
            TileVeil veil = TileVeil::veiled, const std::string& generator = "terrain")
       : edge_(edge),

@@ -33,10 +33,10 @@ TEST_CASE("the air around a lamp glows at night, more than by day", "[render]") 
   if (!scene.draws()) return;
   scene.contents.look.antialiasing = GENERATE(Antialiasing::off, Antialiasing::msaa);
   scene.contents.look.time_of_day = 0;
-  scene.camera.x = scene.camera.z = 16.5;
+  scene.camera.x = 16.5;
   scene.camera.y = 20.5;
-  scene.camera.pitch = 0;
   scene.camera.z = 6.5;
+  scene.camera.pitch = 0;
   const VoxelBox place{{16, 20, 16}, {17, 21, 17}};
   scene.set(place, kDull);
   const int dark = brightness_beside_lamp(scene);

@@ -1,5 +1,5 @@
-// The tint of natural ground by its place. The cases draw off screen. If there is no OpenGL context,
-// they say so with WARN and pass.
+// The tint of natural ground by its place. The cases draw off screen. If there is no OpenGL
+// context, they say so with WARN and pass.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -15,7 +15,7 @@ Bytes png_of_edge(std::uint8_t red, int edge) {
   return encode_png(image);
 }
 
-/// Textures of which the test is the server.
+/// An exchange of textures whose server is the test.
 struct TextureWorld {
   TextureWorld() {
     exchange.set_wanted(true);
@@ -85,7 +85,7 @@ TEST_CASE("textures that are turned off are removed, and drawn again when turned
   const auto on = world.step();
   REQUIRE(on);
   CHECK(*on);
-  // Another world has none.
+  // Another world has no textures.
   world.exchange.clear();
   const auto gone = world.step();
   REQUIRE(gone);

@@ -116,7 +116,7 @@ TEST_CASE_METHOD(ScriptBench, "fences that a script sets, fills, places or digs 
   CHECK(host.edits[0].part == ActionPart::first);
   CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 2}, 3});
   CHECK(host.edits[1].part == ActionPart::next);
-  // A member that is named with its states is meant as it is.
+  // A material whose name has states is placed without joins.
   host.edits.clear();
   run("set 1 0 0 stone");
   REQUIRE(host.edits.size() == 1);

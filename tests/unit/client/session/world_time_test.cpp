@@ -36,10 +36,10 @@ TEST_CASE_METHOD(TimeSession, "a client runs the clock of the world by itself",
   const auto later_on = session.world_time(got_us + 60'000'000);
   REQUIRE(later_on.has_value());
   CHECK(later_on->day_ms >= 3'600'000);
-  // The time goes on while the connection is lost, and the server says it again.
+  // The time goes on while the connection is lost. The server sends it again after that.
   session.disconnected();
   CHECK(session.world_time(got_us + 60'000'000) == later_on);
-  // A server that does not know times has none.
+  // A server without the feature sends no time.
   open_with(kFeatureChat);
   CHECK(session.world_time(now) == std::nullopt);
   receive(kNight);

@@ -73,7 +73,7 @@ TEST_CASE("the page finds the pictures that it keeps", "[web][textures]") {
   REQUIRE(results.size() == 2);
   CHECK(results[0] == std::vector{parts[1], parts[0]});
   CHECK(results[1].empty());
-  // Calls that do not fit a lookup change nothing, and neither does a row that is too large.
+  // Calls that do not fit a lookup are ignored, and so is a row that is too large.
   textures.found(0, parts[0].png);
   textures.looked_up();
   textures.look_up_textures({{1}});

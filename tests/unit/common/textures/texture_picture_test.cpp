@@ -1,4 +1,4 @@
-// Decoding pictures of strangers.
+// Tests the decoding of pictures that may be damaged or hostile.
 #include "common/textures/texture_picture.hpp"
 
 #include <catch2/catch.hpp>

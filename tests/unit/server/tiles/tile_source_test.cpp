@@ -126,7 +126,7 @@ TEST_CASE("tiles of other rules are neither used nor current", "[tiles][shapes]"
   // The tile of the other rules is in memory: its digest does not count.
   CHECK(world.source->is_current(key, version, digest + 1, kTileRules));
   CHECK_FALSE(world.source->is_current(key, version, digest + 1, other.rules));
-  // The store has the number of its own rules.
+  // The store has the number of the rules of its own materials.
   REQUIRE(world.store->save_tiles({}, other.rules).has_value());
   CHECK(world.store->load_tile(key, kTileRules).value().has_value());
   CHECK_FALSE(world.store->load_tile(key, other.rules).value().has_value());

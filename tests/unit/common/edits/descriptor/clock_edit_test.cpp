@@ -35,7 +35,7 @@ TEST_CASE("a time that is none, and a rate that is too high, are refused", "[edi
   CHECK_FALSE(decode_descriptor(Bytes{0x0d, 0, 0, 0x80, 0xb8, 0x99, 0x29, 0}).has_value());
   CHECK_FALSE(decode_descriptor(Bytes{0x0d, 0, 0, 0, 0x91, 0x4e}).has_value());
   CHECK(decode_descriptor(Bytes{0x0d, 0, 0, 0, 0x90, 0x4e}).has_value());
-  // Kind 12 is unused.
+  // The fields of a clock do not decode under the tag of the kind 12 (textures).
   CHECK_FALSE(decode_descriptor(Bytes{0x0c, 0, 0, 0, 0}).has_value());
   EditDescriptor coloured = clock_edit({});
   coloured.material = 1;

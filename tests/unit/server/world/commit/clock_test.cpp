@@ -1,4 +1,4 @@
-// The clock of the world while people play: who learns it, when, and what moves it.
+// Tests which sessions get the clock of the world, when they get it, and which records set it.
 #include <catch2/catch.hpp>
 
 #include "tests/unit/server/world/commit/feature_bench.hpp"

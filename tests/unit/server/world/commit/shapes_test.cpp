@@ -62,7 +62,7 @@ TEST_CASE("given shapes are a record, and reach the sessions with the feature",
   const MaterialTable& table = bench.server.order().materials();
   CHECK(bench.followed(1, with.materials) == table);
 
-  // Those who join later have the shapes in Welcome, with the feature only.
+  // Sessions that join later get the shapes in Welcome, but only with the feature.
   const Welcome later = bench.join_with(3, 3, kBoth);
   CHECK(later.materials == table);
   CHECK(bench.given_to(3).empty());

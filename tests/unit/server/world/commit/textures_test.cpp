@@ -54,7 +54,7 @@ TEST_CASE("given textures are records, and the list reaches the sessions with th
   CHECK(bench.list_of(2).empty());
   CHECK(bench.environment.closed.empty());
 
-  // Those who join later get the whole list, and then what is new.
+  // A session that joins later gets the whole list, and afterwards the new textures.
   bench.join_with(3, 3, kFeatureMaterials | kFeatureTextures);
   CHECK(bench.list_of(3) == all);
   const auto third = given_of(1, {{2, 2}});

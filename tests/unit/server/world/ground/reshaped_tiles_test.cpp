@@ -66,7 +66,7 @@ TEST_CASE("tiles are made again after shapes were given, and those that changed 
   const auto after = bench.tiles_of(1);
   CHECK(after.count(kTile) == before.count(kTile) + 1);
   CHECK(after.size() == before.size() + 1);
-  // Those who join now learn the number.
+  // A session that joins now gets the new number.
   bench.enter(2);
   CHECK(bench.accepted_rules(2) == rules);
   bench.enter(3, 0, 0);
