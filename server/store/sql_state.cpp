@@ -6,13 +6,18 @@
 
 namespace runstone {
 
-StoreResult<SavedState> SqlStore::saved_state() {
-  return at_one_moment<SavedState>([&] { return meta_table_.saved_state(); });
+StoreResult<std::vector<LastPlace>> SqlStore::saved_places() {
+  return at_one_moment<std::vector<LastPlace>>([&] { return meta_table_.places(); });
+}
+
+StoreResult<std::optional<SavedClock>> SqlStore::saved_clock() {
+  return at_one_moment<std::optional<SavedClock>>([&] { return meta_table_.clock(); });
 }
 
 StoreResult<void> SqlStore::save_state(const SavedState& state) {
   return write([&]() -> StoreResult<void> {
-    // A damaged row is replaced: no edit depends on it.
+    // No edit depends on these rows, so a damaged one does not end the log. Damaged places are
+    // replaced. A damaged clock stays until a record sets it.
     const auto is_damaged = [](const auto& row) {
       return !row && row.error().kind == StoreError::Kind::corrupt;
     };

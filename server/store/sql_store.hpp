@@ -88,7 +88,8 @@ class SqlStore final : public Store {
   StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<NameClaim>> name_claims() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
-  StoreResult<SavedState> saved_state() override;
+  StoreResult<std::vector<LastPlace>> saved_places() override;
+  StoreResult<std::optional<SavedClock>> saved_clock() override;
   AuthorId author_max() const override { return state_.author_max; }
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;

@@ -109,7 +109,10 @@ class ModelStore final : public Store {
     return database_.players().empty() ? 0 : database_.players().rbegin()->first;
   }
 
-  StoreResult<SavedState> saved_state() override { return SavedState{}; }
+  StoreResult<std::vector<LastPlace>> saved_places() override { return std::vector<LastPlace>(); }
+  StoreResult<std::optional<SavedClock>> saved_clock() override {
+    return std::optional<SavedClock>();
+  }
   const std::optional<StoreError>& loss() const override { return loss_; }
   StoreResult<void> begin_reads() override { return {}; }
   StoreResult<void> end_reads() override { return {}; }
