@@ -93,8 +93,8 @@ class MetaTable {
   StoreResult<std::optional<Epoch>> open_epoch();
   StoreResult<void> put_open_epoch(std::optional<Epoch> epoch);
 
-  /// Returns row `world_clock`, or nullopt if there is none. Fails (corrupt) if it has an impossible
-  /// value.
+  /// Returns row `world_clock`, or nullopt if there is none. Fails (corrupt) if it has an
+  /// impossible value.
   StoreResult<std::optional<SavedClock>> clock();
   /// Returns row `player_places`, or an empty list if there is none. Fails (corrupt) if it has an
   /// impossible value.
