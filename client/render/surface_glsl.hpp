@@ -8,6 +8,7 @@ namespace runstone {
 inline constexpr float kLiquidSurface = 7.0F;
 /// The fraction for roughness 1. It is below 1 by more than the step of a 16-bit float below 8.
 inline constexpr float kRoughnessScale = 0.98F;
+static_assert(kRoughnessScale == 0.98F);  // RUNSTONE_SURFACE_PARTS_GLSL has this number
 
 // All three macros require `look`. RUNSTONE_PATTERN_GLSL requires `float hash(ivec3)`, too, and
 // RUNSTONE_GLOSS_GLSL requires RUNSTONE_SURFACE_PARTS_GLSL and RUNSTONE_LIGHT_GLSL.
