@@ -271,9 +271,10 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
   textures.set_wanted(is_on);
   if (auto drawn = textures_.step(textures, is_on, now_us))
     pipeline_.set_textures(*std::move(drawn));
-  if (pipeline_.recent_frames().empty()) return;
-  const std::size_t left_out = pipeline_.recent_frames().back().stats.textures_left_out;
-  if (auto notice = textures_.take_notice(textures, left_out))
+  const auto& frames = pipeline_.recent_frames();
+  const RenderStats stats = frames.empty() ? RenderStats() : frames.back().stats;
+  limits_.set_texture_bytes(textures.picture_bytes() + textures_.bytes() + stats.texture_bytes);
+  if (auto notice = textures_.take_notice(textures, stats.textures_left_out))
     notify(*std::move(notice), NoticeKind::warning);
 }
 

@@ -64,6 +64,7 @@ class Terrain {
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
   /// Sets the textures of the world; null: none.
   void set_textures(const DrawnTexturesPtr& textures) { textures_.set(textures); }
+  std::uint64_t texture_bytes() const { return textures_.byte_size(); }
   /// Returns TextureArray::left_out().
   std::size_t textures_left_out() const { return textures_.left_out(); }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,
