@@ -187,6 +187,7 @@ StatisticsState ClientHud::statistics(const HudScene& scene, TimeUs now_us) {
   out.edit_bytes = memory.edits;
   out.mesh_bytes = memory.meshes;
   out.gpu_bytes = memory.gpu;
+  out.texture_bytes = memory.textures;
   out.bytes_max = play_.limits().budget().bytes_max();
   out.tiles = play_.session().replica().far_tiles().count();
   out.tile_levels = play_.session().view().levels;

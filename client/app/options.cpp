@@ -139,8 +139,8 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_option("--memory-mib", out.memory_mib,
-                 "memory for chunks, edits and meshes in MiB; default: an eighth of the machine's, "
-                 "from 256 to 1024. Beyond it the view shrinks")
+                 "memory for chunks, edits, meshes and textures in MiB; default: an eighth of the "
+                 "machine's, from 256 to 1024. Beyond it the view shrinks")
       ->check(CLI::Range(std::uint64_t{64}, std::uint64_t{65'536}));
   app.add_flag("--no-textures", out.no_textures,
                "draw patterns, not the pictures that a world brings for its materials");

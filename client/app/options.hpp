@@ -60,7 +60,8 @@ struct ClientOptions {
   bool cache = true;              // keep chunks on disk between runs
   std::string cache_dir;          // empty: $XDG_CACHE_HOME/runstone
   std::uint64_t cache_mib = 256;  // at most, on disk
-  /// For chunks, edits and meshes (MemoryBudget). 0: the client uses automatic_memory_mib().
+  /// For chunks, edits, meshes and textures (MemoryBudget). 0: the client uses
+  /// automatic_memory_mib().
   std::uint64_t memory_mib = 0;
   bool verbose = false;
   bool list_materials = false;  // print the materials of the world instead of playing

@@ -13,16 +13,7 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint64_t kRowOverheadBytes = 160;  // of a row and its entries in three indexes
-constexpr std::int64_t kEvictedAtATime = 64;
-
-// user_version is kLayout. A database with another one is replaced by a new one.
 constexpr const char* kSchema =
-    "PRAGMA auto_vacuum = INCREMENTAL;"
-    "PRAGMA journal_mode = WAL;"
-    "PRAGMA synchronous = NORMAL;"
-    "PRAGMA journal_size_limit = 4194304;"
-    "PRAGMA cell_size_check = ON;"
     "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE, "
     "chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, "
     "head INTEGER NOT NULL, tile_rules INTEGER NOT NULL);"
@@ -33,11 +24,6 @@ constexpr const char* kSchema =
     "CREATE INDEX IF NOT EXISTS chunk_used ON chunk (used, bytes);"
     "CREATE INDEX IF NOT EXISTS chunk_version ON chunk (world, seq, epoch);";
 constexpr std::int64_t kLayout = 2;
-
-void remove_database(const std::string& file) {
-  std::error_code ignored;
-  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
-}
 
 }  // namespace
 
@@ -96,15 +82,7 @@ Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::str
 
 void ChunkCache::open_database() {
   for (const bool is_first : {true, false}) {
-    database_ = std::make_unique<CacheDatabase>(file_);
-    const std::int64_t layout = database_->integer("PRAGMA user_version");
-    if (is_first && database_->ok() && layout != 0 && layout != kLayout) {
-      database_.reset();
-      remove_database(file_);  // it belongs to another version of this program
-      continue;
-    }
-    database_->run(kSchema);
-    database_->run(("PRAGMA user_version = " + std::to_string(kLayout)).c_str());
+    database_ = std::make_unique<CacheDatabase>(file_, kSchema, kLayout);
     tables_ = std::make_unique<Tables>(*database_);
     stamp_ = database_->integer("SELECT MAX(used) FROM chunk") + 1;
     bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(bytes) FROM chunk"));
@@ -116,10 +94,8 @@ void ChunkCache::open_database() {
     if (!is_first || !database_->is_corrupt()) break;
     set_aside();
   }
-  if (database_ && database_->ok()) return;
   has_ended_ = true;
-  warning_ = "chunk cache " + file_ +
-             " cannot be used: " + (database_ ? database_->error() : "wrong layout");
+  warning_ = "chunk cache " + file_ + " cannot be used: " + database_->error();
 }
 
 void ChunkCache::set_aside() {
@@ -129,7 +105,7 @@ void ChunkCache::set_aside() {
   database_.reset();
   std::error_code ignored;
   std::filesystem::rename(file_, file_ + ".damaged", ignored);
-  remove_database(file_);
+  CacheDatabase::remove(file_);
   ++counters_.databases_set_aside;
 }
 
@@ -219,7 +195,7 @@ std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_
       t.find.blob(5)};
   const bool is_old = t.find.integer(2) != stamp_;
   const std::int64_t id = t.find.integer(6);
-  const std::uint64_t size = stored.data.size() + kRowOverheadBytes;
+  const std::uint64_t size = stored.data.size() + CacheDatabase::kRowOverheadBytes;
   ChunkPtr chunk = chunk_of(world, key, stored);
   t.find.reset();
   if (!chunk) {
@@ -282,7 +258,7 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
     t.size.reset();
     const Bytes data = encode_chunk(chunk->voxels, ChunkEncoding::packed);
     const Bytes digest = digest_bytes(chunk->digest);
-    const std::uint64_t size = data.size() + kRowOverheadBytes;
+    const std::uint64_t size = data.size() + CacheDatabase::kRowOverheadBytes;
     database_->run(at(t.keep)
                        .bind(6, std::int64_t{chunk->version.epoch})
                        .bind(7, static_cast<std::int64_t>(chunk->version.seq))
@@ -302,25 +278,7 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
 }
 
 void ChunkCache::evict() {
-  while (database_->ok() && bytes_ > bytes_max_) {
-    std::vector<std::pair<std::int64_t, std::uint64_t>> oldest;
-    Tables& t = *tables_;
-    t.oldest.bind(1, kEvictedAtATime);
-    while (database_->step(t.oldest)) {
-      oldest.emplace_back(t.oldest.integer(0), static_cast<std::uint64_t>(t.oldest.integer(1)));
-    }
-    t.oldest.reset();
-    if (oldest.empty()) {
-      bytes_ = 0;
-      return;
-    }
-    for (const auto& [id, size] : oldest) {
-      if (bytes_ <= bytes_max_) return;
-      database_->run(t.drop.bind(1, id));
-      bytes_ -= std::min(bytes_, size);
-      ++counters_.evicted;
-    }
-  }
+  counters_.evicted += database_->evict(tables_->oldest, tables_->drop, bytes_, bytes_max_);
 }
 
 }  // namespace runstone

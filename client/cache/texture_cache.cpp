@@ -1,23 +1,15 @@
 #include "client/cache/texture_cache.hpp"
 
-#include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace runstone {
 namespace {
 
-constexpr std::int64_t kPicturesEvictedAtATime = 64;
+constexpr std::int64_t kTextureLayout = 1;
 constexpr const char* kTextureSchema =
-    "PRAGMA auto_vacuum = INCREMENTAL;"
-    "PRAGMA journal_mode = WAL;"
-    "PRAGMA synchronous = NORMAL;"
-    "PRAGMA journal_size_limit = 4194304;"
-    "PRAGMA cell_size_check = ON;"
     "CREATE TABLE IF NOT EXISTS texture (id INTEGER PRIMARY KEY, hash BLOB NOT NULL UNIQUE, "
-    "used INTEGER NOT NULL, png BLOB NOT NULL);"
-    "CREATE INDEX IF NOT EXISTS texture_used ON texture (used);";
+    "used INTEGER NOT NULL, bytes INTEGER NOT NULL, png BLOB NOT NULL);"
+    "CREATE INDEX IF NOT EXISTS texture_used ON texture (used, bytes);";
 
 }  // namespace
 
@@ -25,9 +17,10 @@ struct TextureCache::Tables {
   explicit Tables(CacheDatabase& d)
       : find(d.prepare("SELECT id, used, png FROM texture WHERE hash = ?1")),
         use(d.prepare("UPDATE texture SET used = ?2 WHERE id = ?1")),
-        keep(d.prepare("INSERT OR IGNORE INTO texture (hash, used, png) VALUES (?1,?2,?3)")),
+        keep(d.prepare(
+            "INSERT OR IGNORE INTO texture (hash, used, bytes, png) VALUES (?1,?2,?3,?4)")),
         replace(d.prepare("UPDATE texture SET png = ?2 WHERE hash = ?1")),
-        oldest(d.prepare("SELECT id, LENGTH(png) FROM texture ORDER BY used LIMIT ?1")),
+        oldest(d.prepare("SELECT id, bytes FROM texture ORDER BY used LIMIT ?1")),
         drop(d.prepare("DELETE FROM texture WHERE id = ?1")) {}
   sql::Statement find, use, keep, replace, oldest, drop;
 };
@@ -40,11 +33,14 @@ TextureCache::TextureCache(const std::string& folder, std::uint64_t bytes_max)
 TextureCache::~TextureCache() = default;
 
 void TextureCache::open() {
-  database_ = std::make_unique<CacheDatabase>(file_);
-  database_->run(kTextureSchema);
+  database_ = std::make_unique<CacheDatabase>(file_, kTextureSchema, kTextureLayout);
   tables_ = std::make_unique<Tables>(*database_);
   stamp_ = database_->integer("SELECT MAX(used) FROM texture") + 1;
-  bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(LENGTH(png)) FROM texture"));
+  bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(bytes) FROM texture"));
+  database_->run("BEGIN");
+  evict();
+  database_->run("COMMIT");
+  database_->run("PRAGMA incremental_vacuum");
 }
 
 void TextureCache::handle_failure() {
@@ -53,8 +49,7 @@ void TextureCache::handle_failure() {
   if (database_->is_corrupt()) {
     tables_.reset();
     database_.reset();
-    std::error_code ignored;
-    for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(file_ + end, ignored);
+    CacheDatabase::remove(file_);
     open();
     warning_ += "; a new one is begun";
   }
@@ -94,10 +89,14 @@ void TextureCache::keep(std::span<const TexturePart> parts) {
   database_->run("BEGIN IMMEDIATE");
   for (const TexturePart& part : parts) {
     if (!database_->ok()) break;
-    database_->run(t.keep.bind(1, part.hash).bind(2, stamp_).bind(3, ByteView(part.png)));
+    const std::uint64_t bytes = part.png.size() + CacheDatabase::kRowOverheadBytes;
+    database_->run(t.keep.bind(1, part.hash)
+                       .bind(2, stamp_)
+                       .bind(3, static_cast<std::int64_t>(bytes))
+                       .bind(4, ByteView(part.png)));
     if (!database_->ok()) break;
     if (database_->changes() != 0) {
-      bytes_ += part.png.size();
+      bytes_ += bytes;
     } else {
       // A picture that is stored again replaces its row: the client requests a picture only if its
       // row is missing or damaged.
@@ -110,21 +109,6 @@ void TextureCache::keep(std::span<const TexturePart> parts) {
   handle_failure();
 }
 
-void TextureCache::evict() {
-  while (database_->ok() && bytes_ > bytes_max_) {
-    Tables& t = *tables_;
-    std::vector<std::pair<std::int64_t, std::uint64_t>> oldest;
-    t.oldest.bind(1, kPicturesEvictedAtATime);
-    while (database_->step(t.oldest))
-      oldest.emplace_back(t.oldest.integer(0), static_cast<std::uint64_t>(t.oldest.integer(1)));
-    t.oldest.reset();
-    if (oldest.empty()) return;
-    for (const auto& [id, size] : oldest) {
-      if (bytes_ <= bytes_max_) return;
-      database_->run(t.drop.bind(1, id));
-      bytes_ -= std::min(bytes_, size);
-    }
-  }
-}
+void TextureCache::evict() { database_->evict(tables_->oldest, tables_->drop, bytes_, bytes_max_); }
 
 }  // namespace runstone

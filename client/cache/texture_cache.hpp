@@ -30,6 +30,7 @@ class TextureCache {
   std::vector<TexturePart> find(std::span<const TextureHash> hashes);
   /// Writes pictures in one transaction.
   void keep(std::span<const TexturePart> parts);
+  /// Returns the bytes of all pictures, with those of their rows.
   std::uint64_t bytes() const { return bytes_; }
   /// Returns the newest warning since the last call, one line, or an empty text. After a failure
   /// that a new database does not mend, the cache finds and keeps nothing any more.

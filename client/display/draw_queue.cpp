@@ -1,6 +1,7 @@
 #include "client/display/draw_queue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 

@@ -72,6 +72,8 @@ void Play::open_world(TimeUs now_us) {
   }
   const Welcome& welcome = *session_.welcome();
   player_.enter(welcome.world_id, welcome.spawn, session_.place());
+  // The hotbar has the kit of the world that was left until it is filled.
+  note_kit();
   const bool is_another = std::exchange(world_, welcome.world_id) != welcome.world_id;
   if (is_another) {
     hotbar_.fill(welcome.materials);
@@ -95,12 +97,17 @@ WorldKit Play::kit() const {
   return {hotbar_.slots(), hotbar_.slot(), std::string(tool_.box().tool().name())};
 }
 
-std::optional<KeptKit> Play::take_kit() {
-  if (!world_) return std::nullopt;
+void Play::note_kit() {
+  if (!world_) return;
   WorldKit now = kit();
-  if (now == kept_kit_) return std::nullopt;
+  if (now == kept_kit_) return;
   kept_kit_ = now;
-  return KeptKit{*world_, std::move(now)};
+  changed_kits_.push_back({*world_, std::move(now)});
+}
+
+std::vector<KeptKit> Play::take_kits() {
+  note_kit();
+  return std::exchange(changed_kits_, {});
 }
 
 std::optional<HotbarLists> Play::take_hotbars() {
@@ -308,9 +315,10 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
   textures.set_wanted(is_on);
   if (auto drawn = textures_.step(textures, is_on, now_us))
     pipeline_.set_textures(*std::move(drawn));
-  if (pipeline_.recent_frames().empty()) return;
-  const std::size_t left_out = pipeline_.recent_frames().back().stats.textures_left_out;
-  if (auto notice = textures_.take_notice(textures, left_out))
+  const auto& frames = pipeline_.recent_frames();
+  const RenderStats stats = frames.empty() ? RenderStats() : frames.back().stats;
+  limits_.set_texture_bytes(textures.picture_bytes() + textures_.bytes() + stats.texture_bytes);
+  if (auto notice = textures_.take_notice(textures, stats.textures_left_out))
     notify(*std::move(notice), NoticeKind::warning);
 }
 

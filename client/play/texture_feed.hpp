@@ -23,14 +23,18 @@ class TextureFeed {
   /// drawn if `is_on` is false.
   std::optional<DrawnTexturesPtr> step(const TextureExchange& textures, bool is_on, TimeUs now_us);
   /// Returns a line for the player if something is wrong with the textures of the world, once per
-  /// reason. `left_out`: the pictures for which the graphics driver has no room.
+  /// reason and when all pictures have arrived. `left_out`: the pictures for which the graphics
+  /// driver has no room.
   std::optional<std::string> take_notice(const TextureExchange& textures, std::size_t left_out);
+  /// Returns the bytes of what is drawn, without the copy on the GPU.
+  std::size_t bytes() const { return bytes_; }
 
  private:
   /// Returns a null pointer (draw no textures) if textures were drawn before, otherwise nullopt.
   std::optional<DrawnTexturesPtr> take_nothing();
 
   std::map<TexturePicturePtr, TextureLevelsPtr> levels_;  // of the pictures that are drawn
+  std::size_t bytes_ = 0;                                 // of levels_
   std::uint64_t serial_ = 0;               // TextureExchange::serial() of what was returned last
   bool has_drawn_ = false;                 // what was returned last are textures
   TimeUs drawn_us_ = 0;                    // when it was returned

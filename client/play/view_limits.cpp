@@ -80,7 +80,7 @@ std::optional<LimitChange> ViewLimits::limit_far(TimeUs now_us) {
 
 MemoryUse ViewLimits::use() const {
   return {replica_.chunk_bytes(), replica_.local_edits().bytes(), pipeline_.mesh_bytes(),
-          pipeline_.gpu_bytes()};
+          pipeline_.gpu_bytes(), texture_bytes_};
 }
 
 std::string ViewLimits::text() const {

@@ -45,6 +45,8 @@ class ViewLimits {
   /// is none.
   std::optional<LimitChange> limit_far(TimeUs now_us);
 
+  /// Sets the memory that the textures of the world take, their copy on the GPU included.
+  void set_texture_bytes(std::size_t bytes) { texture_bytes_ = bytes; }
   MemoryUse use() const;
   /// Returns what is left of the budget of all but the tiles.
   std::size_t room() const { return budget_.room(use()); }
@@ -66,6 +68,7 @@ class ViewLimits {
   ViewFollower& view_;
   FarBudget far_;
   MemoryBudget budget_;  // of all but the tiles
+  std::size_t texture_bytes_ = 0;
 };
 
 }  // namespace runstone

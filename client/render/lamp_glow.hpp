@@ -19,7 +19,8 @@ struct LampGlow {
 
 /// Returns the glows of a chunk: one for the lamps of each cell of 4 x 4 x 4 voxels, of the cells
 /// with the brightest lamps first, at most kGlowsOfChunkMax. The radius grows with brightness and
-/// number of the lamps. Cost: O(runs + voxels that give off light).
+/// number of the lamps. Requires a cube. Cost: O(runs + cells that
+/// the runs of lamps touch).
 inline constexpr std::size_t kGlowsOfChunkMax = 64;
 std::vector<LampGlow> lamp_glows(const RunChunk& codes);
 
@@ -37,13 +38,14 @@ class LampGlows {
   void set(ChunkCoord at, std::int32_t edge, std::vector<LampGlow> glows);
   void remove(ChunkCoord at) { chunks_.erase(at); }
   /// Puts the glows nearer than `far` into `out`, from near to far, at most `count_max`. Cost:
-  /// O(glows).
+  /// O(chunks with lamps + glows near enough * log count_max).
   void find(const glm::dvec3& eye, float far, std::size_t count_max,
             std::vector<GlowInView>& out) const;
 
  private:
   struct Glows {
     glm::dvec3 origin{0};  // world voxels
+    float edge = 0;        // voxels
     std::vector<LampGlow> glows;
   };
   std::map<ChunkCoord, Glows> chunks_;

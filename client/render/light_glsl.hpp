@@ -47,9 +47,12 @@ namespace runstone {
   "  return mix(c, sky(relative / far), fog_share(relative, far));\n"                \
   "}\n"                                                                              \
   "vec3 display(vec3 c) {\n"                                                         \
-  "  float grey = dot(c, vec3(0.25, 0.60, 0.15));\n"                                 \
-  "  float lost = night * clamp(1.15 - 7.0 * grey, 0.0, 1.0);\n"                     \
-  "  vec3 x = max(mix(c, grey * vec3(0.74, 0.94, 1.42), lost) * exposure, 0.0);\n"   \
+  "  if (night > 0.0) {\n"                                                           \
+  "    float grey = dot(c, vec3(0.25, 0.60, 0.15));\n"                               \
+  "    float lost = night * clamp(1.15 - 7.0 * grey, 0.0, 1.0);\n"                   \
+  "    c = mix(c, grey * vec3(0.74, 0.94, 1.42), lost);\n"                           \
+  "  }\n"                                                                            \
+  "  vec3 x = max(c * exposure, 0.0);\n"                                             \
   "  return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);\n"                 \
   "}\n"
 

@@ -195,6 +195,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   out.is_animated = s.terrain.has_transparent() || !contents.ghosts.empty();
   out.lacks_msaa = contents.look.antialiasing == Antialiasing::msaa && edges != Antialiasing::msaa;
   out.tile_parts_drawn = drawn.tile_parts_drawn;
+  out.texture_bytes = s.terrain.texture_bytes();
   out.textures_left_out = static_cast<std::uint32_t>(s.terrain.textures_left_out());
   return out;
 }

@@ -43,6 +43,7 @@ struct RenderStats {
   bool is_animated = false;
   bool lacks_msaa = false;              // FXAA replaced the MSAA that was wanted
   std::uint32_t tile_parts_drawn = 0;   // tiles that are drawn whole, and octants of the others
+  std::uint64_t texture_bytes = 0;      // of gpu_bytes
   std::uint32_t textures_left_out = 0;  // see TextureArray::left_out()
 };
 

@@ -10,9 +10,10 @@
 namespace runstone {
 namespace {
 
-/// The texels of `sides_` for a material. RUNSTONE_TO_TEXTURE_GLSL has this number.
+/// The texels of `sides_` for a material.
 constexpr std::size_t kSideTexels = 8;
 constexpr std::size_t kSideTexelsAll = kMaterialCountMax * kSideTexels;
+static_assert(kSideTexels == 8);  // RUNSTONE_TO_TEXTURE_GLSL has this number
 static_assert(kSideTexelsAll % kTexelRow == 0 && kDirectionCount <= kSideTexels);
 
 std::size_t layers_max() {
@@ -64,8 +65,9 @@ void TextureArray::set(const DrawnTexturesPtr& textures) {
       std::count_if(wanted.begin(), wanted.end(),
                     [this](const TextureLevelsPtr& picture) { return held_.contains(picture); }));
   const std::size_t most = layers_max();
-  if (kept != held_.size() || edge != edge_ || std::min(wanted.size(), most) > layers_)
-    make(edge, std::min(std::bit_ceil(wanted.size()), most));
+  const std::size_t listed = textures->pictures.size();
+  if (kept != held_.size() || edge != edge_ || std::min(listed, most) > layers_)
+    make(edge, std::min(std::bit_ceil(listed), most));
   glBindTexture(GL_TEXTURE_2D_ARRAY, array_.get());
   for (const TextureLevelsPtr& picture : wanted) {
     if (held_.contains(picture)) continue;

@@ -16,8 +16,10 @@ class TextureArray {
  public:
   /// Makes an array without pictures. It takes no memory on the GPU.
   TextureArray() = default;
-  /// Replaces the textures. Pictures that the array has already are not copied again, unless it has
-  /// to grow. Leaves other textures bound. Cost: O(materials), and O(pixels) for each new picture.
+  /// Replaces the textures. The array has layers for all pictures of the list, also for those that
+  /// are not here yet. Pictures that it has already are not copied again, unless it has to grow
+  /// because the list has, or a picture is larger than those before. Leaves other textures bound.
+  /// Cost: O(materials), and O(pixels) for each new picture.
   void set(const DrawnTexturesPtr& textures);
   /// Returns true if no side of any material shows a picture.
   bool empty() const { return held_.empty(); }

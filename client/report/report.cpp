@@ -112,6 +112,7 @@ Json memory_json(const MemoryUse& use, const BudgetReport& budget) {
               {"edit_bytes", use.edits},
               {"mesh_bytes", use.meshes},
               {"gpu_bytes", use.gpu},
+              {"texture_bytes", use.textures},
               {"view_shrinks", budget.shrinks},
               {"view_growths", budget.growths},
               {"view_radius", budget.radii.h},

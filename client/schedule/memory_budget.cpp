@@ -58,7 +58,10 @@ ViewRadii MemoryBudget::radii_of(std::uint8_t level) const {
 bool MemoryBudget::should_fit(const MemoryUse& use, std::uint8_t level) const {
   const double growth = static_cast<double>(chunks_within(radii_of(level))) /
                         static_cast<double>(chunks_within(radii()));
-  return static_cast<double>(use.total()) * growth <= static_cast<double>(bytes_max_);
+  // A larger view has no more textures.
+  const auto textures = static_cast<double>(use.textures);
+  return (static_cast<double>(use.total()) - textures) * growth + textures <=
+         static_cast<double>(bytes_max_);
 }
 
 }  // namespace runstone

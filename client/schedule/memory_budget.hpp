@@ -18,11 +18,12 @@ namespace runstone {
 
 /// The memory that a client keeps, in bytes.
 struct MemoryUse {
-  std::size_t chunks = 0;  // confirmed and shown runs, commits held back, pending edits
-  std::size_t edits = 0;   // local edits
-  std::size_t meshes = 0;  // the newest mesh of each chunk
-  std::size_t gpu = 0;     // uploaded quads; a software driver keeps them in main memory
-  std::size_t total() const { return chunks + edits + meshes + gpu; }
+  std::size_t chunks = 0;    // confirmed and shown runs, commits held back, pending edits
+  std::size_t edits = 0;     // local edits
+  std::size_t meshes = 0;    // the newest mesh of each chunk
+  std::size_t gpu = 0;       // uploaded quads; a software driver keeps them in main memory
+  std::size_t textures = 0;  // pictures, their levels, and their copy on the GPU
+  std::size_t total() const { return chunks + edits + meshes + gpu + textures; }
 };
 
 /// The radii of a view, in chunks.

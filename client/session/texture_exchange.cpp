@@ -65,8 +65,10 @@ void TextureExchange::move_to(Slot& slot, State next) {
 void TextureExchange::forget_unlisted(std::optional<State> state) {
   std::erase_if(slots_, [&](const auto& entry) {
     const bool is_gone = (!state || entry.second.state == *state) && !table_.find(entry.first);
-    if (is_gone) --counts_[static_cast<std::size_t>(entry.second.state)];
-    return is_gone;
+    if (!is_gone) return false;
+    --counts_[static_cast<std::size_t>(entry.second.state)];
+    if (entry.second.picture) picture_bytes_ -= entry.second.picture->rgba.size();
+    return true;
   });
 }
 
@@ -137,6 +139,7 @@ void TextureExchange::decode(Arrival arrival) {
     return;
   }
   slot.picture = std::make_shared<const TexturePicture>(*std::move(picture));
+  picture_bytes_ += slot.picture->rgba.size();
   move_to(slot, State::here);
   ++serial_;
   if (has_cache_ && !arrival.is_from_cache) for_cache_.push_back(std::move(arrival.part));

@@ -60,11 +60,13 @@ class TextureExchange {
   std::vector<TexturePart> take_for_cache() { return std::exchange(for_cache_, {}); }
 
   /// Returns the list so far.
-  TextureTablePtr table() const { return std::make_shared<const TextureTable>(table_); }
+  const TextureTable& table() const { return table_; }
   /// Returns the picture, or null if it is not here.
   TexturePicturePtr picture(const TextureHash& hash) const;
   /// Returns true if pictures are under way, or wait to be decoded, looked up or asked for.
   bool is_loading() const;
+  /// Returns the bytes of the pixels of all pictures that are here.
+  std::size_t picture_bytes() const { return picture_bytes_; }
   /// Returns the pictures of this connection that were not what the list says, were no pictures, or
   /// were not sent.
   std::size_t failed() const { return failed_; }
@@ -96,10 +98,11 @@ class TextureExchange {
   bool is_list_new_ = false;  // the next part of the list is its first
   TextureTable table_;
   std::map<TextureHash, Slot> slots_;
-  std::array<std::size_t, 7> counts_{};           // slots by state
+  std::array<std::size_t, static_cast<std::size_t>(State::failed) + 1> counts_{};  // slots by state
   std::deque<std::vector<TextureHash>> lookups_;  // that have no result yet
   std::deque<Arrival> arrived_;                   // to be decoded
   std::vector<TexturePart> for_cache_;
+  std::size_t picture_bytes_ = 0;
   std::size_t failed_ = 0;
   std::uint64_t serial_ = 0;
 };

@@ -212,9 +212,9 @@ std::string to_toml(const ClientSettings& settings) {
       "# Levels of coarser ground beyond it, 0 to {}. Each one lets you see twice as far.\n",
       kTileLevelMax);
   out += fmt::format("far_levels = {}\n", s.far_levels);
-  out +=
-      fmt::format("# Memory for chunks, edits and meshes in MiB, {} to {}. 0: found by itself.\n",
-                  kMemoryMibMin, kMemoryMibMax);
+  out += fmt::format(
+      "# Memory for chunks, edits, meshes and textures in MiB, {} to {}. 0: found by itself.\n",
+      kMemoryMibMin, kMemoryMibMax);
   out += fmt::format("memory_mib = {}\n", s.memory_mib);
   out += "# true: worlds show the pictures that they bring. false: patterns; nothing is loaded.\n";
   out += fmt::format("textures = {}\n\n[hand]\n", s.shows_textures);

@@ -31,8 +31,8 @@ struct ClientSettings {
   double field_of_view = 69;     // degrees, vertical, 30 to 110
   std::uint8_t view_radius = 6;  // chunks, horizontal, 1 to kViewRadiusMax
   std::uint8_t far_levels = 5;   // of tiles beyond the view radius; each sees twice as far
-  /// The memory for chunks, edits and meshes, from kMemoryMibMin to kMemoryMibMax. 0: the client
-  /// uses automatic_memory_mib().
+  /// The memory for chunks, edits, meshes and textures, from kMemoryMibMin to kMemoryMibMax. 0: the
+  /// client uses automatic_memory_mib().
   std::uint64_t memory_mib = 0;
   bool shows_textures = true;   // the pictures that worlds bring for their materials
   double sensitivity = 1;       // of the mouse, 0.1 to 10

@@ -45,11 +45,12 @@ void frame_plot(const StatisticsState& state, double scale) {
 void counts(const StatisticsState& state) {
   text_line(fmt::format("drawn: {} chunks of {}, {} quads", state.chunks_drawn,
                         state.chunks_drawn + state.chunks_culled, state.quads_drawn));
-  text_line(fmt::format("memory: chunks {}, edits {}, meshes {}, GPU {} of {}",
+  text_line(fmt::format("memory: chunks {}, edits {}, meshes {}, GPU {}, textures {} of {}",
                         bytes_text(static_cast<double>(state.chunk_bytes)),
                         bytes_text(static_cast<double>(state.edit_bytes)),
                         bytes_text(static_cast<double>(state.mesh_bytes)),
                         bytes_text(static_cast<double>(state.gpu_bytes)),
+                        bytes_text(static_cast<double>(state.texture_bytes)),
                         bytes_text(static_cast<double>(state.bytes_max))));
   text_line(fmt::format("far ground: {} tiles of {} levels, {} parts drawn, {} of {}; reach {:.0f}",
                         state.tiles, state.tile_levels, state.tile_parts_drawn,

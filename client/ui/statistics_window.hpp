@@ -32,7 +32,8 @@ struct StatisticsState {
   double frames_per_second = 0;
   std::uint32_t chunks_drawn = 0, chunks_culled = 0;
   std::uint64_t quads_drawn = 0;
-  std::uint64_t chunk_bytes = 0, edit_bytes = 0, mesh_bytes = 0, gpu_bytes = 0, bytes_max = 0;
+  std::uint64_t chunk_bytes = 0, edit_bytes = 0, mesh_bytes = 0, gpu_bytes = 0;
+  std::uint64_t texture_bytes = 0, bytes_max = 0;
   std::size_t tiles = 0;
   unsigned tile_levels = 0;  // of the view
   std::uint32_t tile_parts_drawn = 0;

@@ -10,7 +10,7 @@ const Textures = (() => {
   const DATABASE = "runstone-textures";
   const LAYOUT = 1;
   const BYTES_MAX = 64 * 2 ** 20, HASH_BYTES = 32;
-  const OPEN_MS = 3000; // pictures wait for the database no longer
+  const ANSWER_MS = 3000; // pictures wait for the database no longer
   const TOUCH_MS = 24 * 3600 * 1000; // a use is noted once a day
 
   let opened = null; // the promise of the database
@@ -25,12 +25,13 @@ const Textures = (() => {
       made.createObjectStore("entries").createIndex("used", "used");
     };
     request.onblocked = () => console.warn("another tab holds an older database of textures");
-    return Database.inTime(Database.answered(request), OPEN_MS);
+    return Database.inTime(Database.answered(request), ANSWER_MS);
   }
 
-  // Carries out an operation after all others. After a failure none is carried out.
+  // Carries out an operation after all others. It fails if the database does not answer in time.
+  // After a failure none is carried out.
   function queue(operation) {
-    last = last.then(async () => operation(await (opened ??= openDatabase())));
+    last = last.then(async () => Database.inTime(operation(await (opened ??= openDatabase())), ANSWER_MS));
     return last;
   }
 

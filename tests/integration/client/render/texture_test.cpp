@@ -465,7 +465,10 @@ TEST_CASE("pictures that arrive later are drawn, and those that leave are not",
   auto first = std::make_shared<DrawnTextures>(*all);
   first->pictures[1] = nullptr;
   CHECK(shown(first) == std::array{kRedPixel, kHole});
+  const std::uint64_t bytes = scene.stats().texture_bytes;
+  CHECK(bytes > 0);
   CHECK(shown(all) == std::array{kRedPixel, kGreenPixel});
+  CHECK(scene.stats().texture_bytes == bytes);  // the array had a layer for the second picture
   auto second = std::make_shared<DrawnTextures>(*all);
   second->pictures[0] = nullptr;
   CHECK(shown(second) == std::array{kHole, kGreenPixel});

@@ -9,10 +9,13 @@
 namespace runstone::test {
 namespace {
 
-TexturePart part_of(std::uint8_t number, std::size_t bytes = 500) {
+constexpr std::size_t kPngBytes = 500;
+constexpr std::uint64_t kRowBytes = kPngBytes + CacheDatabase::kRowOverheadBytes;
+
+TexturePart part_of(std::uint8_t number) {
   TexturePart out;
   out.hash = {number};
-  out.png.assign(bytes, number);
+  out.png.assign(kPngBytes, number);
   return out;
 }
 
@@ -37,11 +40,11 @@ TEST_CASE("pictures are found as they were stored, also in another run", "[cache
     TextureCache cache(folder.path());
     cache.keep(parts_of(1, 50));
     CHECK(cache.find(hashes_of(40, 20)) == parts_of(40, 11));
-    CHECK(cache.bytes() == 50 * 500);
+    CHECK(cache.bytes() == 50 * kRowBytes);
   }
   TextureCache cache(folder.path());
   CHECK(cache.find(hashes_of(1, 60)) == parts_of(1, 50));
-  CHECK(cache.bytes() == 50 * 500);
+  CHECK(cache.bytes() == 50 * kRowBytes);
   // A picture that is stored again replaces a row that may be damaged.
   TexturePart other = part_of(7);
   other.png[3] ^= 1;
@@ -52,16 +55,38 @@ TEST_CASE("pictures are found as they were stored, also in another run", "[cache
 
 TEST_CASE("pictures that were unused for longest are evicted", "[cache][textures]") {
   const TempFolder folder;
-  TextureCache cache(folder.path(), 10'000);
+  TextureCache cache(folder.path(), 20 * kRowBytes);
   cache.keep(parts_of(1, 10));
   cache.keep(parts_of(11, 10));
-  CHECK(cache.bytes() == 10'000);
+  CHECK(cache.bytes() == 20 * kRowBytes);
   CHECK(cache.find(hashes_of(1, 5)).size() == 5);  // they are used again
   cache.keep(parts_of(21, 5));
-  CHECK(cache.bytes() == 10'000);
+  CHECK(cache.bytes() == 20 * kRowBytes);
   CHECK(cache.find(hashes_of(1, 5)).size() == 5);
   CHECK(cache.find(hashes_of(6, 5)).empty());
   CHECK(cache.find(hashes_of(11, 15)).size() == 15);
+}
+
+TEST_CASE("a cache of textures with a lower bound than before is made smaller when it opens",
+          "[cache][textures]") {
+  const TempFolder folder;
+  TextureCache(folder.path()).keep(parts_of(1, 20));
+  TextureCache cache(folder.path(), 5 * kRowBytes);
+  CHECK(cache.bytes() == 5 * kRowBytes);
+  CHECK(cache.find(hashes_of(1, 20)).size() == 5);
+}
+
+TEST_CASE("a database of textures with another layout is replaced", "[cache][textures]") {
+  const TempFolder folder;
+  {
+    CacheDatabase other(folder.path() + "/textures.sqlite",
+                        "CREATE TABLE texture (hash BLOB NOT NULL);", 99);
+    REQUIRE(other.ok());
+  }
+  TextureCache cache(folder.path());
+  CHECK(cache.take_warning().empty());
+  cache.keep(parts_of(1, 3));
+  CHECK(cache.find(hashes_of(1, 3)) == parts_of(1, 3));
 }
 
 TEST_CASE("a database of textures that is none is replaced", "[cache][textures]") {

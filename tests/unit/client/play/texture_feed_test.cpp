@@ -67,6 +67,9 @@ TEST_CASE("pictures are drawn in batches as they arrive, and all of them in the 
   for (const TextureLevelsPtr& picture : (*last)->pictures) CHECK(picture);
   CHECK((*last)->pictures[0] == (*first)->pictures[0]);  // it is not made again
   CHECK((*last)->table->number(3, Direction::pos_y) == 3);
+  CHECK(world.exchange.picture_bytes() == (16 * 16 + 16 * 16 + 32 * 32) * 4);
+  CHECK(world.textures.bytes() ==
+        2 * (256 + 64 + 16 + 4 + 1) * 4 + (1024 + 256 + 64 + 16 + 4 + 1) * 4);
   CHECK_FALSE(world.step());
 }
 
@@ -118,12 +121,31 @@ TEST_CASE("the player reads once what is wrong with textures", "[play][textures]
   static_cast<void>(world.exchange.step());
   const auto failed = world.textures.take_notice(world.exchange, 0);
   REQUIRE(failed);
-  CHECK(failed->starts_with("1 textures of this world are not drawn: the server sent"));
+  CHECK(failed->starts_with("1 texture of this world is not drawn: the server sent"));
   CHECK_FALSE(world.textures.take_notice(world.exchange, 0));
   const auto left_out = world.textures.take_notice(world.exchange, 5);
   REQUIRE(left_out);
   CHECK(left_out->starts_with("5 textures of this world are not drawn: the graphics driver"));
   CHECK_FALSE(world.textures.take_notice(world.exchange, 5));
+}
+
+TEST_CASE("the player reads what is wrong with the textures of the next world, too",
+          "[play][textures]") {
+  TextureWorld world;
+  const Bytes png = png_of_edge(9, 16);
+  for (int i = 0; i < 2; ++i) {
+    CAPTURE(i);
+    world.exchange.clear();
+    world.exchange.connected(true, false);
+    world.material = kEmpty;
+    world.give(png);
+    static_cast<void>(world.exchange.step());
+    REQUIRE(world.exchange.is_loading());
+    CHECK_FALSE(world.textures.take_notice(world.exchange, 0));
+    world.exchange.receive(TextureParts{{{texture_hash(png), png_of_edge(8, 16)}}});
+    static_cast<void>(world.exchange.step());
+    CHECK(world.textures.take_notice(world.exchange, 0));
+  }
 }
 
 }  // namespace runstone

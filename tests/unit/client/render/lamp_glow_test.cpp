@@ -60,6 +60,7 @@ TEST_CASE("lamps side by side glow as one, wider, and the brightest are kept", "
   REQUIRE(glows.size() == kGlowsOfChunkMax);
   CHECK(glows[0].colour.r == Approx(1));
   CHECK(glows[1].colour.r < 0.2F);
+  CHECK(glm::mod(glows[1].at, 4.0F) == glm::vec3(2));  // the middle of a full cell
 }
 
 TEST_CASE("glows are found from near to far, within the view, and only while their chunk is there",

@@ -55,13 +55,14 @@ TEST_CASE("the report says how often the memory budget bound, and what was in us
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();
   CHECK(to_table(report, session).find("budget") == std::string::npos);
-  report.memory = {100, 20, 3, 4};
+  report.memory = {100, 20, 3, 4, 50};
   report.budget = {64 << 20, 1000, 3, 1, {2, 1}, {6, 3}};
   const json memory = json::parse(to_json(report, session))["memory"];
   CHECK(memory["budget_bytes"] == 64 << 20);
   CHECK(memory["peak_bytes"] == 1000);
-  CHECK(memory["bytes"] == 127);
+  CHECK(memory["bytes"] == 177);
   CHECK(memory["gpu_bytes"] == 4);
+  CHECK(memory["texture_bytes"] == 50);
   CHECK(memory["view_shrinks"] == 3);
   CHECK(memory["view_radius"] == 2);
   CHECK(memory["view_radius_wanted"] == 6);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr unsigned kWorstEdge = 16;
 
-MemoryUse use_of(std::size_t bytes) { return {bytes, 0, 0, 0}; }
+MemoryUse use_of(std::size_t bytes) { return {bytes, 0, 0, 0, 0}; }
 
 std::int64_t squared_distance(ChunkCoord at) {
   return std::int64_t{at.x} * at.x + std::int64_t{at.y} * at.y + std::int64_t{at.z} * at.z;
@@ -85,7 +85,8 @@ TEST_CASE("the view grows when it is complete, after a pause, and if it should f
   CHECK_FALSE(budget.step(use_of(300), true, later - 1));
   CHECK_FALSE(budget.step(use_of(300), false, later));
   CHECK_FALSE(budget.step(use_of(400), true, later));  // 13 chunks like these need 1,040 bytes
-  CHECK(budget.step(use_of(300), true, later));
+  CHECK_FALSE(budget.step({300, 0, 0, 0, 300}, true, later));
+  CHECK(budget.step({300, 0, 0, 0, 200}, true, later));  // no larger view has more textures
   CHECK(budget.radii() == ViewRadii{2, 0});
   CHECK_FALSE(budget.binds());
   CHECK(budget.growths() == 1);

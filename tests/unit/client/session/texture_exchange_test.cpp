@@ -103,7 +103,7 @@ TEST_CASE_METHOD(TextureSession, "pictures come from the server, and the next ti
   answer(pngs);
   CHECK(turn().empty());
   CHECK_FALSE(session.textures().is_loading());
-  CHECK(session.textures().table()->entries().size() == 3);
+  CHECK(session.textures().table().entries().size() == 3);
   for (const Bytes& png : pngs) REQUIRE(picture(png));
   CHECK(picture(pngs[1])->edge == 64);
   CHECK(picture(pngs[0])->rgba[0] == 10);
@@ -120,13 +120,13 @@ TEST_CASE_METHOD(TextureSession, "pictures come from the server, and the next ti
   }
   SECTION("another connection keeps the pictures, and gets the list again") {
     session.disconnected();
-    CHECK(session.textures().table()->entries().size() == 3);
+    CHECK(session.textures().table().entries().size() == 3);
     static_cast<void>(open());
     materials = 0;
     const std::uint64_t serial = session.textures().serial();
     give({pngs[0], pngs[1]});
     CHECK(session.textures().serial() != serial);
-    CHECK(session.textures().table()->entries().size() == 2);
+    CHECK(session.textures().table().entries().size() == 2);
     CHECK(turn().empty());
     CHECK(picture(pngs[1]));
   }
@@ -134,7 +134,7 @@ TEST_CASE_METHOD(TextureSession, "pictures come from the server, and the next ti
     session.disconnected();
     server.world_id = {7};
     static_cast<void>(open());
-    CHECK(session.textures().table()->empty());
+    CHECK(session.textures().table().empty());
     CHECK_FALSE(picture(pngs[0]));
   }
   SECTION("a damaged row of the cache is asked for again, and replaced") {
