@@ -40,12 +40,12 @@ std::optional<VoxelPos> river_near(std::uint64_t seed, std::int32_t square_x) {
 TEST_CASE("no side of water stands beside an empty voxel", "[generate][landscape]") {
   const Material water = named("water");
   int found = 0, above_sea = 0;
-  for (const char* parameters : {"", "caves = 1"}) {
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto river = river_near(seed, static_cast<std::int32_t>(seed) - 2);
+    REQUIRE(river.has_value());
+    for (const char* parameters : {"", "caves = 1"}) {
       const auto land = landscape_of(seed, parameters);
       LandscapeVoxels voxels(*land);
-      const auto river = river_near(seed, static_cast<std::int32_t>(seed) - 2);
-      REQUIRE(river.has_value());
       CAPTURE(seed, river->x, river->y, river->z, parameters);
       for (std::int32_t x = river->x - 40; x < river->x + 40; ++x) {
         for (std::int32_t z = river->z - 40; z < river->z + 40; ++z) {
@@ -158,7 +158,7 @@ TEST_CASE("a landscape works with each seed and at the ends of the world",
 
 TEST_CASE("players arrive on level and dry ground without trees", "[generate][landscape][spawn]") {
   const MaterialTable& materials = landscape_material_table();
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
     const auto land = landscape_of(seed);
     REQUIRE(land->spawn().has_value());

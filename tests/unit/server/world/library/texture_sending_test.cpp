@@ -1,4 +1,4 @@
-// Pictures that clients want: each is answered, a few times, and floods end.
+// Tests the answers to clients that want pictures, and the bounds against floods.
 #include "server/world/library/texture_sending.hpp"
 
 #include <catch2/catch.hpp>
@@ -51,7 +51,7 @@ TEST_CASE("every wanted hash is answered in order, unknown ones without a pictur
   CHECK(parts[1].png.empty());
   CHECK(parts[2].png.size() == kTextureBytesMax);
   CHECK(parts[3].png == bench.textures[0]->png);
-  // The large one does not fit behind the first ones.
+  // The large picture does not fit into the message of the pictures before it.
   CHECK(bench.environment.messages<TextureParts>(1, kEdge).size() == 3);
 }
 
@@ -63,6 +63,40 @@ TEST_CASE("a picture is sent a few times to a session", "[world][textures]") {
   for (std::size_t i = 0; i < parts.size(); ++i)
     CHECK(parts[i].png.empty() == (i >= kTextureAnswersMax));
   CHECK(bench.environment.closed.empty());
+}
+
+TEST_CASE("a session with too many unanswered hashes is closed, and others are answered in order",
+          "[world][textures]") {
+  SendingBench bench;
+  bench.join_with(2, 2, kFeatureMaterials | kFeatureTextures);
+  bench.environment.full = {1, 2};
+  std::vector<TextureHash> all;
+  for (std::uint8_t i = 0; i < kTexturesUnansweredMax; ++i) {
+    TextureHash hash{};
+    hash[0] = i;
+    all.push_back(i % 64 == 5 ? bench.hashes[i / 64] : hash);
+  }
+  const std::vector<TextureHash> first(all.begin(), all.begin() + kTexturesWantedMax),
+      second(all.begin() + kTexturesWantedMax, all.end());
+  for (const SessionId session : {1U, 2U}) {
+    bench.server.received(session, TexturesWanted{first}, bench.now());
+    bench.server.received(session, TexturesWanted{second}, bench.now());
+  }
+  CHECK(bench.environment.closed.empty());
+  bench.server.received(2, TexturesWanted{{TextureHash{255}}}, bench.now());
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 2);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::flooding);
+  CHECK(bench.parts_of(1).empty());
+  bench.environment.full.clear();
+  bench.tick();
+  const auto parts = bench.parts_of(1);
+  REQUIRE(parts.size() == all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(parts[i].hash == all[i]);
+    CHECK(parts[i].png.empty() == (i % 64 != 5));
+  }
+  CHECK(bench.environment.closed.size() == 1);
 }
 
 TEST_CASE("a client that wants textures without the feature is closed", "[world][textures]") {
