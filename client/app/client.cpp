@@ -14,7 +14,6 @@
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
 #include "client/report/exit_code.hpp"
-#include "client/settings/world_kits.hpp"
 #include "common/core/hex.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
@@ -29,7 +28,6 @@ constexpr TimeUs kRestUs = 10'000;
 constexpr TimeUs kRestUsWindow = 2'000;
 /// The longest pause of the loop with a window that has no focus.
 constexpr TimeUs kRestUsBackground = 10'000;
-constexpr TimeUs kKeepKitUs = 10'000'000;  // between two writes of hotbar and tool
 constexpr TimeUs kHorizonLookUs = 20'000;  // between two looks at the distant ground
 /// The connecting screen ends this long after the world opened, if there is no ground before.
 constexpr TimeUs kGroundWaitUs = 3'000'000;
@@ -121,6 +119,7 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     const TimeUs now_us = steady_now_us();
     // Changes are passed on before the script asks whether all of them are drawn.
     play_.begin_turn(is_opened, hud_.shown_panels(), now_us);
+    if (is_opened) keep_kits();
     if (now_us >= horizon_due_us_) look_at_horizon(now_us);
     poll_window();
     handle_input(now_us);
@@ -133,10 +132,6 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     }
     log_.log_players(session_.others(), now_us);
     step_files(now_us);
-    if (now_us >= kit_due_us_) {
-      kit_due_us_ = now_us + kKeepKitUs;
-      keep_kit();
-    }
     show_news();
     if (runner_) runner_->step(now_us);
     if (benchmark_ && session_.is_open()) benchmark_->step(play_.player(), pipeline_, play_.view());
@@ -264,12 +259,12 @@ void Client::pause() {
   menu_->feed(play_.input().take_waiting());
 }
 
-void Client::keep_kit() {
+void Client::keep_kits() {
   if (options_.kits_file.empty()) return;
-  const auto kept = play_.take_kit();
-  if (!kept) return;
-  const auto saved = save_kit(options_.kits_file, to_hex(kept->world), to_text(kept->kit));
-  if (!saved) spdlog::warn("{}", saved.error());
+  for (const KeptKit& kept : play_.take_kits())
+    unsaved_kits_.add(to_hex(kept.world), to_text(kept.kit));
+  if (const auto saved = unsaved_kits_.save(options_.kits_file); !saved)
+    spdlog::warn("{}", saved.error());
 }
 
 void Client::look_at_horizon(TimeUs now_us) {
@@ -287,7 +282,7 @@ std::array<int, 2> Client::frame_size() const {
 void Client::use_look() {
   if (menu_ == nullptr || !menu_->settings()) return;
   LookControl& look = pipeline_.look();
-  if (!options_.given.antialiasing) look.set_antialiasing(antialiasing_of(settings()));
+  if (!options_.given.antialiasing) look.set_antialiasing(settings().antialiasing);
   const auto quality = quality_of(settings());
   if (!options_.given.quality && quality != look.quality()) look.set_quality(quality);
 }
@@ -399,7 +394,7 @@ ClientReport Client::report() const {
 
 int Client::finish(int code) {
   look_at_horizon(steady_now_us());
-  keep_kit();
+  keep_kits();
   network_.finish();
   if (runner_) {
     for (const std::string& failure : runner_->failures())

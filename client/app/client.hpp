@@ -24,6 +24,7 @@
 #include "client/play/play.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_runner.hpp"
+#include "client/settings/world_kits.hpp"
 
 namespace runstone {
 
@@ -57,8 +58,9 @@ class Client {
   void pause();
   /// Records how much of the distant ground is here.
   void look_at_horizon(TimeUs now_us);
-  /// Keeps hotbar and tool of the world if they have changed.
-  void keep_kit();
+  /// Writes the kits of the worlds that have changed, and those that could not be written before.
+  /// Waits for the disk: call it when a world opens and at the end, not in other turns.
+  void keep_kits();
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Shows the notices and the new lines of the chat.
@@ -102,7 +104,7 @@ class Client {
   MeshPipeline& pipeline_;  // of play_
   HorizonRecorder horizon_;
   TimeUs horizon_due_us_ = 0;  // when it looks again
-  TimeUs kit_due_us_ = 0;      // when hotbar and tool are kept again
+  UnsavedKits unsaved_kits_;
   TerminalChat chat_;
   ClientHud hud_;
   ClipboardTransfer files_;

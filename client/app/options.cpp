@@ -129,7 +129,7 @@ void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
                  "effort of the picture; auto measures frames, off screen it is high")
       ->check(CLI::IsMember({"low", "medium", "high", "auto"}));
   app.add_option("--antialiasing", raw.antialiasing,
-                 "smooth edges; auto is msaa on a GPU, and off if the processor draws")
+                 "smooth edges; auto is msaa on a GPU at quality medium and high, otherwise off")
       ->check(CLI::IsMember({"off", "fxaa", "msaa", "auto"}));
   app.add_option("--benchmark", raw.benchmark,
                  "fly this camera path (docs/client.md), print how long frames took, then end")

@@ -46,7 +46,7 @@ void apply_settings(const ClientSettings& settings, ClientOptions& options) {
   options.settings = settings;
   if (!options.given.memory) options.memory_mib = settings.memory_mib;
   if (!options.given.quality) options.quality = quality_of(settings);
-  if (!options.given.antialiasing) options.antialiasing = antialiasing_of(settings);
+  if (!options.given.antialiasing) options.antialiasing = settings.antialiasing;
   use_kept_key(settings, options);
 }
 
@@ -62,20 +62,6 @@ std::optional<Quality> quality_of(const ClientSettings& settings) {
       return Quality::high;
   }
   return std::nullopt;
-}
-
-Antialiasing antialiasing_of(const ClientSettings& settings) {
-  switch (settings.antialiasing) {
-    case AntialiasingChoice::automatic:
-      break;
-    case AntialiasingChoice::off:
-      return Antialiasing::off;
-    case AntialiasingChoice::fxaa:
-      return Antialiasing::fxaa;
-    case AntialiasingChoice::msaa:
-      return Antialiasing::msaa;
-  }
-  return Antialiasing::automatic;
 }
 
 KeyMap key_map_of(const ClientSettings& settings, std::vector<std::string>& warnings) {

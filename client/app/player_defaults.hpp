@@ -19,7 +19,6 @@ void apply_settings(const ClientSettings& settings, ClientOptions& options);
 
 /// Returns the quality that the player chose, or nullopt if frames decide.
 std::optional<Quality> quality_of(const ClientSettings& settings);
-Antialiasing antialiasing_of(const ClientSettings& settings);
 
 /// Returns the default keys with the changes of the settings. Adds a line to `warnings` for each
 /// change that names no action or no key; the action keeps its default keys.

@@ -69,6 +69,8 @@ void Play::open_world(TimeUs now_us) {
   }
   const Welcome& welcome = *session_.welcome();
   player_.enter(welcome.world_id, welcome.spawn, session_.place());
+  // The hotbar has the kit of the world that was left until it is filled.
+  note_kit();
   const bool is_another = std::exchange(world_, welcome.world_id) != welcome.world_id;
   if (is_another) hotbar_.fill(welcome.materials);
   set_materials(welcome.materials);
@@ -89,12 +91,17 @@ WorldKit Play::kit() const {
   return {hotbar_.slots(), hotbar_.slot(), std::string(tool_.box().tool().name())};
 }
 
-std::optional<KeptKit> Play::take_kit() {
-  if (!world_) return std::nullopt;
+void Play::note_kit() {
+  if (!world_) return;
   WorldKit now = kit();
-  if (now == kept_kit_) return std::nullopt;
+  if (now == kept_kit_) return;
   kept_kit_ = now;
-  return KeptKit{*world_, std::move(now)};
+  changed_kits_.push_back({*world_, std::move(now)});
+}
+
+std::vector<KeptKit> Play::take_kits() {
+  note_kit();
+  return std::exchange(changed_kits_, {});
 }
 
 void Play::set_own_time(std::optional<double> share) { own_time_ = share; }

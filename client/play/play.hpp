@@ -134,9 +134,9 @@ class Play {
   /// Shows this time of day instead of the world's, or the world's again with nullopt. Others do
   /// not see it.
   void set_own_time(std::optional<double> share);
-  /// Returns the kit of the world if it has changed since the last call, or since the world was
-  /// opened.
-  std::optional<KeptKit> take_kit();
+  /// Returns the kits that have changed since the last call, or since their world was opened: those
+  /// of the worlds that were left, and that of the present one.
+  std::vector<KeptKit> take_kits();
   /// Returns the notices for the player since the last call.
   std::vector<PlayerNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns a line about what is shown: a moment of the past, or why ground is missing. The line
@@ -183,6 +183,8 @@ class Play {
   void open_world(TimeUs now_us);
   void take_up_kit();
   WorldKit kit() const;
+  /// Adds the kit of the present world to changed_kits_ if it has changed.
+  void note_kit();
   void show_time(TimeUs now_us);
   void take_new_materials();
   void set_materials(const MaterialTable& materials);
@@ -218,9 +220,10 @@ class Play {
   std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened
   std::function<std::optional<WorldKit>(const WorldId&)> kit_of_;
-  WorldKit kept_kit_;               // of world_, as the program has it
-  std::optional<double> own_time_;  // of day, instead of the world's
-  TimeUs input_us_;                 // when input was last handled
+  WorldKit kept_kit_;                  // of world_, as the program or changed_kits_ has it
+  std::vector<KeptKit> changed_kits_;  // for take_kits()
+  std::optional<double> own_time_;     // of day, instead of the world's
+  TimeUs input_us_;                    // when input was last handled
 };
 
 }  // namespace runstone

@@ -24,8 +24,7 @@ inline constexpr std::size_t kKitBytesMax = 128;
 
 /// Returns the kit as one line: the tool, the chosen slot, and the material of each slot.
 std::string to_text(const WorldKit& kit);
-/// Returns the kit of a text, or nullopt if it is none: words are missing, left over or out of
-/// range.
+/// Parses the text of to_text(). Returns nullopt if words are missing, left over or out of range.
 std::optional<WorldKit> parse_kit(std::string_view text);
 
 }  // namespace runstone

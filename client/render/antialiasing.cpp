@@ -4,12 +4,6 @@
 #include <array>
 
 namespace runstone {
-namespace {
-
-constexpr std::array kAntialiasings = {Antialiasing::automatic, Antialiasing::off,
-                                       Antialiasing::fxaa, Antialiasing::msaa};
-
-}  // namespace
 
 Antialiasing usable(Antialiasing wanted, Quality quality, const AntialiasingMeans& means) {
   const bool has_msaa = means.samples_max >= 2;

@@ -1,5 +1,6 @@
 // Antialiasing: how the edges of a picture are smoothed. Pure.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -8,10 +9,14 @@
 
 namespace runstone {
 
+/// All choices, in the order in which they are offered.
+inline constexpr std::array kAntialiasings = {Antialiasing::automatic, Antialiasing::off,
+                                              Antialiasing::fxaa, Antialiasing::msaa};
+
 /// The samples of a pixel that MSAA takes, if the driver has as many.
 inline constexpr int kSamplesWanted = 4;
 
-/// What a driver can do.
+/// The abilities of a driver that antialiasing depends on.
 struct AntialiasingMeans {
   bool is_software = false;  // the processor draws
   int samples_max = 0;       // of a pixel

@@ -20,7 +20,7 @@ void add_night(DayLight& out, float height, double angle) {
 }
 
 void add_clouds(DayLight& out) {
-  out.cloud_cover = 1;
+  out.has_clouds = true;
   const glm::vec3 sky = 0.5F * (out.zenith + out.horizon);
   const float bright = 1 - 0.5F * out.night;
   out.cloud_lit = bright * (0.45F * out.ambient_up + 1.05F * out.sun_colour + 0.5F * sky);

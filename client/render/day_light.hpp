@@ -16,11 +16,11 @@ struct DayLight {
   glm::vec3 dark{0};  // everywhere, so that caves are not black
   float lamps = 1;    // factor of the light of lamps
   float exposure = 1;
-  float night = 0;        // share of the colour that dim places lose, as eyes see at night
-  bool is_moon = false;   // sun_direction is that of the moon
-  float stars = 0;        // brightness of the stars, 0: none
-  float star_angle = 0;   // by which the sky has turned since midnight, radians
-  float cloud_cover = 0;  // 0: no clouds, 1: half of the sky
+  float night = 0;          // share of the colour that dim places lose, as eyes see at night
+  bool is_moon = false;     // sun_direction is that of the moon
+  float stars = 0;          // brightness of the stars, 0: none
+  float star_angle = 0;     // by which the sky has turned since midnight, radians
+  bool has_clouds = false;  // they cover about half of the sky
   glm::vec3 cloud_lit{0}, cloud_shade{0};
   /// Haze begins fog_start voxels from the eye. From fog_fade on terrain fades into the sky, and it
   /// has vanished at fog_end.

@@ -20,7 +20,8 @@ glm::vec3 linear_colour(const MaterialColour& colour) {
 void set_fog(DayLight& light, const glm::vec3& colour, float range) {
   light.zenith = light.horizon = light.nadir = colour;
   light.glow = glm::vec3{0};
-  light.stars = light.cloud_cover = light.haze = 0;
+  light.stars = light.haze = 0;
+  light.has_clouds = false;
   light.fog_start = light.fog_fade = 0;
   light.fog_end = std::min(light.fog_end, range);
 }

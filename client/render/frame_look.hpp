@@ -11,7 +11,7 @@ enum class Quality : std::uint8_t {
 };
 
 enum class Antialiasing : std::uint8_t {
-  automatic,  // MSAA on a GPU; off if the processor draws
+  automatic,  // MSAA on a GPU at quality medium and high, otherwise off
   off,
   fxaa,  // the finished picture is smoothed along its edges
   msaa,  // several samples a pixel
@@ -21,8 +21,8 @@ struct FrameLook {
   /// The time of day as a share of a day: 0 is midnight, 0.25 sunrise, 0.5 noon, 0.75 sunset.
   /// Values outside 0 .. 1 wrap around.
   double time_of_day = 0.4;
-  /// Seconds by which moving things advance: water, clouds and the pulse of ghosts. Pictures of the same
-  /// view with equal values are equal.
+  /// Seconds by which moving things advance: water, clouds and the pulse of ghosts. Pictures of the
+  /// same view with equal values are equal.
   double seconds = 0;
   Quality quality = Quality::high;
   Antialiasing antialiasing = Antialiasing::off;

@@ -1,6 +1,6 @@
-// GlowPainter: draws the glow of lamps over a frame. A glow is a ball of air. The share of the sight
-// through it that lies before the ground decides how bright it is, so no edge cuts it. Thread: the
-// GL thread.
+// GlowPainter: draws the glow of lamps over a frame. A glow is a ball of air. The share of the
+// sight through it that lies before the ground decides how bright it is, so no edge cuts it.
+// Thread: the GL thread.
 #pragma once
 #include <glm/glm.hpp>
 #include <span>
@@ -20,8 +20,8 @@ class GlowPainter {
 
   /// Throws std::runtime_error with the driver's log if the shader does not compile.
   GlowPainter();
-  /// Draws the glows. `clip` maps eye-relative coordinates to clip space. `scene_depth` is a texture
-  /// with the depth of the opaque faces, which must not be bound for drawing.
+  /// Draws the glows. `clip` maps eye-relative coordinates to clip space. `scene_depth` is a
+  /// texture with the depth of the opaque faces, which must not be bound for drawing.
   void draw(std::span<const GlowInView> glows, const glm::mat4& clip, const DepthRange& depth,
             const DayLight& light, GLuint scene_depth);
 

@@ -13,9 +13,11 @@ class MultisampleTarget {
   bool prepare(int width, int height, int samples);
   /// Binds the framebuffer for drawing. Requires prepare() before.
   void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get()); }
-  /// Copy colours, mixed, or the depths of one sample to a target of the same size. They leave this
-  /// framebuffer bound.
+  /// Copies the colours to a target of the same size. The colour of a pixel is the mean of its
+  /// samples. Leaves this framebuffer bound.
   void copy_colour(const FrameTarget& to) const { copy(to, GL_COLOR_BUFFER_BIT); }
+  /// Copies the depths to a target of the same size. The depth of a pixel is that of one of its
+  /// samples. Leaves this framebuffer bound.
   void copy_depth(const FrameTarget& to) const { copy(to, GL_DEPTH_BUFFER_BIT); }
 
  private:

@@ -1,6 +1,6 @@
 // NoiseTexture: smooth noise that repeats, on the GPU. Clouds are made of its red channel, and the
-// tint of ground by its place of the green one. The values are the same in every run, so pictures of
-// one place are equal. Thread: the GL thread.
+// tint of ground by its place of the green one. The values are the same in every run, so pictures
+// of one place are equal. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -8,8 +8,8 @@ namespace runstone {
 /// bright in spots of 16 to 128 voxels. Requires `look`, `voxel` and NoiseTexture::bind(). `scale`
 /// is the side of a voxel: in tiles the spots are where they are in chunks.
 ///
-/// Natural is a material without a pattern and without light of its own whose grain is above 12 %:
-/// grass, leaves, moss, earth and gravel fully, stone and sand a little. Built materials have
+/// Natural is a material whose grain is above 12 %, without light of its own, and without a pattern or
+/// with that of a plant: grass, leaves, moss, earth and gravel fully, stone and sand a little. Built materials have
 /// patterns, or less grain, and keep their colour.
 ///
 /// Near ground needs no mipmaps, which cost time where the processor draws. The noise repeats after
@@ -18,7 +18,8 @@ namespace runstone {
   "uniform sampler2D noise;\n"                                                    \
   "uniform float scale;\n"                                                        \
   "vec3 by_place() {\n"                                                           \
-  "  float natural = look.a < 1.0 && look.b == 0.0 ? 5.0 * look.g - 0.6 : 0.0;\n" \
+  "  bool has_pattern = look.a >= 1.0 && (look.a < 7.0 || look.a >= 15.0);\n"     \
+  "  float natural = !has_pattern && look.b == 0.0 ? 5.0 * look.g - 0.6 : 0.0;\n" \
   "#ifdef RUNSTONE_TILE\n"                                                        \
   "  float spot = texture(noise, voxel.xz * (scale / 2048.0)).g - 0.5;\n"         \
   "#else\n"                                                                       \

@@ -12,10 +12,11 @@ namespace runstone {
 /// The corners of a quad stand in the order 0: (0, 0), 1: (1, 0), 2: (0, 1), 3: (1, 1) along u and
 /// v; a negative face reverses u, so that it has the opposite winding. `inside` is the depth below
 /// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
-/// and lie in their voxel with depth 0: their foot would otherwise count as the voxel below. `side`
-/// is the direction. `across` is the corner, but on such a plane its z goes from one side of the
-/// voxel to the other. `top` is 1 at the upper corners of upper and lateral faces of cubes, and 0
-/// elsewhere. A step of a liquid (kLiquidStepFace) is the upper part of a lateral face.
+/// and lie in their voxel with depth 0. Otherwise the lower edge of a plane would be taken for the
+/// voxel below. `side` is the direction. `across` is the corner, but on such a plane its z goes
+/// from one side of the voxel to the other, and `plane` is the corner on it, 0 .. 1. `top` is 1 at the upper corners of upper and lateral
+/// faces of cubes, and 0 elsewhere. A step of a liquid (kLiquidStepFace) is the upper part of a
+/// lateral face.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \
@@ -26,6 +27,7 @@ namespace runstone {
   "#endif\n"                                                                           \
   "struct QuadCorner {\n"                                                              \
   "  vec3 at, normal, outward, across;\n"                                              \
+  "  vec2 plane;\n"                                                                    \
   "  uint material, side;\n"                                                           \
   "  bool is_shape;\n"                                                                 \
   "  float inside, top;\n"                                                             \
@@ -59,6 +61,7 @@ namespace runstone {
   "    vec2 low = d < 2u ? vec2(0.875, 0.0) : vec2(0.0, 0.875);\n"                     \
   "    if (first == 0u) place.yz = mix(low, vec2(w, h), vec2(cu, cv));\n"              \
   "  }\n"                                                                              \
+  "  c.plane = vec2(cv, cu);\n"                                                        \
   "  c.is_shape = first != 0u;\n"                                                      \
   "  float across = -1.0;\n"                                                           \
   "  if (c.is_shape) {\n"                                                              \

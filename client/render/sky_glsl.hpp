@@ -63,9 +63,9 @@ namespace runstone {
   "}\n"
 
 /// vec4 clouds(vec3 d): the colour of the clouds in a direction, and the share of them. They are
-/// flat, and so high above the eye that nobody reaches them. `cloud_place` is the eye in the texture
-/// of the noise, and the way to a cloud that is straight above. Clouds are darker where they are
-/// thick.
+/// flat, and so high above the eye that nobody reaches them. `cloud_place` is the eye in the
+/// texture of the noise, and the way to a cloud that is straight above. Clouds are darker where
+/// they are thick.
 #define RUNSTONE_CLOUDS_GLSL                                                            \
   "uniform vec3 cloud_place, cloud_lit, cloud_shade;\n"                                 \
   "uniform float cloud_cover;\n"                                                        \

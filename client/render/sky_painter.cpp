@@ -77,7 +77,7 @@ GlProgram& SkyPainter::program(bool has_stars, bool is_moon, bool has_clouds) {
 
 void SkyPainter::draw(const SkyView& view, const DepthRange& depth, const DayLight& light,
                       const NoiseTexture& noise) {
-  const bool has_clouds = view.has_clouds && light.cloud_cover > 0;
+  const bool has_clouds = view.has_clouds && light.has_clouds;
   const GlProgram& program = this->program(light.stars > 0, light.is_moon, has_clouds);
   glUseProgram(program.get());
   set_light(program, light);
@@ -89,7 +89,7 @@ void SkyPainter::draw(const SkyView& view, const DepthRange& depth, const DayLig
   glUniform1f(at("pixel"), static_cast<float>(view.pixel));
   // Back to the sky of midnight.
   glUniform2f(at("star_turn"), std::cos(light.star_angle), -std::sin(light.star_angle));
-  glUniform1f(at("cloud_cover"), light.cloud_cover);
+  glUniform1f(at("cloud_cover"), light.has_clouds ? 1.0F : 0.0F);
   glUniform3fv(at("cloud_lit"), 1, glm::value_ptr(light.cloud_lit));
   glUniform3fv(at("cloud_shade"), 1, glm::value_ptr(light.cloud_shade));
   const glm::vec3 place = cloud_place(view.eye, view.seconds);

@@ -4,12 +4,21 @@
 
 namespace runstone {
 
-/// The whole part for a liquid, above all patterns.
-inline constexpr float kLiquidSurface = 7.0F;
-/// The fraction for roughness 1. It is below 1 by more than the step of a 16-bit float below 8.
+/// The whole part for a liquid, above all patterns. From 7 on patterns are silhouettes of plants
+/// (plant_glsl.hpp).
+inline constexpr float kLiquidSurface = 15.0F;
+/// The fraction for roughness 1. It is below 1 by more than the step of a 16-bit float below 16.
 inline constexpr float kRoughnessScale = 0.98F;
 
-// All three macros require `look`. RUNSTONE_PATTERN_GLSL requires `float hash(ivec3)`, too, and
+/// float hash(ivec3): a number of a place, -0.5 .. 0.5.
+#define RUNSTONE_HASH_GLSL                                                              \
+  "float hash(ivec3 p) {\n"                                                             \
+  "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n" \
+  "  h = (h ^ (h >> 13)) * 1274126177u;\n"                                              \
+  "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"                                   \
+  "}\n"
+
+// The next three macros require `look`. RUNSTONE_PATTERN_GLSL requires RUNSTONE_HASH_GLSL, too, and
 // RUNSTONE_GLOSS_GLSL requires RUNSTONE_SURFACE_PARTS_GLSL and RUNSTONE_LIGHT_GLSL.
 //   shade(): the factor of the brightness at `st`, the place on the face in voxels. `up` is 1 on
 //     upper and lower faces. Patterns are those of common/core/material_look.hpp. Bricks are
@@ -18,8 +27,8 @@ inline constexpr float kRoughnessScale = 0.98F;
 //     sunlight on the face, `open` that of skylight. Half of the highlight has the colour of the
 //     material, as on metal. A face of roughness 0.7 or more, which a 16-bit float may round down,
 //     stays as it is, at the cost of one comparison.
-#define RUNSTONE_SURFACE_PARTS_GLSL              \
-  "bool is_liquid() { return look.a >= 7.0; }\n" \
+#define RUNSTONE_SURFACE_PARTS_GLSL               \
+  "bool is_liquid() { return look.a >= 15.0; }\n" \
   "float roughness() { return min(fract(look.a) / 0.98, 1.0); }\n"
 
 #define RUNSTONE_PATTERN_GLSL                                                         \
@@ -46,7 +55,7 @@ inline constexpr float kRoughnessScale = 0.98F;
   "  return 1.0 - 0.28 * smoothstep(0.25, 0.5, deep);\n"                              \
   "}\n"                                                                               \
   "float shade(vec2 st, float up) {\n"                                                \
-  "  if (look.a < 1.0) return 1.0;\n"                                                 \
+  "  if (look.a < 1.0 || look.a >= 7.0) return 1.0;\n"                                \
   "  if (look.a < 3.0) return joints(st, step(2.0, look.a));\n"                       \
   "  vec2 edge = abs(fract(st) - 0.5);\n"                                             \
   "  if (look.a < 4.0) return 1.0 - 0.3 * step(0.465, max(edge.x, edge.y));\n"        \

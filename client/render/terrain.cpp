@@ -35,16 +35,47 @@ constexpr GLint kMaterialUnit = 0, kQuadUnit = 2, kFieldUnit = 3, kNoiseUnit = 4
                 kDepthUnit = 6;
 static_assert(kDepthUnit < QuadBuffer::kShapeUnit);
 constexpr GLint kTextureUnit = 14;
+// TextureArray::bind() takes two units. A fragment shader has at least 16.
+static_assert(QuadBuffer::kShapeUnit < kTextureUnit && kTextureUnit + 1 < 16);
 
-constexpr const char* kDepthVertexShader = RUNSTONE_QUAD_GLSL
+// The depth of what casts shadows. RUNSTONE_HOLES is for shapes, whose faces may have holes.
+constexpr const char* kDepthVertexShader =
+    RUNSTONE_QUAD_GLSL RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_TO_PLANT_GLSL
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"
     "uniform float seam;\n"  // growth of a quad, which closes pinholes, in voxels
+    "#ifdef RUNSTONE_HOLES\n"
+    "uniform vec3 pattern;\n"
+    "uniform sampler2D looks;\n"
+    "out vec3 voxel;\n"
+    "flat out vec4 look;\n"
+    "#endif\n"
     "void main() {\n"
     "  QuadCorner c = quad_corner();\n"
+    "#ifdef RUNSTONE_HOLES\n"
+    "  voxel = pattern + c.at;\n"
+    "  look = plant_look(c, texelFetch(looks, ivec2(c.material & 255u, c.material >> 8), 0));\n"
+    "#endif\n"
+    "#ifdef RUNSTONE_TEXTURES\n"
+    "  to_texture(c);\n"
+    "#endif\n"
     "  gl_Position = clip * vec4(origin + c.at + c.outward * seam, 1.0);\n"
     "}\n";
-constexpr const char* kDepthFragmentShader = "void main() {}\n";
+constexpr const char* kDepthFragmentShader =
+    "#ifdef RUNSTONE_HOLES\n"
+    "in vec3 voxel;\n"
+    "flat in vec4 look;\n"
+    "const vec4 colour = vec4(1.0);\n" RUNSTONE_HASH_GLSL RUNSTONE_TEXTURE_GLSL RUNSTONE_PLANT_GLSL
+    "void main() {\n"
+    "  if (is_textured()) {\n"
+    "    surface_colour();\n"
+    "  } else {\n"
+    "    in_silhouette(colour);\n"
+    "  }\n"
+    "}\n"
+    "#else\n"
+    "void main() {}\n"
+    "#endif\n";
 
 constexpr const char* kGhostFragmentShader =
     "in vec3 voxel;\n"
@@ -123,8 +154,7 @@ glm::vec3 pattern_of(const ChunkKey& key, std::int32_t edge) {
 }  // namespace
 
 Terrain::Terrain()
-    : depth_program_(link_program("depth", kDepthVertexShader, kDepthFragmentShader)),
-      ghost_program_(link_program("ghost",
+    : ghost_program_(link_program("ghost",
                                   (std::string(kLiquidVariant) + kTerrainVertexShader).c_str(),
                                   kGhostFragmentShader)),
       field_(kFieldWidth, kFieldHeight) {
@@ -363,15 +393,31 @@ glm::vec4 Terrain::light_at(const FrameView& view, const glm::dvec3& at) const {
   return {channel(0) * channel(0), channel(8) * channel(8), channel(16) * channel(16), channel(24)};
 }
 
-bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
-  glUseProgram(depth_program_.get());
-  const GLint first_vertex = quads_.bind(depth_program_, kQuadUnit);
-  glUniformMatrix4fv(glGetUniformLocation(depth_program_.get(), "clip"), 1, GL_FALSE,
+const GlProgram& Terrain::depth_program(unsigned variant) {
+  GlProgram& out = depth_programs_[variant];
+  if (!out) {
+    const std::string holes =
+        texture_definitions((variant & kDepthTextured) != 0, (variant & kDepthHoles) != 0, false);
+    out = link_program("depth", (holes + kDepthVertexShader).c_str(),
+                       (holes + kDepthFragmentShader).c_str());
+  }
+  return out;
+}
+
+GLint Terrain::begin_depth(const GlProgram& program, const ShadowPass& pass) {
+  glUseProgram(program.get());
+  glUniformMatrix4fv(glGetUniformLocation(program.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(pass.clip));
   // Light must not leak through the T-junctions of merged quads.
   constexpr float kDepthSeam = 0.05F;  // of a pixel
-  glUniform1f(glGetUniformLocation(depth_program_.get(), "seam"), kDepthSeam * pass.pixel);
-  const GLint origin = glGetUniformLocation(depth_program_.get(), "origin");
+  glUniform1f(glGetUniformLocation(program.get(), "seam"), kDepthSeam * pass.pixel);
+  return quads_.bind(program, kQuadUnit);
+}
+
+bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
+  const GlProgram& program = depth_program(0);
+  const GLint first_vertex = begin_depth(program, pass);
+  const GLint origin = glGetUniformLocation(program.get(), "origin");
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
@@ -383,21 +429,43 @@ bool Terrain::draw_depth(ShadowPass& pass, std::size_t quads_max) {
   for (int i = 0; i < 3; ++i)
     sun[static_cast<std::size_t>(i)] = 1e9 * static_cast<double>(to_sun[i]);
   std::size_t quads = 0;
+  shapes_in_pass_.clear();
   auto next = pass.drawn_to ? chunks_.upper_bound(*pass.drawn_to) : chunks_.begin();
   for (; next != chunks_.end() && quads < quads_max; ++next) {
     const auto& [key, chunk] = *next;
     pass.drawn_to = key;
     const glm::vec3 at(origin_in_world(key, chunk.edge) - pass.middle);
     if (!frustum.may_see(at, at + static_cast<float>(chunk.edge))) continue;
+    if (chunk.shapes.count != 0)
+      shapes_in_pass_.push_back({chunk.shapes, at, pattern_of(key, chunk.edge)});
     spans_.clear();
-    chunk.append_opaque(sun, spans_);
+    chunk.opaque.append_facing(sun, spans_);
+    quads += chunk.shapes.count;
     if (spans_.empty()) continue;
     glUniform3fv(origin, 1, glm::value_ptr(at));
     quads_.draw(spans_, first_vertex);
     for (const QuadSpan& span : spans_) quads += span.count;
   }
+  draw_depth_of_shapes(pass);
   glDisable(GL_POLYGON_OFFSET_FILL);
   return next == chunks_.end();
+}
+
+void Terrain::draw_depth_of_shapes(const ShadowPass& pass) {
+  if (shapes_in_pass_.empty()) return;
+  const bool is_textured = !textures_.empty();
+  const GlProgram& program =
+      depth_program(is_textured ? kDepthHoles | kDepthTextured : unsigned{kDepthHoles});
+  const GLint first_vertex = begin_depth(program, pass);
+  materials_.bind(program, kMaterialUnit);
+  if (is_textured) textures_.bind(program, kTextureUnit);
+  const GLint origin = glGetUniformLocation(program.get(), "origin");
+  const GLint pattern = glGetUniformLocation(program.get(), "pattern");
+  for (const ShapesInPass& chunk : shapes_in_pass_) {
+    glUniform3fv(origin, 1, glm::value_ptr(chunk.at));
+    glUniform3fv(pattern, 1, glm::value_ptr(chunk.pattern));
+    quads_.draw(std::span(&chunk.shapes, 1), first_vertex);
+  }
 }
 
 void Terrain::add_visible(Visible body, unsigned variant, float gone) {
@@ -411,8 +479,9 @@ void Terrain::add_visible(Visible body, unsigned variant, float gone) {
     body.variants[1] |= kFade;
     body.drawn = {0, fades_.octant_gone(body.key)};
   }
+  if (body.chunk->shapes.count != 0) body.variants[0] |= kHoles;
   if (!textures_.empty()) {
-    body.variants[0] |= body.chunk->shapes.count != 0 ? kTextured | kHoles : kTextured;
+    body.variants[0] |= kTextured;
     body.variants[1] |= kTextured;
   }
   has_variant_[0][body.variants[0]] = true;

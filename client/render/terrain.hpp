@@ -169,7 +169,7 @@ class Terrain {
   static constexpr unsigned kTile = 8;       // it is a part of a tile, without shadows
   static constexpr unsigned kFade = 16;      // it appears or dissolves
   static constexpr unsigned kTextured = 32;  // the world has textures
-  static constexpr unsigned kHoles = 64;     // textures with holes
+  static constexpr unsigned kHoles = 64;     // shapes, whose faces may have holes
   static constexpr std::size_t kVariants = 128;
   struct Program {
     GlProgram gl;
@@ -183,12 +183,26 @@ class Terrain {
                   const std::function<void(const GlProgram& program)>& set);
   /// Uses the program for a chunk and sets its uniforms. Requires begin_pass() before.
   void use_for(const Visible& chunk, const FrameView& view, bool is_transparent);
+  /// Returns the program of a pass of shadows, by the bits kDepth*.
+  const GlProgram& depth_program(unsigned variant);
+  /// Uses a program and sets the uniforms of a pass. Returns what QuadBuffer::draw() takes.
+  GLint begin_depth(const GlProgram& program, const ShadowPass& pass);
   bool draw_depth(ShadowPass& pass, std::size_t quads_max);
+  /// Draws the shapes that draw_depth() has put into shapes_in_pass_.
+  void draw_depth_of_shapes(const ShadowPass& pass);
   Program& program(Quality quality, bool is_transparent, unsigned variant);
   QuadSpan ghost_quads(const std::shared_ptr<const ChunkMesh>& mesh);
 
   std::array<std::array<std::array<Program, kVariants>, 2>, 3> programs_;  // by quality and pass
-  GlProgram depth_program_, ghost_program_;
+  static constexpr unsigned kDepthHoles = 1, kDepthTextured = 2;
+  std::array<GlProgram, 4> depth_programs_;  // by these bits, made when first used
+  /// The shapes of a chunk: its origin minus the middle of the pass, and in voxels modulo kPattern.
+  struct ShapesInPass {
+    QuadSpan shapes;
+    glm::vec3 at, pattern;
+  };
+  std::vector<ShapesInPass> shapes_in_pass_;  // scratch
+  GlProgram ghost_program_;
   MaterialTextures materials_;
   TextureArray textures_;
   LightCodes light_codes_;

@@ -2,12 +2,14 @@
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
 // fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids, and
-// RUNSTONE_FADE draws a part of the pixels. Those of textures stand in texture_glsl.hpp.
+// RUNSTONE_FADE draws a part of the pixels. Those of textures stand in texture_glsl.hpp, that of
+// plants in plant_glsl.hpp.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
 #include "client/render/liquid_surface.hpp"
 #include "client/render/place_tint_glsl.hpp"
+#include "client/render/plant_glsl.hpp"
 #include "client/render/quad_glsl.hpp"
 #include "client/render/shadow_maps.hpp"
 #include "client/render/surface_glsl.hpp"
@@ -31,8 +33,8 @@ namespace runstone {
   "void fade() {}\n"                                                         \
   "#endif\n"
 
-inline constexpr const char* kTerrainVertexShader =
-    RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_LOWERED_GLSL
+inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
+    RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_TO_PLANT_GLSL RUNSTONE_LOWERED_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
@@ -87,7 +89,7 @@ inline constexpr const char* kTerrainVertexShader =
     "  normal = c.normal;\n"
     "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
     "  colour = texelFetch(palette, row, 0);\n"
-    "  look = texelFetch(looks, row, 0);\n"
+    "  look = plant_look(c, texelFetch(looks, row, 0));\n"
     "#ifdef RUNSTONE_LIQUID\n"
     "  relative.y -= lowered(c, colour, look);\n"
     "#endif\n"
@@ -110,17 +112,13 @@ inline constexpr const char* kTerrainFragmentShader =
     "in vec3 in_shadow;\n"
     "#endif\n"
     "out vec4 fragment;\n" RUNSTONE_LIGHT_GLSL RUNSTONE_FIELD_GLSL RUNSTONE_SHADOW_GLSL
-        RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL
-    "float hash(ivec3 p) {\n"
-    "  uint h = uint(p.x) * 73856093u ^ uint(p.y) * 19349663u ^ uint(p.z) * 83492791u;\n"
-    "  h = (h ^ (h >> 13)) * 1274126177u;\n"
-    "  return float((h >> 16) & 255u) / 255.0 - 0.5;\n"
-    "}\n" RUNSTONE_SURFACE_PARTS_GLSL RUNSTONE_GLOSS_GLSL RUNSTONE_PLACE_TINT_GLSL
+        RUNSTONE_FADE_GLSL RUNSTONE_TEXTURE_GLSL RUNSTONE_HASH_GLSL RUNSTONE_SURFACE_PARTS_GLSL
+            RUNSTONE_GLOSS_GLSL RUNSTONE_PLACE_TINT_GLSL RUNSTONE_PLANT_GLSL
     "#ifdef RUNSTONE_FINE\n" RUNSTONE_PATTERN_GLSL
     "#endif\n"
     "void main() {\n"
     "  fade();\n"
-    "  vec4 colour = surface_colour();\n"
+    "  vec4 colour = is_textured() ? surface_colour() : in_silhouette(colour);\n"
     // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
     // detail fades out with distance before it would flicker.
     "  vec3 face = abs(normal);\n"

@@ -2,8 +2,8 @@
 // leaves out the pixels of holes in the faces of shapes, and RUNSTONE_ALL_HOLES those in all faces.
 // The latter is for transparent faces, whose two sides are drawn. The planes of a plant have a face
 // on each side, so of shapes it draws the front alone.
-//   - On the four lateral sides a picture is upright and not mirrored. Its right is that of a viewer
-//     who stands before the side.
+//   - On the four lateral sides a picture is upright and not mirrored. Its right is that of a
+//     viewer who stands before the side.
 //   - On the upper side its right is +x and its upper edge is at -z; on the lower side its right is
 //     +x and its upper edge is at +z.
 //   - It covers a voxel. A face of a shape shows the part of the picture that lies at its place. On

@@ -20,10 +20,10 @@ struct TextureLevels {
 using TextureLevelsPtr = std::shared_ptr<const TextureLevels>;
 
 /// Makes the levels. A pixel of a level is the mean of four of the level before, in linear light
-/// and weighted with their alpha. Holes get the mean colour of the picture: an opaque material shows
-/// it there, and a filter mixes it in at their edges. In every level, at least as large a share of
-/// the picture is solid as in the first one, where the GPU mixes pixels; otherwise thin grass would
-/// vanish far away. Requires a picture whose edge is a power of two. Cost: O(pixels).
+/// and weighted with their alpha. Holes get the mean colour of the picture: an opaque material
+/// shows it there, and a filter mixes it in at their edges. In every level, at least as large a
+/// share of the picture is solid as in the first one, where the GPU mixes pixels; otherwise thin
+/// grass would vanish far away. Requires a picture whose edge is a power of two. Cost: O(pixels).
 TextureLevels texture_levels(const TexturePicture& picture);
 
 }  // namespace runstone

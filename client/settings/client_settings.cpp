@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "client/render/antialiasing.hpp"
 #include "client/settings/toml_text.hpp"
 #include "common/core/text.hpp"
 #include "common/core/tile_keys.hpp"
@@ -18,9 +19,6 @@ namespace {
 
 constexpr std::array<const char*, kQualityChoiceCount> kQualityNames = {"automatic", "low",
                                                                         "medium", "high"};
-
-constexpr std::array<const char*, kAntialiasingChoiceCount> kAntialiasingNames = {
-    "automatic", "off", "fxaa", "msaa"};
 
 /// Sets one field from a node. Returns an empty text, or what is wrong with the node.
 using SetField = std::function<std::string(const toml::node&, ClientSettings&)>;
@@ -78,12 +76,10 @@ std::string set_quality(const toml::node& node, ClientSettings& out) {
 
 std::string set_antialiasing(const toml::node& node, ClientSettings& out) {
   const auto text = node.value<std::string>();
-  for (std::size_t i = 0; i < kAntialiasingNames.size(); ++i) {
-    if (text != kAntialiasingNames[i]) continue;
-    out.antialiasing = static_cast<AntialiasingChoice>(i);
-    return {};
-  }
-  return R"(must be "automatic", "off", "fxaa" or "msaa")";
+  const auto antialiasing = text ? parse_antialiasing(*text) : std::nullopt;
+  if (!antialiasing) return R"(must be "auto", "off", "fxaa" or "msaa")";
+  out.antialiasing = *antialiasing;
+  return {};
 }
 
 std::string set_memory(const toml::node& node, ClientSettings& out) {
@@ -180,10 +176,6 @@ const char* name_of(QualityChoice quality) {
   return kQualityNames.at(static_cast<std::size_t>(quality));
 }
 
-const char* name_of(AntialiasingChoice antialiasing) {
-  return kAntialiasingNames.at(static_cast<std::size_t>(antialiasing));
-}
-
 ReadSettings read_settings(std::string_view toml, const std::string& file) {
   ReadSettings out;
   Reader reader(file, out);
@@ -208,8 +200,8 @@ std::string to_toml(const ClientSettings& settings) {
   out += "key_file = " + toml_string(s.key_file) + "\n\n[view]\n";
   out += "# automatic (what keeps the frames smooth), low, medium or high.\n";
   out += "quality = " + toml_string(name_of(s.quality)) + "\n";
-  out += "# Smooth edges: automatic (msaa on a GPU), off, fxaa or msaa.\n";
-  out += "antialiasing = " + toml_string(name_of(s.antialiasing)) + "\n";
+  out += "# Smooth edges: auto (msaa on a GPU, unless the quality is low), off, fxaa or msaa.\n";
+  out += "antialiasing = " + toml_string(to_string(s.antialiasing)) + "\n";
   out += "# Vertical field of view in degrees, 30 to 110.\n";
   out += "field_of_view = " + toml_float(s.field_of_view) + "\n";
   out += fmt::format("# Horizontal view radius in chunks, 1 to {}. The server may reduce it.\n",

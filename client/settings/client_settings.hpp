@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "client/render/frame_look.hpp"
+
 namespace runstone {
 
 enum class QualityChoice : std::uint8_t {
@@ -19,23 +21,13 @@ inline constexpr std::size_t kQualityChoiceCount = 4;
 /// Returns "automatic", "low", "medium" or "high".
 const char* name_of(QualityChoice quality);
 
-enum class AntialiasingChoice : std::uint8_t {
-  automatic,  // MSAA on a GPU, off if the processor draws
-  off,
-  fxaa,
-  msaa,
-};
-inline constexpr std::size_t kAntialiasingChoiceCount = 4;
-/// Returns "automatic", "off", "fxaa" or "msaa".
-const char* name_of(AntialiasingChoice antialiasing);
-
 inline constexpr std::uint64_t kMemoryMibMin = 64, kMemoryMibMax = 65'536;
 
 struct ClientSettings {
   std::string name = "builder";  // shown to others; as the option --name
   std::string key_file;          // of the identity; empty: default_key_file()
   QualityChoice quality = QualityChoice::automatic;
-  AntialiasingChoice antialiasing = AntialiasingChoice::automatic;
+  Antialiasing antialiasing = Antialiasing::automatic;
   double field_of_view = 69;     // degrees, vertical, 30 to 110
   std::uint8_t view_radius = 6;  // chunks, horizontal, 1 to kViewRadiusMax
   std::uint8_t far_levels = 5;   // of tiles beyond the view radius; each sees twice as far

@@ -83,4 +83,17 @@ Result<void, std::string> save_kit(const std::string& file, const std::string& w
   return write_private_file(file, out);
 }
 
+void UnsavedKits::add(std::string world, std::string line) {
+  std::erase_if(lines_, [&](const auto& entry) { return entry.first == world; });
+  lines_.emplace_back(std::move(world), std::move(line));
+}
+
+Result<void, std::string> UnsavedKits::save(const std::string& file) {
+  for (; !lines_.empty(); lines_.erase(lines_.begin())) {
+    const auto& [world, line] = lines_.front();
+    if (auto saved = save_kit(file, world, line); !saved) return saved;
+  }
+  return {};
+}
+
 }  // namespace runstone

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/core/result.hpp"
 
@@ -21,5 +23,19 @@ std::optional<std::string> load_kit(const std::string& file, const std::string& 
 /// FILE.broken. Fails with a line that begins with the file's name.
 Result<void, std::string> save_kit(const std::string& file, const std::string& world,
                                    const std::string& line);
+
+/// Lines that are not written yet, one for each world.
+class UnsavedKits {
+ public:
+  /// Adds the line of a world, and replaces an earlier one of that world.
+  void add(std::string world, std::string line);
+  /// Writes all lines with save_kit(). Lines that cannot be written stay for the next call. Fails as
+  /// save_kit() does.
+  Result<void, std::string> save(const std::string& file);
+  bool empty() const { return lines_.empty(); }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> lines_;  // by world, in the order of add()
+};
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace runstone {
 
@@ -16,6 +17,10 @@ double distance_to(const Aim& aim, VoxelPos voxel) {
   const double dx = voxel.x + 0.5 - aim.eye.x, dy = voxel.y + 0.5 - aim.eye.y,
                dz = voxel.z + 0.5 - aim.eye.z;
   return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
+
+std::int32_t stroke_step(VoxelPos from, VoxelPos to) {
+  return std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)});
 }
 
 VoxelBox box_between(VoxelPos a, VoxelPos b) {

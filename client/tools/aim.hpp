@@ -42,6 +42,10 @@ VoxelPos voxel_on_ray(const Aim& aim, double distance);
 /// Returns the distance from the eye to the centre of a voxel.
 double distance_to(const Aim& aim, VoxelPos voxel);
 
+/// Returns how far two places lie apart along the axis on which they lie farthest apart, as
+/// kStrokeStepMax bounds it. Requires places inside the world.
+std::int32_t stroke_step(VoxelPos from, VoxelPos to);
+
 /// Returns the box with these corners, both included.
 VoxelBox box_between(VoxelPos a, VoxelPos b);
 

@@ -21,8 +21,10 @@ ToolAction joined(const ToolInput& input, const EditDescriptor& edit) {
   ShownVoxels shown(input.replica);
   ToolAction out = joined_action(edit, input.materials, [&](VoxelPos at) { return shown.at(at); });
   // On the other side of a symmetry other voxels would join.
-  if (input.has_copies) out.edits.resize(1);
-  out.has_followers = out.edits.size() > 1;
+  if (input.has_copies) {
+    out.edits.resize(1);
+    out.has_followers = false;
+  }
   return out;
 }
 

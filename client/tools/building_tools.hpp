@@ -1,4 +1,5 @@
-// Building tools: the tools with which a player builds, from the single voxel to brushes for terrain.
+// Building tools: the tools with which a player builds, from the single voxel to brushes for
+// terrain.
 #pragma once
 #include <memory>
 #include <vector>

@@ -23,6 +23,7 @@ class FloodTool final : public Tool {
   std::string_view place_name(std::size_t i) const override {
     return i == 0 ? "place in the hollow" : "place at the level";
   }
+  bool is_costly() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -17,9 +18,16 @@ namespace runstone {
 namespace {
 
 /// Returns the places of a stroke: those over which the button was held, or the target of a click.
-std::vector<VoxelPos> stroke_of(const ToolInput& input) {
-  if (input.points.empty()) return {input.target};
-  return {input.points.begin(), input.points.end()};
+/// Fails with words for the player if consecutive places are more than kStrokeStepMax apart: places
+/// that are typed may be anywhere in the world, and a curve has points all along its way.
+Result<std::vector<VoxelPos>, std::string> stroke_of(const ToolInput& input) {
+  if (input.points.empty()) return std::vector{input.target};
+  for (std::size_t i = 1; i < input.points.size(); ++i) {
+    if (stroke_step(input.points[i - 1], input.points[i]) > kStrokeStepMax)
+      return failure("two places are more than " + std::to_string(kStrokeStepMax) +
+                     " voxels apart");
+  }
+  return std::vector(input.points.begin(), input.points.end());
 }
 
 /// Reads the shown columns of a box, as high and as low as chunks are shown at `place`. Fails with
@@ -39,7 +47,9 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
   box.max.y = std::min(box.max.y, (high + 1) * edge);
   auto columns =
       GroundColumns::read(box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
-  if (!columns) return failure(std::string(columns.error().what) + ": make a shorter stroke");
+  if (!columns)
+    return failure(std::string(columns.error().what) +
+                   ": make a shorter stroke, or choose a smaller radius or width");
   return *std::move(columns);
 }
 
@@ -52,6 +62,9 @@ ToolEdits action_of(const GroundColumns& columns, const ColumnChanges& changes, 
   return paste_of_build({placed->build, placed->at, mask, EmptyCells::pasted},
                         input.replica.edit_limits());
 }
+
+/// Brushes of the terrain tool with a larger radius are costly.
+constexpr std::int32_t kCheapRadiusMax = 16;
 
 /// A tool that works on the ground along a stroke, which is drawn while the button is held.
 class GroundTool : public Tool {
@@ -78,6 +91,7 @@ class TerrainTool final : public GroundTool {
              {"falloff", "", 0, kBrushFalloffCount - 1, 0, {"smooth", "linear", "round", "none"}},
              {"seed", "", 0, 9999, 1, {}},
              mask_parameter()}) {}
+  bool is_costly() const override { return value("radius") > kCheapRadiusMax; }
   ToolEdits plan(const ToolInput& input) const override;
 };
 
@@ -94,11 +108,12 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
     if (brush.lowers) return failure("overlay with the right button");
     if (brush.material == kEmpty) return failure("hold a material to overlay");
   }
-  const std::vector<VoxelPos> places = stroke_of(input);
-  const auto columns = read_shown(input.replica, brush_box(brush, places), places.front());
+  const auto places = stroke_of(input);
+  if (!places) return failure(places.error());
+  const auto columns = read_shown(input.replica, brush_box(brush, *places), places->front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
-  return action_of(*columns, brush_changes(*columns, materials, brush, places), mask(), input);
+  return action_of(*columns, brush_changes(*columns, materials, brush, *places), mask(), input);
 }
 
 class PathTool final : public GroundTool {
@@ -118,9 +133,10 @@ ToolEdits PathTool::plan(const ToolInput& input) const {
   brush.height = static_cast<PathHeight>(value("height"));
   brush.material = input.aim.held;
   if (brush.material == kEmpty) return failure("hold a material for the way");
-  const std::vector<VoxelPos> places = stroke_of(input);
-  const auto curve = curve_through(places);
-  const auto columns = read_shown(input.replica, path_box(brush, curve), places.front());
+  const auto places = stroke_of(input);
+  if (!places) return failure(places.error());
+  const auto curve = curve_through(*places);
+  const auto columns = read_shown(input.replica, path_box(brush, curve), places->front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
   return action_of(*columns, path_changes(*columns, materials, brush, curve), mask(), input);
@@ -171,11 +187,12 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
   scattering.radius = value("radius");
   scattering.spacing = value("spacing");
   scattering.seed = static_cast<std::uint64_t>(value("seed"));
-  const std::vector<VoxelPos> places = stroke_of(input);
-  const auto columns = read_shown(input.replica, scatter_box(scattering, places), places.front());
+  const auto places = stroke_of(input);
+  if (!places) return failure(places.error());
+  const auto columns = read_shown(input.replica, scatter_box(scattering, *places), places->front());
   if (!columns) return failure(columns.error());
   const auto spots =
-      scattered_spots(*columns, GroundMaterials::of(input.materials), scattering, places);
+      scattered_spots(*columns, GroundMaterials::of(input.materials), scattering, *places);
   if (spots.empty()) return failure("there is no ground for a copy here");
   if (spots.size() > kScatteredMax)
     return failure("more than " + std::to_string(kScatteredMax) +

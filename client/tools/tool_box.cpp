@@ -35,6 +35,8 @@ constexpr std::int32_t kStackMax = 4096;
 constexpr std::int32_t kStepsMax = 4096;
 /// A preview that is refused is planned again after so many calls.
 constexpr unsigned kPlanAgainCalls = 32;
+/// That of a costly tool is planned again after so many calls, if the replica has changed.
+constexpr unsigned kCostlyAgainCalls = 256;
 /// The names of missing materials that a message lists.
 constexpr std::size_t kLackingListed = 8;
 
@@ -200,10 +202,7 @@ void ToolBox::drag(const Aim& aim) {
   if (!tool().is_drawn() || points_.empty() || points_.size() >= kStrokePointsMax) return;
   const auto target = target_of(aim, button_);
   if (!target || *target == points_.back()) return;
-  const VoxelPos last = points_.back();
-  const std::int32_t step = std::max(
-      {std::abs(target->x - last.x), std::abs(target->y - last.y), std::abs(target->z - last.z)});
-  if (step > kStrokeStepMax) return;
+  if (stroke_step(points_.back(), *target) > kStrokeStepMax) return;
   points_.push_back(*target);
   ++revision_;
 }
@@ -536,25 +535,20 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
     if (chosen_ == 0 && button == ToolButton::place && aim.hit->face)
       wanted.held = placed_material(aim.held, click_of(aim), materials_);
   }
-  // A refusal may end without a change of what is watched, for example when a chunk arrives.
-  const bool is_planned_again =
-      !preview_refusal_.empty() && ++refused_calls_ % kPlanAgainCalls == 0;
-  if (previewed_ != wanted || is_planned_again || preview_.is_outdated(replica)) {
+  const bool is_costly = is_preview_shown_ && target && tool().is_costly();
+  if (previewed_ != wanted) {
     previewed_ = wanted;
-    preview_refusal_.clear();
-    ToolAction made;
-    if (is_preview_shown_ && !tool().selects()) {
-      auto planned = typed_   ? plan_typed(replica, aim.held)
-                     : target ? plan(replica, aim, button, points_, *target)
-                              : ToolEdits(failure(target.error()));
-      if (planned) {
-        made = *std::move(planned);
-      } else {
-        preview_refusal_ = planned.error();
-      }
+    is_plan_due_ = true;
+    rested_calls_ = 0;
+    if (is_costly) {
+      preview_refusal_.clear();
+      show({}, replica.chunk_edge());
     }
-    show(std::move(made), replica.chunk_edge());
+  } else if (is_refusal_due(replica) || preview_.is_outdated(replica)) {
+    is_plan_due_ = true;
   }
+  if (is_plan_due_ && (!is_costly || ++rested_calls_ > kRestCalls))
+    plan_preview(replica, aim, button, target);
   const bool has_edits_changed = preview_.step(replica, chunks_max);
   // A cube of 64 cells is as much work as several chunks.
   const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
@@ -562,6 +556,40 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
   ghosts_ = preview_.ghosts();
   ghosts_.insert(ghosts_.end(), build_preview_.ghosts().begin(), build_preview_.ghosts().end());
   return true;
+}
+
+void ToolBox::plan_preview(const Replica& replica, const Aim& aim, ToolButton button,
+                           const Result<VoxelPos, std::string>& target) {
+  is_plan_due_ = false;
+  rested_calls_ = 0;
+  planned_on_ = mark_of(replica);
+  preview_refusal_.clear();
+  ToolAction made;
+  if (is_preview_shown_ && !tool().selects()) {
+    auto planned = typed_   ? plan_typed(replica, aim.held)
+                   : target ? plan(replica, aim, button, points_, *target)
+                            : ToolEdits(failure(target.error()));
+    if (planned) {
+      made = *std::move(planned);
+    } else {
+      preview_refusal_ = planned.error();
+    }
+  }
+  show(std::move(made), replica.chunk_edge());
+}
+
+bool ToolBox::is_refusal_due(const Replica& replica) {
+  if (preview_refusal_.empty()) return false;
+  ++refused_calls_;
+  // A refusal may end without a change of what is watched, for example when a chunk arrives.
+  if (!tool().is_costly()) return refused_calls_ % kPlanAgainCalls == 0;
+  return refused_calls_ % kCostlyAgainCalls == 0 && planned_on_ != mark_of(replica);
+}
+
+ToolBox::ReplicaMark ToolBox::mark_of(const Replica& replica) {
+  const ReplicaCounters& counters = replica.counters();
+  return {counters.snapshots_taken, counters.adopted, counters.chunk_edits_applied,
+          replica.confirmed_count(), replica.local_edits().bytes()};
 }
 
 void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {

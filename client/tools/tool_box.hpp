@@ -121,8 +121,11 @@ class ToolBox {
   bool is_preview_shown() const { return is_preview_shown_; }
   /// Makes the preview of the next click: at most `chunks_max` chunks in this call. Returns true if
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
-  /// aim, the tool or the chunks changed, and EditPreview::step().
+  /// aim, the tool or the chunks changed, and EditPreview::step(). The plan of a costly tool
+  /// (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls calls, and
+  /// not again while it is refused and the replica is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
+  static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.
   const EditPreview& preview() const { return preview_; }
   const BuildPreview& build_preview() const { return build_preview_; }
@@ -149,6 +152,11 @@ class ToolBox {
   /// Gives the clipboard the materials of this world, by the names in its rows.
   std::string fit_clipboard();
   void show(ToolAction made, std::int32_t chunk_edge);
+  /// Plans the next click, and shows what it makes or keeps why it would be refused.
+  void plan_preview(const Replica& replica, const Aim& aim, ToolButton button,
+                    const Result<VoxelPos, std::string>& target);
+  /// Returns true if a refusal stands that is to be planned again in this call of step_preview().
+  bool is_refusal_due(const Replica& replica);
 
   /// The facts on which the present preview depends, besides the chunks.
   struct Previewed {
@@ -159,6 +167,14 @@ class ToolBox {
     std::uint64_t revision = 0;
     friend bool operator==(const Previewed&, const Previewed&) = default;
   };
+
+  /// The numbers of a replica that change with its shown voxels.
+  struct ReplicaMark {
+    std::uint64_t snapshots = 0, adopted = 0, edits = 0;
+    std::size_t chunks = 0, local_bytes = 0;
+    friend bool operator==(const ReplicaMark&, const ReplicaMark&) = default;
+  };
+  static ReplicaMark mark_of(const Replica& replica);
 
   std::vector<std::unique_ptr<Tool>> tools_;
   std::size_t chosen_ = 0;
@@ -178,7 +194,10 @@ class ToolBox {
   std::vector<GhostChunk> ghosts_;
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
+  ReplicaMark planned_on_;      // the replica when the preview was last planned
   std::optional<Previewed> previewed_;
+  bool is_plan_due_ = false;    // the preview of previewed_ is not planned yet, or outdated
+  unsigned rested_calls_ = 0;   // of step_preview() while a plan is due
   std::uint64_t revision_ = 0;  // rises when the state behind the preview changes
   bool is_preview_shown_ = true;
 };

@@ -98,16 +98,25 @@ Material member_with(Material material, const MaterialStates& states, const Mate
   return nearest_member(table, states).value_or(material);
 }
 
-/// Returns the member that a voxel becomes after voxels beside it have changed. `set_to` returns what
-/// a voxel was set to, or nullopt if it was not set: the side towards that one stays.
-Material rejoined(VoxelPos at, Material material, const MaterialTable& table,
-                  const VoxelReader& set_to) {
+/// The materials beside a voxel in the order of kJoinSides.
+using SideMaterials = std::array<std::optional<Material>, kJoinSides.size()>;
+
+SideMaterials materials_beside(VoxelPos at, const VoxelReader& voxels) {
+  SideMaterials out;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = voxels(moved(at, kJoinSides[i].first, 1));
+  return out;
+}
+
+/// Returns the member that a voxel becomes after voxels beside it were set. `set_to` has the new
+/// materials of its neighbours, or nullopt if a neighbour was not set; then the join towards it does
+/// not change.
+Material rejoined(Material material, const MaterialTable& table, const SideMaterials& set_to) {
   const JoinKind kind = join_kind_of(material, table);
   if (kind == JoinKind::none) return material;
   MaterialStates states = states_of_material(table[material].name);
-  for (const auto& [direction, side] : kJoinSides) {
-    if (const auto now = set_to(moved(at, direction, 1)))
-      set_side(states, kind, side, joins(material, now, direction, table));
+  for (std::size_t i = 0; i < set_to.size(); ++i) {
+    const auto& [direction, side] = kJoinSides[i];
+    if (set_to[i]) set_side(states, kind, side, joins(material, set_to[i], direction, table));
   }
   if (kind == JoinKind::wall) set_post(states);
   return member_with(material, states, table);
@@ -175,22 +184,26 @@ class BoxJoins {
       if (set_to(beside)) continue;
       const auto before = voxels_(beside);
       if (!before || *before == kEmpty || !visited_.insert(beside).second) continue;
-      const Material now =
-          rejoined(beside, *before, table_, [this](VoxelPos place) { return set_to(place); });
+      const Material now = follower(beside, *before);
       if (now != *before) followers_[*before].push_back({beside, now});
     }
   }
 
   /// Equal neighbours give equal members.
   Material joined(VoxelPos at) {
-    std::array<std::optional<Material>, 4> beside;
-    for (std::size_t i = 0; i < beside.size(); ++i)
-      beside[i] = after(moved(at, kJoinSides[i].first, 1));
-    const auto [member, is_new] = members_.try_emplace(beside, kEmpty);
-    if (is_new) {
-      member->second = joined_material(at, fill_.material, table_,
-                                       [this](VoxelPos place) { return after(place); });
-    }
+    const VoxelReader reader = [this](VoxelPos place) { return after(place); };
+    const auto [member, is_new] = members_.try_emplace(materials_beside(at, reader), kEmpty);
+    if (is_new) member->second = joined_material(at, fill_.material, table_, reader);
+    return member->second;
+  }
+
+  /// Returns what a voxel beside the fill becomes. Equal voxels with equal neighbours become equal
+  /// members.
+  Material follower(VoxelPos at, Material before) {
+    const SideMaterials beside =
+        materials_beside(at, [this](VoxelPos place) { return set_to(place); });
+    const auto [member, is_new] = rejoined_.try_emplace({before, beside}, kEmpty);
+    if (is_new) member->second = rejoined(before, table_, beside);
     return member->second;
   }
 
@@ -199,7 +212,8 @@ class BoxJoins {
       return cell.material == fill_.material;
     });
     if (is_plain) return fill_;
-    // The voxels that the mask does not admit now may change before the edit is ordered.
+    // The paste has only the voxels that the mask admits now. It carries the mask, because voxels
+    // may change before the edit is ordered.
     auto paste = paste_of(std::move(cells_), fill_.mask);
     return paste ? std::move(paste->edits.front()) : fill_;
   }
@@ -210,7 +224,8 @@ class BoxJoins {
   const VoxelReader& voxels_;
   const bool joins_;  // the material of the fill
   std::vector<Cell> cells_;
-  std::map<std::array<std::optional<Material>, 4>, Material> members_;
+  std::map<SideMaterials, Material> members_;
+  std::map<std::pair<Material, SideMaterials>, Material> rejoined_;
   std::set<VoxelPos> visited_;
   std::map<Material, std::vector<Cell>> followers_;  // by what they are now
 };
@@ -238,11 +253,11 @@ std::vector<EditDescriptor> joined_edits(VoxelPos at, Material material, const M
     const VoxelPos place = moved(at, direction, 1);
     const auto neighbour = voxels(place);
     if (!neighbour) continue;
-    const Material now =
-        rejoined(place, *neighbour, table, [&](VoxelPos beside) -> std::optional<Material> {
-          if (beside != at) return std::nullopt;
-          return placed;
-        });
+    const VoxelReader set_to = [&](VoxelPos beside) -> std::optional<Material> {
+      if (beside != at) return std::nullopt;
+      return placed;
+    };
+    const Material now = rejoined(*neighbour, table, materials_beside(place, set_to));
     if (now != *neighbour)
       out.push_back({SetVoxel{place}, {MaskKind::only_material, *neighbour}, now});
   }

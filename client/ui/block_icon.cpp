@@ -44,6 +44,9 @@ class IconPainter {
       case MaterialPattern::weave:
         return weave(face);
       case MaterialPattern::none:
+      case MaterialPattern::blades:
+      case MaterialPattern::flower:
+      case MaterialPattern::foliage:
         return grain(face);
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "client/render/antialiasing.hpp"
 #include "client/ui/text_field.hpp"
 #include "common/core/text.hpp"
 #include "common/core/tile_keys.hpp"
@@ -28,11 +29,10 @@ void quality_control(QualityChoice& quality) {
   ImGui::EndCombo();
 }
 
-void antialiasing_control(AntialiasingChoice& antialiasing) {
-  if (!ImGui::BeginCombo("smooth edges", name_of(antialiasing))) return;
-  for (std::size_t i = 0; i < kAntialiasingChoiceCount; ++i) {
-    const auto choice = static_cast<AntialiasingChoice>(i);
-    if (ImGui::Selectable(name_of(choice), choice == antialiasing)) antialiasing = choice;
+void antialiasing_control(Antialiasing& antialiasing) {
+  if (!ImGui::BeginCombo("smooth edges", to_string(antialiasing))) return;
+  for (const Antialiasing choice : kAntialiasings) {
+    if (ImGui::Selectable(to_string(choice), choice == antialiasing)) antialiasing = choice;
   }
   ImGui::EndCombo();
 }

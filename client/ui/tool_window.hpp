@@ -37,7 +37,7 @@ class ToolWindow {
   void build(const HudState& state, double scale, std::vector<ToolCommand>& out);
   /// The file that the user wants to read or to write. The commands of build() come first.
   FilePanel& file() { return file_; }
-  /// Returns the time of day that the user has chosen since the last call, if so.
+  /// Returns the time of day that the user chose since the last call, or nullopt if there is none.
   std::optional<SetTime> take_time() { return std::exchange(time_, std::nullopt); }
 
  private:

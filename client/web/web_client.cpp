@@ -75,8 +75,8 @@ void WebClient::turn(TimeUs now_us, bool draws) {
   handle_input(now_us);
   pipeline_.take_drawn();
   hud_.step();
-  if (const auto kept = play_.take_kit())
-    page_keep_kit(to_hex(kept->world).c_str(), to_text(kept->kit).c_str());
+  for (const KeptKit& kept : play_.take_kits())
+    page_keep_kit(to_hex(kept.world).c_str(), to_text(kept.kit).c_str());
   flush(now_us);  // local edits go first
   play_.follow(now_us);
   network_.step_cache(play_.limits().room(), now_us);  // the view names the chunks that were found

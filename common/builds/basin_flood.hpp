@@ -4,15 +4,13 @@
 // stretch is reached as a whole. Pure. One thread.
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <vector>
 
 #include "common/builds/build.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "common/runs/run_chunk.hpp"
+#include "common/runs/chunk_lookup.hpp"
 
 namespace runstone {
 
@@ -40,9 +38,6 @@ enum class BasinFault : std::uint8_t {
   too_many_voxels,  // the basin has more than voxels_max, or its build takes too much memory
   full,             // no voxel of the basin is empty
 };
-
-/// Returns the chunk of a place of the grid, a cube in any axis order, or null if it is not known.
-using ChunkLookup = std::function<std::shared_ptr<const RunChunk>(ChunkCoord)>;
 
 /// Returns the basin around the start. The result does not depend on the axis orders of the chunks.
 /// Requires chunks of `edge` voxels a side that stay as they are during the call. Cost: O(stretches

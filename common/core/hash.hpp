@@ -13,6 +13,12 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
+/// Returns a hash of a place on the ground. Equal keys and places give equal hashes.
+constexpr std::uint64_t place_hash(std::uint64_t key, std::int32_t x, std::int32_t z) {
+  return mix64(key ^ static_cast<std::uint32_t>(x) ^
+               (std::uint64_t{static_cast<std::uint32_t>(z)} << 32));
+}
+
 /// Seeded stream of 64-bit words (SplitMix64). It gives the same numbers on every platform. It must
 /// not be used for secrets.
 class SplitMix64 {

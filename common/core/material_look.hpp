@@ -17,10 +17,14 @@ enum class MaterialPattern : std::uint8_t {
   cobble = 4,  // rounded stones of different brightness
   bark = 5,    // grooves along the vertical axis, rings on the upper and lower face
   weave = 6,   // threads that cross
+  // Silhouettes of plants. They are drawn on the planes of plants; other faces have no pattern.
+  blades = 7,   // blades of grass
+  flower = 8,   // a blossom in the colour of the material, on a green stalk with leaves
+  foliage = 9,  // a ragged bush
 };
 /// The number of patterns. A greater or equal value is a pattern of a later version and is drawn as
 /// `none`.
-inline constexpr std::uint8_t kMaterialPatterns = 7;
+inline constexpr std::uint8_t kMaterialPatterns = 10;
 
 /// The greatest value of a share, in percent.
 inline constexpr std::uint8_t kLookShareMax = 100;

@@ -70,13 +70,14 @@ struct PlantRow {
   const char* name;
   std::uint32_t rgba;
   unsigned height, inset;  // sixteenths of a voxel
+  MaterialPattern pattern;
 };
 
 constexpr PlantRow kPlants[] = {
-    {"tall_grass", 0x76aa45ff, 12, 2}, {"fern", 0x4f8a3cff, 11, 1},
-    {"bush", 0x4a7f33ff, 15, 0},       {"reeds", 0x9cab5cff, 16, 3},
-    {"poppy", 0xcf3b30ff, 10, 4},      {"dandelion", 0xf0cb3aff, 8, 4},
-    {"cornflower", 0x5674d2ff, 10, 4},
+    {"tall_grass", 0x76aa45ff, 14, 1, blades}, {"fern", 0x4f8a3cff, 12, 1, blades},
+    {"bush", 0x4a7f33ff, 15, 1, foliage},      {"reeds", 0x9cab5cff, 16, 3, blades},
+    {"poppy", 0xcf3b30ff, 12, 3, flower},      {"dandelion", 0xf0cb3aff, 10, 4, flower},
+    {"cornflower", 0x5674d2ff, 12, 3, flower},
 };
 
 std::array<std::uint8_t, 4> colour_of(std::uint32_t rgba) {
@@ -112,7 +113,7 @@ MaterialTable make_landscape_table() {
   }
   for (const PlantRow& row : kPlants) {
     const auto id = table.add({row.name, colour_of(row.rgba), Visibility::opaque, std::nullopt,
-                               MaterialBody::passable, MaterialLook{14, 20, 100, 0, none},
+                               MaterialBody::passable, MaterialLook{14, 20, 100, 0, row.pattern},
                                plant_shape(row.height, row.inset)});
     RUNSTONE_ASSERT(id.has_value());
   }

@@ -9,8 +9,8 @@ namespace runstone {
 
 inline constexpr const char* kVisibilityNames[] = {"empty", "opaque", "transparent"};
 inline constexpr const char* kBodyNames[] = {"solid", "liquid", "passable"};
-inline constexpr const char* kPatternNames[] = {"none",   "planks", "bricks", "tiles",
-                                                "cobble", "bark",   "weave"};
+inline constexpr const char* kPatternNames[] = {"none", "planks", "bricks", "tiles",  "cobble",
+                                                "bark", "weave",  "blades", "flower", "foliage"};
 static_assert(std::size(kPatternNames) == kMaterialPatterns);
 
 }  // namespace runstone

@@ -11,37 +11,51 @@ namespace {
 
 constexpr std::size_t kRefusedMax = 16;
 
+/// A file, or bytes in memory, or the second before a part of the first.
 class FolderStream : public Assimp::IOStream {
  public:
-  explicit FolderStream(OpenedFile file) : file_(std::move(file)) {}
+  explicit FolderStream(OpenedFile file) : file_(std::move(file)), bytes_(file_->bytes()) {}
+  explicit FolderStream(std::string_view memory) : memory_(memory), bytes_(memory.size()) {}
+  /// `head` must outlive the stream. The bytes of the file follow it from `rest_at` on.
+  FolderStream(std::string_view head, OpenedFile file, std::uint64_t rest_at)
+      : memory_(head),
+        file_(std::move(file)),
+        rest_at_(rest_at),
+        bytes_(head.size() + file_->bytes() - std::min(rest_at, file_->bytes())) {}
 
   std::size_t Read(void* to, std::size_t size, std::size_t count) override {
     if (size == 0 || count == 0 || count > std::numeric_limits<std::size_t>::max() / size) return 0;
-    const std::size_t left =
-        at_ < file_.bytes() ? static_cast<std::size_t>(file_.bytes() - at_) : 0;
+    const std::size_t left = at_ < bytes_ ? static_cast<std::size_t>(bytes_ - at_) : 0;
     // Like fread(): only whole elements count.
     const std::size_t whole = std::min(count, left / size);
-    const std::size_t got = file_.read(to, whole * size, at_) / size;
+    const std::size_t got = read(static_cast<char*>(to), whole * size) / size;
     at_ += got * size;
     return got;
   }
   std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const std::uint64_t from = origin == aiOrigin_CUR   ? at_
-                               : origin == aiOrigin_END ? file_.bytes()
-                                                        : 0;
+    const std::uint64_t from = origin == aiOrigin_CUR ? at_ : origin == aiOrigin_END ? bytes_ : 0;
     const std::uint64_t to = from + offset;  // a negative offset wraps, as it does for Assimp
-    if (to > file_.bytes()) return aiReturn_FAILURE;
+    if (to > bytes_) return aiReturn_FAILURE;
     at_ = to;
     return aiReturn_SUCCESS;
   }
   std::size_t Tell() const override { return static_cast<std::size_t>(at_); }
-  std::size_t FileSize() const override { return static_cast<std::size_t>(file_.bytes()); }
+  std::size_t FileSize() const override { return static_cast<std::size_t>(bytes_); }
   void Flush() override {}
 
  private:
-  OpenedFile file_;
-  std::uint64_t at_ = 0;
+  std::size_t read(char* to, std::size_t count) {
+    std::size_t done = 0;
+    if (at_ < memory_.size()) done = memory_.copy(to, count, static_cast<std::size_t>(at_));
+    if (done == count || !file_) return done;
+    return done + file_->read(to + done, count - done, rest_at_ + (at_ + done - memory_.size()));
+  }
+
+  std::string_view memory_;
+  std::optional<OpenedFile> file_;
+  std::uint64_t rest_at_ = 0;
+  std::uint64_t bytes_ = 0, at_ = 0;
 };
 
 /// Returns a path in the form in which two spellings of one file are equal.
@@ -101,6 +115,7 @@ void FolderFiles::refuse(const std::string& path, ModelFolder::Refusal why) cons
 }
 
 bool FolderFiles::Exists(const char* path) const {
+  if (replaced_ && last_name(path) == kFloatsFile) return true;
   const auto opened = open(path);
   if (!opened) refuse(path, opened.error());
   return opened.has_value();
@@ -108,12 +123,15 @@ bool FolderFiles::Exists(const char* path) const {
 
 Assimp::IOStream* FolderFiles::Open(const char* path, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
+  if (replaced_ && last_name(path) == kFloatsFile) return new FolderStream(replaced_->floats);
   auto opened = open(path);
   if (!opened) {
     refuse(path, opened.error());
     return nullptr;
   }
   if (last_name(path) != folder_.name()) has_opened_others_ = true;
+  if (replaced_ && path_within(path) == folder_.name())
+    return new FolderStream(replaced_->head, *std::move(opened), replaced_->rest_at);
   return new FolderStream(*std::move(opened));  // Assimp owns it until Close()
 }
 

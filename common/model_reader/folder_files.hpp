@@ -3,10 +3,13 @@
 #pragma once
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/model_reader/model_folder.hpp"
+#include "common/model_reader/plain_gltf.hpp"
 
 namespace runstone {
 
@@ -20,6 +23,10 @@ class FolderFiles : public Assimp::IOSystem {
 
   /// `folder` must outlive this object.
   explicit FolderFiles(const ModelFolder& folder) : folder_(folder) {}
+
+  /// Gives Assimp this in place of the model, and its floats as kFloatsFile. Call it before Assimp
+  /// reads.
+  void replace_model(PlainGltf model) { replaced_ = std::move(model); }
 
   bool Exists(const char* path) const override;
   char getOsSeparator() const override { return '/'; }
@@ -37,6 +44,7 @@ class FolderFiles : public Assimp::IOSystem {
   void refuse(const std::string& path, ModelFolder::Refusal why) const;
 
   const ModelFolder& folder_;
+  std::optional<PlainGltf> replaced_;
   mutable std::vector<Refused> refused_;
   bool has_opened_others_ = false;
 };

@@ -15,6 +15,7 @@
 
 #include "common/model_reader/folder_files.hpp"
 #include "common/model_reader/gltf_extensions.hpp"
+#include "common/model_reader/plain_gltf.hpp"
 #include "common/model_reader/ply_reader.hpp"
 
 namespace runstone {
@@ -83,14 +84,20 @@ Result<ReadModel, std::string> read_model_in(const ModelFolder& folder, const Sc
     if (!model) return failure(model.error());
     return ReadModel{*std::move(model), notices.take()};
   }
+  auto owned = std::make_unique<FolderFiles>(folder);
   if (rules.format == ModelFormat::gltf || rules.format == ModelFormat::glb) {
     const auto file = folder.open(folder.name());
     if (!file) return failure(std::string(ModelFolder::words(file.error())));
-    if (const auto checked = check_extensions(*file); !checked) return failure(checked.error());
+    const auto extensions = check_extensions(*file);
+    if (!extensions) return failure(extensions.error());
+    if (extensions->is_quantised) {
+      auto plain = plain_gltf(folder, *file);
+      if (!plain) return failure(plain.error());
+      owned->replace_model(*std::move(plain));
+    }
   }
   Assimp::Importer importer;
   keep_parser_of(rules.format, importer);
-  auto owned = std::make_unique<FolderFiles>(folder);
   const FolderFiles& files = *owned;
   importer.SetIOHandler(owned.release());  // the importer owns it
   // Texture places become those of a model, which count from above.

@@ -34,44 +34,39 @@ class SurfaceMove {
     below_skin_ = ground_depth(column, from, bottom, skin_ + 1, materials) > skin_
                       ? column.old(from - skin_)
                       : column.old(from - skin_ + 1);
-    above_ = column.old(from + 1);
-    has_plant_ = !is_open(above_) && !materials.is_ground(above_) && is_open(column.old(from + 2));
+    standing_ = standing_on(column, from, materials);
   }
 
   void rise(std::int32_t to) {
     for (std::int32_t y = from_ - skin_ + 1; y <= to; ++y) {
-      const bool is_free = y <= from_ || is_open(column_.old(y)) || (y == from_ + 1 && has_plant_);
+      const bool is_free = y <= from_ || materials_.is_open(column_.old(y)) ||
+                           (y == from_ + 1 && standing_.is_plant);
       if (!is_free) continue;
       column_.set(y, y <= to - skin_ ? below_skin_ : column_.old(y - (to - from_)));
     }
-    if (has_plant_ && is_open(column_.old(to + 1))) column_.set(to + 1, above_);
+    if (standing_.is_plant && materials_.is_open(column_.old(to + 1)))
+      column_.set(to + 1, standing_.above);
   }
 
   void sink(std::int32_t to) {
-    const Material rest = materials_.is_liquid(above_) ? above_ : kEmpty;
     for (std::int32_t y = to - skin_ + 1; y <= from_; ++y) {
       if (!materials_.is_ground(column_.old(y))) continue;
       if (y <= to) {
         column_.set(y, column_.old(y + (from_ - to)));
       } else {
-        column_.set(y, y == to + 1 && has_plant_ ? above_ : rest);
+        column_.set(y, y == to + 1 && standing_.is_plant ? standing_.above : standing_.rest);
       }
     }
-    if (has_plant_) column_.set(from_ + 1, kEmpty);
+    if (standing_.is_plant) column_.set(from_ + 1, kEmpty);
   }
 
  private:
-  bool is_open(Material material) const {
-    return material == kEmpty || materials_.is_liquid(material);
-  }
-
   ColumnWriter& column_;
   const std::int32_t from_;
   const GroundMaterials& materials_;
   std::int32_t skin_ = 0;         // voxels of ground that move with the surface, at least 1
   Material below_skin_ = kEmpty;  // fills the gap where the ground rises
-  Material above_ = kEmpty;       // on the surface
-  bool has_plant_ = false;        // `above_` is one voxel high and moves with the surface
+  Standing standing_;             // moves with the surface if it is a plant
 };
 
 /// Returns the box of the changes. Requires at least one.
@@ -162,8 +157,11 @@ std::int32_t grid_offset(std::int32_t at) {
 void move_surface(const GroundColumns& columns, std::size_t column, std::int32_t from,
                   std::int32_t to, const GroundMaterials& materials, ColumnChanges& out) {
   const VoxelBox& box = columns.box();
-  to = std::clamp(to, box.min.y + kSkinVoxels, box.max.y - 2);
-  if (from == kNoSurface || from == to || from + 2 >= box.max.y) return;
+  if (from == kNoSurface || from + 2 >= box.max.y) return;
+  to = std::min(to, box.max.y - 2);
+  // A surface that sinks leaves room for its skin in the box.
+  if (to < from) to = std::min(from, std::max(to, box.min.y + kSkinVoxels));
+  if (to == from) return;
   ColumnWriter writer(columns, column, out);
   SurfaceMove move(writer, box.min.y, from, materials);
   if (to > from) {

@@ -1,5 +1,6 @@
-// ColumnChanges: the voxels that a brush changes, as runs along y, and the build that pastes exactly
-// them. Voxels that keep their material are not among them, so a paste disturbs nobody else's work.
+// ColumnChanges: the voxels that a brush changes, as runs along y, and the build that pastes
+// exactly them. Voxels that keep their material are not among them, so a paste does not overwrite
+// later edits of other players there.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -29,11 +30,11 @@ using ColumnChanges = std::vector<ColumnChange>;
 inline constexpr std::int32_t kSkinVoxels = 4;
 
 /// Appends the changes that move the surface of a column from one height to another, as
-/// surface_heights() gives them. The upper kSkinVoxels voxels of ground move with the surface, and so
-/// does a plant of one voxel on it. Where the ground rises, the material below the skin fills the
-/// gap; only empty voxels and liquids are filled. Where it sinks, ground becomes empty, or the liquid
-/// that stands on it. Heights are cut to those for which the box has room. Cost: O(runs + voxels
-/// between the heights).
+/// surface_heights() gives them. The upper kSkinVoxels voxels of ground move with the surface, and
+/// so does a plant of one voxel on it. Where the ground rises, the material below the skin fills
+/// the gap; only empty voxels and liquids are filled. Where it sinks, ground becomes empty, or the
+/// liquid that stands on it. Heights are cut to those for which the box has room. Cost: O(runs +
+/// voxels between the heights).
 void move_surface(const GroundColumns& columns, std::size_t column, std::int32_t from,
                   std::int32_t to, const GroundMaterials& materials, ColumnChanges& out);
 

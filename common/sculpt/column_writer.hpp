@@ -36,4 +36,22 @@ class ColumnWriter {
   ColumnChanges& out_;
 };
 
+/// The voxel on the ground of a column.
+struct Standing {
+  Material above = kEmpty;
+  bool is_plant = false;   // it is one voxel high, and neither ground nor liquid
+  Material rest = kEmpty;  // fills what becomes free below it: a liquid, or nothing
+};
+
+/// Returns what stands on a surface. Requires that the box has two voxels above it.
+inline Standing standing_on(const ColumnWriter& column, std::int32_t surface,
+                            const GroundMaterials& materials) {
+  Standing out;
+  out.above = column.old(surface + 1);
+  out.is_plant = !materials.is_open(out.above) && !materials.is_ground(out.above) &&
+                 materials.is_open(column.old(surface + 2));
+  if (materials.is_liquid(out.above)) out.rest = out.above;
+  return out;
+}
+
 }  // namespace runstone

@@ -38,7 +38,7 @@ void append_line(StackedChunk& from, std::uint32_t line_start, std::int32_t base
 }  // namespace
 
 Result<GroundColumns> GroundColumns::read(const VoxelBox& box, std::int32_t chunk_edge,
-                                          const ChunkSource& chunks) {
+                                          const ChunkLookup& chunks) {
   RUNSTONE_ASSERT(!box.empty() && chunk_edge > 0);
   GroundColumns out;
   out.box_ = box;
@@ -55,7 +55,7 @@ Result<GroundColumns> GroundColumns::read(const VoxelBox& box, std::int32_t chun
 }
 
 void GroundColumns::read_stack(std::int32_t chunk_x, std::int32_t chunk_z, std::int32_t edge,
-                               const ChunkSource& chunks) {
+                               const ChunkLookup& chunks) {
   const std::int32_t low = floor_div(box_.min.y, edge), high = floor_div(box_.max.y - 1, edge);
   std::vector<StackedChunk> stack;
   for (std::int32_t y = low; y <= high; ++y) {

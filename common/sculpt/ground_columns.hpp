@@ -3,15 +3,13 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "common/runs/run_chunk.hpp"
+#include "common/runs/chunk_lookup.hpp"
 
 namespace runstone {
 
@@ -28,14 +26,11 @@ struct ColumnRun {
 
 class GroundColumns {
  public:
-  /// Returns the runs of a chunk, or null if the chunk is not known.
-  using ChunkSource = std::function<std::shared_ptr<const RunChunk>(ChunkCoord)>;
-
   /// Reads the columns of a box. Fails with limit_exceeded if it has more than kGroundColumnsMax
   /// columns. Requires a box that is not empty and lies in the world, and a valid chunk edge. Cost:
   /// O(runs of the chunks + columns * chunks above each other).
   static Result<GroundColumns> read(const VoxelBox& box, std::int32_t chunk_edge,
-                                    const ChunkSource& chunks);
+                                    const ChunkLookup& chunks);
 
   const VoxelBox& box() const { return box_; }
   std::int32_t width() const { return box_.max.x - box_.min.x; }
@@ -57,7 +52,7 @@ class GroundColumns {
     std::size_t first = 0, count = 0;
   };
   void read_stack(std::int32_t chunk_x, std::int32_t chunk_z, std::int32_t edge,
-                  const ChunkSource& chunks);
+                  const ChunkLookup& chunks);
 
   VoxelBox box_;
   std::vector<ColumnRun> runs_;

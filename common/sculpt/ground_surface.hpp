@@ -26,6 +26,8 @@ class GroundMaterials {
   bool is_liquid(Material material) const {
     return material < parts_.size() && parts_[material] == Part::liquid;
   }
+  /// Returns true for air and liquids, which ground may replace.
+  bool is_open(Material material) const { return material == kEmpty || is_liquid(material); }
 
  private:
   enum class Part : std::uint8_t { other, ground, liquid };

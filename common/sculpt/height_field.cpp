@@ -54,7 +54,7 @@ HeightField moved_to(const HeightField& from, std::span<const std::int32_t> weig
 
 HeightField mean_heights(const HeightField& field, std::int32_t radius) {
   // Heights are taken relative to one of them, so that the sums of large fields fit 64 bits: a
-  // weight of the pyramid is below 2^28 for a radius of 64, and a difference of heights below 2^20.
+  // sum of the weights is below 2^29 for a radius of 64, and a difference of heights below 2^20.
   std::int64_t base = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.has_surface[i]) base = field.heights[i];

@@ -50,9 +50,9 @@ HeightField moved_by(const HeightField& from, std::span<const std::int32_t> weig
 }
 static_assert(kFullWeight == kHeightUnit);
 
-/// Returns for each column the mean height of the columns with a surface around it, weighted by a
-/// pyramid of `radius` columns each way: two means over a square, one after the other. Cost:
-/// O(columns).
+/// Returns for each column the weighted mean height of the columns with a surface up to 2 *
+/// `radius` away along both axes: the mean over a square of `radius` columns each way, taken twice.
+/// Cost: O(columns).
 HeightField mean_heights(const HeightField& field, std::int32_t radius);
 
 /// Lets ground slide `times` times. In each step, a column that is more than a voxel higher than

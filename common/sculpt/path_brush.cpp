@@ -11,6 +11,8 @@
 namespace runstone {
 namespace {
 
+/// The voxels between two points of a curve, at most.
+constexpr double kCurveStep = 0.5;
 /// The room for slopes above and below the curve.
 constexpr std::int32_t kPathRoom = 64;
 
@@ -27,12 +29,20 @@ CurvePoint between(const CurvePoint& a, const CurvePoint& b, double from, double
   return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.z + part * (b.z - a.z)};
 }
 
+/// Appends a point, and before it points of the chord, so that none is farther than kCurveStep from
+/// the next one.
+void add_point(const CurvePoint& point, std::vector<CurvePoint>& out) {
+  const CurvePoint from = out.empty() ? point : out.back();
+  const auto parts = static_cast<int>(std::ceil(distance(from, point) / kCurveStep));
+  for (int i = 1; i < parts; ++i) out.push_back(between(from, point, 0, parts, i));
+  out.push_back(point);
+}
+
 /// Appends the curve from p[1] to p[2], without p[2].
 void add_piece(const std::array<CurvePoint, 4>& p, std::vector<CurvePoint>& out) {
   std::array<double, 4> t{};
   for (std::size_t i = 1; i < 4; ++i) t[i] = t[i - 1] + std::sqrt(distance(p[i - 1], p[i]));
-  // The length of the curve is below twice that of the chord, and points lie evenly in t.
-  const auto steps = static_cast<int>(std::ceil(4 * distance(p[1], p[2]))) + 1;
+  const auto steps = static_cast<int>(std::ceil(2 * distance(p[1], p[2]))) + 1;
   for (int i = 0; i < steps; ++i) {
     const double at = t[1] + (t[2] - t[1]) * i / steps;
     const CurvePoint a1 = between(p[0], p[1], t[0], t[1], at);
@@ -40,7 +50,7 @@ void add_piece(const std::array<CurvePoint, 4>& p, std::vector<CurvePoint>& out)
     const CurvePoint a3 = between(p[2], p[3], t[2], t[3], at);
     const CurvePoint b1 = between(a1, a2, t[0], t[2], at);
     const CurvePoint b2 = between(a2, a3, t[1], t[3], at);
-    out.push_back(between(b1, b2, t[1], t[2], at));
+    add_point(between(b1, b2, t[1], t[2], at), out);
   }
 }
 
@@ -58,7 +68,10 @@ std::vector<std::int32_t> heights_of_way(const GroundColumns& columns, const Pat
   std::vector<std::int32_t> out(columns.count(), kNoSurface);
   std::vector<double> nearest(columns.count(), std::numeric_limits<double>::max());
   const double reach = brush.width / 2.0;
-  for (const CurvePoint& point : curve) {
+  // The middle of an even number of columns lies between two of them.
+  const double shift = brush.width % 2 == 0 ? 0.5 : 0.0;
+  for (const CurvePoint& on_curve : curve) {
+    const CurvePoint point{on_curve.x + shift, on_curve.y, on_curve.z + shift};
     const std::int32_t low_x = std::max(box.min.x, floor_of(point.x - reach)),
                        high_x = std::min(box.max.x, floor_of(point.x + reach) + 1),
                        low_z = std::max(box.min.z, floor_of(point.z - reach)),
@@ -82,18 +95,33 @@ void add_even(const GroundColumns& columns, std::size_t column, std::int32_t sur
               std::int32_t way, const GroundMaterials& materials, Material material,
               ColumnChanges& out) {
   const VoxelBox& box = columns.box();
-  if (way <= box.min.y || way + kPathHeadroom >= box.max.y) return;
+  if (way <= box.min.y || std::max(way + kPathHeadroom, surface + 2) >= box.max.y) return;
   ColumnWriter writer(columns, column, out);
+  const Standing standing = standing_on(writer, surface, materials);
+  const auto is_plant = [&](std::int32_t y) { return standing.is_plant && y == surface + 1; };
   if (surface < way && way - surface <= kPathFillMax) {
     const Material fill = writer.old(surface);
     for (std::int32_t y = surface + 1; y < way; ++y) {
-      if (writer.old(y) == kEmpty || materials.is_liquid(writer.old(y))) writer.set(y, fill);
+      if (materials.is_open(writer.old(y)) || is_plant(y)) writer.set(y, fill);
     }
   }
   writer.set(way, material);
-  for (std::int32_t y = way + 1; y <= way + kPathHeadroom; ++y) {
-    if (materials.is_ground(writer.old(y))) writer.set(y, kEmpty);
+  const std::int32_t top = way + kPathHeadroom;
+  for (std::int32_t y = way + 1; y <= top; ++y) {
+    if (materials.is_ground(writer.old(y))) writer.set(y, standing.rest);
+    if (is_plant(y)) writer.set(y, kEmpty);
   }
+  if (surface == top && standing.is_plant) writer.set(surface + 1, kEmpty);
+}
+
+/// Appends the changes of a column whose upper voxel becomes the way.
+void add_on_ground(const GroundColumns& columns, std::size_t column, std::int32_t surface,
+                   const GroundMaterials& materials, Material material, ColumnChanges& out) {
+  if (surface + 2 >= columns.box().max.y) return;
+  ColumnWriter writer(columns, column, out);
+  const bool has_plant = standing_on(writer, surface, materials).is_plant;
+  writer.set(surface, material);
+  if (has_plant) writer.set(surface + 1, kEmpty);
 }
 
 }  // namespace
@@ -112,7 +140,7 @@ std::vector<CurvePoint> curve_through(std::span<const VoxelPos> places) {
         i + 2 < points.size() ? points[i + 2] : mirrored(points[i + 1], points[i]);
     add_piece({before, points[i], points[i + 1], after}, out);
   }
-  out.push_back(points.back());
+  add_point(points.back(), out);
   return out;
 }
 
@@ -137,7 +165,7 @@ ColumnChanges path_changes(const GroundColumns& columns, const GroundMaterials& 
   for (std::size_t i = 0; i < surface.size(); ++i) {
     if (way[i] == kNoSurface || surface[i] == kNoSurface) continue;
     if (brush.height == PathHeight::ground) {
-      set_layers(columns, i, surface[i], std::span(&brush.material, 1), materials, out);
+      add_on_ground(columns, i, surface[i], materials, brush.material, out);
     } else {
       add_even(columns, i, surface[i], way[i], materials, brush.material, out);
     }

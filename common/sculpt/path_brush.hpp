@@ -14,7 +14,8 @@ namespace runstone {
 
 enum class PathHeight : std::uint8_t {
   ground,  // the way lies on the ground as it is
-  even,  // its height follows the curve: low ground is filled, high ground cut, and deep ground bridged
+  // The height follows the curve: low ground is filled, high ground is cut, deep ground is bridged.
+  even,
 };
 
 /// The voxels that a way is wide, at most.

@@ -102,7 +102,7 @@ UprightSolid hollow_of(const Solid& solid, VoxelPos sides) {
   VoxelPos at{wall, wall, wall};
   VoxelPos inside{sides.x - 2 * wall, sides.y - 2 * wall, sides.z - 2 * wall};
   if (solid.fill == SolidFill::solid) return {solid.kind, at, {0, 0, 0}};
-  if (solid.fill == SolidFill::walls) {
+  if (solid.fill == SolidFill::walls && solid.kind != SolidKind::torus) {
     at.y = 0;
     inside.y = sides.y;
   } else if (solid.kind == SolidKind::dome) {
@@ -112,17 +112,18 @@ UprightSolid hollow_of(const Solid& solid, VoxelPos sides) {
   return {solid.kind, at, inside};
 }
 
-/// Removes the stretches `inside` from those of `row`. Both ascend.
-void subtract(const std::vector<Stretch>& inside, std::vector<Stretch>& row) {
+/// Removes the stretches `inside` from those of `row`. Both ascend. `left` is scratch.
+void subtract(const std::vector<Stretch>& inside, std::vector<Stretch>& row,
+              std::vector<Stretch>& left) {
   for (const Stretch& hole : inside) {
-    std::vector<Stretch> left;
+    left.clear();
     for (const Stretch& part : row) {
       if (part.low < std::min(part.high, hole.low))
         left.push_back({part.low, std::min(part.high, hole.low)});
       if (std::max(part.low, hole.high) < part.high)
         left.push_back({std::max(part.low, hole.high), part.high});
     }
-    row = std::move(left);
+    row.swap(left);
   }
 }
 
@@ -154,7 +155,7 @@ Result<BuildPtr> solid_build(const Solid& solid, VoxelPos sides, Material materi
   auto builder = BuildBuilder::of(exchanged(cuts, solid.axis));
   if (!builder) return failure(builder.error());
   const std::uint16_t number = *builder->number_of(material);
-  std::vector<Stretch> row, inside;
+  std::vector<Stretch> row, inside, left;
   for (std::uint32_t sz = 0; sz + 1 < cuts[2].size(); ++sz) {
     for (std::uint32_t sy = 0; sy + 1 < cuts[1].size(); ++sy) {
       // The rows of a line of sections are made once for all of them.
@@ -167,7 +168,7 @@ Result<BuildPtr> solid_build(const Solid& solid, VoxelPos sides, Material materi
           inside.clear();
           body.row(cuts[1][sy] + y, cuts[2][sz] + z, row);
           hollow.row(cuts[1][sy] + y, cuts[2][sz] + z, inside);
-          subtract(inside, row);
+          subtract(inside, row, left);
           for (std::size_t sx = 0; sx < sections.size(); ++sx) {
             const std::int32_t low = cuts[0][sx], high = cuts[0][sx + 1], side = high - low;
             for (const Stretch& part : row) {

@@ -23,7 +23,7 @@ inline constexpr int kSolidKindCount = 6;
 enum class SolidFill : std::uint8_t {
   solid,
   hollow,  // a shell; a dome is open below
-  walls,   // without lid and floor
+  walls,   // a shell without lid and floor; a torus is hollow
 };
 inline constexpr int kSolidFillCount = 3;
 
@@ -41,8 +41,8 @@ struct Solid {
 /// Returns the solid that fills a box of these sides. A voxel belongs to it if its centre does. The
 /// hollow inside is the same solid in a box that is `wall` smaller on each side. Fails with
 /// bad_value if no voxel belongs to it, and with limit_exceeded if a side is longer than
-/// kSolidSideMax or the build takes too much memory. Requires sides of at least 1. Cost: O(rows *
-/// sections along them).
+/// kSolidSideMax or the build takes too much memory. Requires sides and a wall of at least 1. Cost:
+/// O(rows * sections along them).
 Result<BuildPtr> solid_build(const Solid& solid, VoxelPos sides, Material material);
 
 }  // namespace runstone

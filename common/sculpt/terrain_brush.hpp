@@ -1,5 +1,6 @@
 // TerrainBrush: a brush that shapes ground along a stroke. It reads columns of runs and returns the
-// voxels that change, so server, undo and replay know nothing of brushes: a stroke is a paste.
+// voxels that change. A stroke becomes a paste, so the server, undo and replay need no code for
+// brushes.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,9 +15,11 @@
 namespace runstone {
 
 enum class BrushMode : std::uint8_t {
-  raise,       // the surface rises by `strength`, or sinks if `lowers`
-  flatten,     // the surface moves to the height of the first place
-  smooth,      // the surface moves to the mean height of the columns up to `strength` away
+  raise,    // the surface rises by `strength`, or sinks if `lowers`
+  flatten,  // the surface moves to the height of the first place
+  // The surface moves to the mean height of the columns up to 2 * `strength` away, of which near
+  // ones count more.
+  smooth,
   erode,       // ground slides down slopes that are steeper than 45 degrees, `strength` times
   noise,       // hills of up to `strength` voxels
   naturalise,  // each of the upper layers becomes the material that most columns have there
@@ -51,8 +54,8 @@ struct TerrainBrush {
 /// for slopes. It is cut to the world. Requires at least one place and valid numbers.
 VoxelBox brush_box(const TerrainBrush& brush, std::span<const VoxelPos> places);
 
-/// Returns what the stroke changes. Columns without a surface stay as they are. Requires the columns
-/// of brush_box(). Cost: O(runs + columns * places), and for `erode` O(columns * strength).
+/// Returns what the stroke changes. Columns without a surface stay as they are. Requires the
+/// columns of brush_box(). Cost: O(runs + columns * places), and for `erode` O(columns * strength).
 ColumnChanges brush_changes(const GroundColumns& columns, const GroundMaterials& materials,
                             const TerrainBrush& brush, std::span<const VoxelPos> places);
 

@@ -11,7 +11,8 @@
 
 namespace runstone {
 
-/// The rules of this program. Raise it with each change of the rules. A golden test pins tiles of it. Never 0.
+/// The rules of this program. Raise it with each change of the rules. A golden test pins tiles of
+/// it. Never 0.
 inline constexpr std::uint32_t kTileRules = 2;
 
 /// Returns the number of the rules of a world. `shapes` is tile_shapes_number() of its materials: a

@@ -24,8 +24,9 @@
 //   L * E < 2^60.7 and |df * c| < 2^31.6: all fit i64.
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+
+#include "common/core/integer_root.hpp"
 
 namespace runstone {
 
@@ -35,16 +36,6 @@ struct CapsuleRow {
   constexpr bool empty() const { return last < first; }
   friend bool operator==(const CapsuleRow&, const CapsuleRow&) = default;
 };
-
-/// Returns the largest w with w * w <= v. Requires 0 <= v < 2^62. The processor's square root,
-/// which IEEE 754 defines to the last bit, is off by at most one in this range; the result is
-/// checked in integers.
-inline std::int64_t isqrt_wide(std::int64_t v) {
-  auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(v)));
-  root -= root * root > v ? 1 : 0;
-  root += (root + 1) * (root + 1) <= v ? 1 : 0;
-  return root;
-}
 
 namespace detail {
 
@@ -72,13 +63,13 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   const std::int64_t start_left = reach - n;
   if (across == 0) {  // the line runs along the segment
     if (start_left < 0) return {};
-    const std::int64_t half = isqrt_wide(start_left);
+    const std::int64_t half = integer_root(start_left);
     return {-half, df + half};
   }
   const std::int64_t length = df * df + across;
   const std::int64_t e = c * c + across * start_left;
   if (e < 0) return {};
-  const std::int64_t root = isqrt_wide(length * e);
+  const std::int64_t root = integer_root(length * e);
   CapsuleRow body{detail::ceil_of(df * c - root, across), detail::floor_of(df * c + root, across)};
   // No voxel is within reach of the infinite line, so none is within reach of the segment.
   if (body.empty()) return {};
@@ -91,12 +82,12 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   }
   CapsuleRow row = body.empty() ? CapsuleRow{} : body;
   if (start_left >= 0) {
-    const std::int64_t half = isqrt_wide(start_left);
+    const std::int64_t half = integer_root(start_left);
     detail::join(row, -half, half);
   }
   const std::int64_t end_left = start_left + 2 * c - across;
   if (end_left >= 0) {
-    const std::int64_t half = isqrt_wide(end_left);
+    const std::int64_t half = integer_root(end_left);
     detail::join(row, df - half, df + half);
   }
   return row;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "common/core/hash.hpp"
 
@@ -31,9 +32,11 @@ std::array<Tunnel, kTunnels> Caves::at(std::int32_t x, std::int32_t z, std::int3
         1 + 3 * (kTunnelWidth * kTunnelWidth - line * line) / (kTunnelWidth * kTunnelWidth);
     out[i] = {middle - half, middle + half + 1};
   }
+  if (out[0].from >= out[0].to || out[1].from >= out[1].to) return out;
+  if (out[1].from < out[0].from) std::swap(out[0], out[1]);
   // Two tunnels that meet are one.
-  if (out[0].from < out[0].to && out[1].from < out[1].to && out[1].from <= out[0].to) {
-    out[0] = {std::min(out[0].from, out[1].from), std::max(out[0].to, out[1].to)};
+  if (out[1].from <= out[0].to) {
+    out[0].to = std::max(out[0].to, out[1].to);
     out[1] = {};
   }
   return out;

@@ -5,13 +5,14 @@
 #include <cstdlib>
 
 #include "common/core/hash.hpp"
+#include "common/core/integer_root.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::size_t kSquaresKept = 2048;
 constexpr int kReachNodes = 2;  // nodes farther away have no effect on a square
-constexpr int kFlowSteps = 6;   // a river is as wide as the nodes that drain into it in 6 steps say
+constexpr int kFlowSteps = 6;   // the nodes that drain into a river in so many steps give its width
 constexpr int kFlowMargin = kReachNodes + 1 + kFlowSteps;  // ends of edges are one node farther
 constexpr int kNodeMargin = kFlowMargin + 1;
 constexpr int kNodeSide = 2 * kNodeMargin + 1;
@@ -86,8 +87,7 @@ std::int32_t Drainage::mountain_share(std::int32_t x, std::int32_t z, std::int32
 
 Drainage::Node Drainage::node(std::int32_t i, std::int32_t k) const {
   Node out;
-  out.random = mix64(key_ ^ static_cast<std::uint32_t>(i) ^
-                     (std::uint64_t{static_cast<std::uint32_t>(k)} << 32));
+  out.random = place_hash(key_, i, k);
   const auto quarter = [&](unsigned shift) {  // the middle half of the square
     return kDrainageWidth / 4 +
            static_cast<std::int32_t>((out.random >> shift) % (kDrainageWidth / 2));
@@ -131,7 +131,7 @@ DrainageSquare Drainage::make(std::int32_t x, std::int32_t z) const {
     }
   }
   // flow: the nodes whose water passes a node on its first kFlowSteps edges. The bound makes it a
-  // property of the node, whichever square asks.
+  // property of the node, equal for each square that is computed.
   std::array<int, kNodeSide * kNodeSide> flow, next;
   flow.fill(1);
   for (int step = 0; step < kFlowSteps; ++step) {
@@ -154,7 +154,7 @@ DrainageSquare Drainage::make(std::int32_t x, std::int32_t z) const {
   };
   const auto half_width = [&](int index) -> std::int32_t {
     const int water = flow[static_cast<std::size_t>(index)];
-    return std::min(14 * 16, 16 + 20 * integer_root(water * 4));
+    return std::min(14 * 16, 16 + 20 * static_cast<std::int32_t>(integer_root(water * 4)));
   };
   for (int k = -kReachNodes; k <= kReachNodes; ++k) {
     for (int i = -kReachNodes; i <= kReachNodes; ++i) {
@@ -170,7 +170,7 @@ DrainageSquare Drainage::make(std::int32_t x, std::int32_t z) const {
       const Node& b = at(to);
       const std::int64_t dx = (b.x - a.x) * 16, dz = (b.z - a.z) * 16;
       const std::int64_t squared = dx * dx + dz * dz;
-      const std::int32_t length = integer_root(squared);
+      const std::int64_t length = integer_root(squared);
       const auto share = [&](std::int32_t r) {
         return static_cast<std::int32_t>(std::int64_t{r} * kOne / length);
       };

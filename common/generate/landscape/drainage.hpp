@@ -1,6 +1,6 @@
 // Drainage: where water flows in a landscape. Each square of kDrainageWidth voxels has one node,
-// which drains into its lowest neighbour. So every node knows its way to the sea, or to a lake,
-// from the heights around it alone, and each part of the world can be made without the others.
+// which drains into its lowest neighbour. So the way of the water follows from the heights around
+// each node alone, and each part of the world can be made without the others.
 // Source: Gaillard et al., Dendry: A Procedural Model for Dendritic Patterns (I3D 2019).
 #pragma once
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::int32_t kDrainageWidth = 1 << kDrainageBits;
 inline constexpr std::int32_t kDrainageReach = 1280;
 
 /// The bottom of a valley from one node to the next, with or without a river, or a lake around a
-/// node. Lengths are sixteenths of a voxel, places relative to the square that asked.
+/// node. Lengths are sixteenths of a voxel. Places are relative to the square that holds the list.
 struct Watercourse {
   std::int32_t x, z, to_x, to_z;          // to_*: the end, relative to the start
   std::int64_t inverse;                   // 2^44 / length^2, or 0 for a lake

@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "common/core/coords.hpp"
 #include "common/core/hash.hpp"
+#include "common/core/integer_root.hpp"
 
 namespace runstone {
 namespace {
@@ -14,12 +16,7 @@ constexpr std::int32_t kShoreWidth = 40 * 16;  // within it columns measure thei
 constexpr std::int32_t kDry = std::numeric_limits<std::int32_t>::min() / 2;
 
 std::int32_t floor_to(std::int32_t value, std::int32_t step) {
-  return value - ((value % step) + step) % step;
-}
-
-std::uint64_t column_random(std::uint64_t key, std::int32_t x, std::int32_t z) {
-  return mix64(key ^ static_cast<std::uint32_t>(x) ^
-               (std::uint64_t{static_cast<std::uint32_t>(z)} << 32));
+  return floor_div(value, step) * step;
 }
 
 /// The nearest river or lake of a column.
@@ -173,8 +170,8 @@ class Ground {
         const std::int64_t most =
             std::int64_t{std::min(out.away, kShoreWidth * 2)} + point.half_width;
         if (most <= 0 || point.distance_squared >= most * most) continue;
-        out = {integer_root(point.distance_squared) - point.half_width, point.level >> 8,
-               point.half_width, course.is_lake};
+        out = {static_cast<std::int32_t>(integer_root(point.distance_squared)) - point.half_width,
+               point.level >> 8, point.half_width, course.is_lake};
       }
     }
 
@@ -283,7 +280,7 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
   const auto w = static_cast<std::int32_t>(width), d = static_cast<std::int32_t>(depth);
   const Ground ground(form, seed, x - kTreeReach, z - kTreeReach, width + 2 * kTreeReach,
                       depth + 2 * kTreeReach);
-  // One column more on each side, because a column of water asks its neighbours.
+  // One column more on each side, because a column of water depends on its neighbours.
   const std::int32_t side = w + 2;
   std::vector<GroundColumn> raw(static_cast<std::size_t>(side) * static_cast<std::size_t>(d + 2));
   const auto raw_at = [&](std::int32_t i, std::int32_t k) -> GroundColumn& {
@@ -331,7 +328,7 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
       LandColumn out{
           at.ground, is_wet ? at.water : at.ground, cover.top, cover.filling, cover.depth, kEmpty};
       if (!is_wet && !at.is_sill && choices.plants > 0) {
-        out.plant = plant_of(at, land_cover, column_random(plant_key, x + i, z + k), choices.plants,
+        out.plant = plant_of(at, land_cover, place_hash(plant_key, x + i, z + k), choices.plants,
                              materials);
         if (out.plant != kEmpty && out.plant != materials.reeds && cover.top != materials.grass &&
             cover.top != materials.forest_floor)
@@ -369,7 +366,7 @@ LandColumns::LandColumns(const LandForm& form, const LandMaterials& materials,
   const std::int32_t first_x = floor_to(x - kTreeReach, kTreeSpacing);
   for (std::int32_t tree_z = first_z; tree_z < z + d + kTreeReach; tree_z += kTreeSpacing) {
     for (std::int32_t tree_x = first_x; tree_x < x + w + kTreeReach; tree_x += kTreeSpacing) {
-      const std::uint64_t random = column_random(tree_key, tree_x, tree_z);
+      const std::uint64_t random = place_hash(tree_key, tree_x, tree_z);
       const std::int32_t at_x = tree_x + static_cast<std::int32_t>((random >> 32) % kTreeSpacing);
       const std::int32_t at_z = tree_z + static_cast<std::int32_t>((random >> 40) % kTreeSpacing);
       if (at_x < x - kTreeReach || at_z < z - kTreeReach || at_x >= x + w + kTreeReach ||

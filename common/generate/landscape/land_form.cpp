@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/core/hash.hpp"
+#include "common/core/integer_root.hpp"
 
 namespace runstone {
 namespace {
@@ -79,7 +80,8 @@ LandSample LandForm::at(std::int32_t x, std::int32_t z) const {
     levels += weight * point.level;
     const std::int64_t most = std::int64_t{std::max(nearest, out.shore)} + point.half_width;
     if (most <= 0 || point.distance_squared >= most * most) continue;
-    const std::int32_t away = integer_root(point.distance_squared) - point.half_width;
+    const std::int32_t away =
+        static_cast<std::int32_t>(integer_root(point.distance_squared)) - point.half_width;
     nearest = std::min(nearest, away);
     if (course.is_wet && away < out.shore) {
       out.shore = away;

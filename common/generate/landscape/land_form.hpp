@@ -18,9 +18,9 @@ inline constexpr std::int32_t kPatchWidth = 64;  // voxels; a patch keeps the pl
 /// Heights are 256ths of a voxel above the level of the sea, shares 0 .. kOne.
 struct LandSample {
   std::int32_t height;          // of the ground without the bed of a river
-  std::int32_t warp_x, warp_z;  // where the drainage sees the place, in sixteenths of a voxel
+  std::int32_t warp_x, warp_z;  // added to the place in the drainage, in sixteenths of a voxel
   std::int32_t shore;      // distance to the nearest river or lake, in sixteenths; below 0: inside
-  std::int32_t water;      // the level of that river or lake
+  std::int32_t water;      // the level of that river or lake, in voxels
   std::int32_t roughness;  // share: 0 in plains, kOne in a range
   std::int32_t forest;     // share of the ground below trees
   std::int32_t cold;       // voxels that the lines of trees and snow lie lower here

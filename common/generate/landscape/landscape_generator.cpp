@@ -146,11 +146,12 @@ RunChunk LandscapeGenerator::generate(VoxelPos origin, Extent extent) const {
     writer.until(column.ground - 1, column.filling);
     writer.until(column.ground, column.top);
     writer.until(column.water, materials_.water);
-    if (here.empty()) {
-      if (column.plant != kEmpty) writer.until(column.ground + 1, column.plant);
-    } else {
-      write_wood(here, column.water, heights, writer);
-    }
+    std::int32_t from = column.water;
+    const bool is_in_wood = std::any_of(here.begin(), here.end(), [&](const auto& part) {
+      return part.from <= column.ground && column.ground < part.to;
+    });
+    if (column.plant != kEmpty && !is_in_wood) writer.until(from = column.ground + 1, column.plant);
+    write_wood(here, from, heights, writer);
     writer.finish();
   }
   return out.finish();

@@ -1,5 +1,5 @@
-// The place where players arrive in a landscape: level and dry ground without trees, from where
-// they see far, and best of all water and mountains.
+// The place where players arrive in a landscape: level and dry ground without trees. Places with a
+// wide view of water and mountains are preferred.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -49,7 +49,8 @@ bool is_meadow(const LandForm& form, std::int32_t x, std::int32_t z) {
   return true;
 }
 
-/// Returns how much a player at the place would like the view.
+/// Returns the worth of the view from the place: points for ground, water and mountains in sight.
+/// The directions that an arriving player looks to count three times.
 std::int32_t view_of(const LandForm& form, std::int32_t x, std::int32_t z) {
   const std::int32_t eye = form.at(x, z).height + kEyes * 256;
   std::int32_t out = 0;

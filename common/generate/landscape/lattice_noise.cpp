@@ -1,7 +1,5 @@
 #include "common/generate/landscape/lattice_noise.hpp"
 
-#include <cmath>
-
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 
@@ -15,13 +13,6 @@ constexpr std::array<std::int32_t, 16> kGradientZ = {0, 139,  256,  334,  362,  
                                                      0, -139, -256, -334, -362, -334, -256, -139};
 
 }  // namespace
-
-std::int32_t integer_root(std::int64_t value) {
-  auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(value)));
-  while (root * root > value) --root;
-  while ((root + 1) * (root + 1) <= value) ++root;
-  return static_cast<std::int32_t>(root);
-}
 
 LatticeNoise::LatticeNoise(std::uint64_t key, unsigned log2_wavelength)
     : key_(mix64(key)), bits_(log2_wavelength) {

@@ -10,10 +10,6 @@ namespace runstone {
 /// One as a fixed-point number: noise, shares and factors of landscape have 12 fractional bits.
 inline constexpr std::int32_t kOne = 4096;
 
-/// Returns the floor of the square root. Requires value < 2^52. The double is only a first guess
-/// that integers correct, so the result does not depend on its rounding.
-std::int32_t integer_root(std::int64_t value);
-
 /// Returns 6t^5 - 15t^4 + 10t^3. Requires 0 <= t <= kOne.
 constexpr std::int32_t fade_of(std::int32_t t) {
   const std::int64_t u = t;

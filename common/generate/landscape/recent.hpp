@@ -29,9 +29,10 @@ class Recent {
       if (slot.value && slot.key == key) return slot.value;
     }
     auto made = std::make_shared<const Value>(make());
+    std::shared_ptr<const Value> old = made;  // freed after the mutex is released
     const std::lock_guard lock(mutex_);
     slot.key = key;
-    slot.value = made;
+    slot.value.swap(old);
     return made;
   }
 
@@ -49,9 +50,6 @@ struct SquareKey {
   std::int32_t x = 0, z = 0;
   friend bool operator==(const SquareKey&, const SquareKey&) = default;
 };
-constexpr std::uint64_t hash_of(const SquareKey& key) {
-  return mix64(static_cast<std::uint32_t>(key.x) |
-               (std::uint64_t{static_cast<std::uint32_t>(key.z)} << 32));
-}
+constexpr std::uint64_t hash_of(const SquareKey& key) { return place_hash(0, key.x, key.z); }
 
 }  // namespace runstone

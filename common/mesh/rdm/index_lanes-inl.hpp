@@ -99,9 +99,9 @@ struct VectorIndices {
       const auto bits = static_cast<std::uint64_t>(row >> i);
       std::uint8_t bytes[8];
       std::memcpy(bytes, &bits, sizeof bytes);
-      // BlendedStore() is slower here. Without AVX-512 it writes one byte at a time, because it must
-      // not write the bytes outside of its mask. With AVX-512 its masked store delays later loads of
-      // these bytes. This code may write the other bytes back unchanged.
+      // BlendedStore() is slower here. Without AVX-512 it writes one byte at a time, because it
+      // must not write the bytes outside of its mask. With AVX-512 its masked store delays later
+      // loads of these bytes. This code may write the other bytes back unchanged.
       const auto kept = hn::LoadU(d, to + i);
       hn::StoreU(hn::IfThenElse(hn::LoadMaskBits(d, bytes), v, kept), d, to + i);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/core/integer_root.hpp"
 #include "common/edits/descriptor/capsule_row.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "tests/support/edits/edit_oracle.hpp"
@@ -33,7 +34,7 @@ TEST_CASE("whole square roots are exact, also where doubles are not", "[edits][p
   SplitMix64 rng{5 + Catch::rngSeed()};
   const auto check = [](std::int64_t v) {
     if (v < 0 || v >= std::int64_t{1} << 62) return;
-    const std::int64_t root = isqrt_wide(v);
+    const std::int64_t root = integer_root(v);
     REQUIRE(root * root <= v);
     REQUIRE((root + 1) * (root + 1) > v);
   };

@@ -133,24 +133,41 @@ TEST_CASE_METHOD(PlayBench, "frames show the time of the world, or the time that
 }
 
 TEST_CASE_METHOD(PlayBench, "hotbar and tool come back that were kept for a world", "[client]") {
-  CHECK_FALSE(play.take_kit());
+  CHECK(play.take_kits().empty());
   play.hotbar().choose(2);
   REQUIRE(tools.choose("sphere"));
-  const auto kept = play.take_kit();
-  REQUIRE(kept);
-  CHECK(kept->world == session.welcome()->world_id);
-  CHECK(kept->kit.slot == 2);
-  CHECK(kept->kit.tool == "sphere");
-  CHECK_FALSE(play.take_kit());
+  const auto taken = play.take_kits();
+  REQUIRE(taken.size() == 1);
+  const KeptKit& kept = taken.front();
+  CHECK(kept.world == session.welcome()->world_id);
+  CHECK(kept.kit.slot == 2);
+  CHECK(kept.kit.tool == "sphere");
+  CHECK(play.take_kits().empty());
   PlayConfig next = config();
-  next.kit_of = [&](const WorldId&) { return std::optional(kept->kit); };
+  next.kit_of = [&](const WorldId&) { return std::optional(kept.kit); };
   ToolBox others;
   Play again{session, others, nullptr, log, next};
   again.begin_turn(true, {}, now);
   CHECK(again.hotbar().slot() == 2);
-  CHECK(again.player().held() == kept->kit.slots[2]);
+  CHECK(again.player().held() == kept.kit.slots[2]);
   CHECK(others.tool().name() == "sphere");
-  CHECK_FALSE(again.take_kit());
+  CHECK(again.take_kits().empty());
+}
+
+TEST_CASE_METHOD(PlayBench, "the kit of a world is kept when another world opens", "[client]") {
+  const WorldId first = session.welcome()->world_id;
+  play.hotbar().choose(2);
+  REQUIRE(tools.choose("sphere"));
+  session.disconnected();
+  server.world_id = {7, 7};
+  static_cast<void>(open());
+  turn(true);
+  REQUIRE(session.welcome()->world_id != first);
+  const auto taken = play.take_kits();
+  REQUIRE(taken.size() == 1);
+  CHECK(taken[0].world == first);
+  CHECK(taken[0].kit.slot == 2);
+  CHECK(taken[0].kit.tool == "sphere");
 }
 
 TEST_CASE_METHOD(PlayBench, "a click edits the ground, and a key of a tool changes the tool",

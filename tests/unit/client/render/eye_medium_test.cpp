@@ -26,7 +26,7 @@ TEST_CASE("an eye in a solid sees a dark fog of its colour within two voxels", "
     CHECK(inside.zenith == inside.nadir);
     CHECK(inside.glow == glm::vec3{0});
     CHECK(inside.stars == 0);
-    CHECK(inside.cloud_cover == 0);
+    CHECK_FALSE(inside.has_clouds);
     CHECK(inside.zenith.r > inside.zenith.b);
     CHECK(inside.zenith.r < 0.1F);
   }

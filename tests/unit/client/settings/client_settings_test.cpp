@@ -10,7 +10,7 @@ ClientSettings unusual_settings() {
   out.name = "Ana Łuk #1";
   out.key_file = "/home/ana/keys/ana key";
   out.quality = QualityChoice::low;
-  out.antialiasing = AntialiasingChoice::fxaa;
+  out.antialiasing = Antialiasing::fxaa;
   out.field_of_view = 91.5;
   out.view_radius = 11;
   out.far_levels = 3;
@@ -74,7 +74,7 @@ TEST_CASE("a setting that cannot be used is named with its line, and the others 
   CHECK_THAT(only_warning("key_file = \"ana.key\""), Catch::Contains("begins with /"));
   CHECK_THAT(only_warning("view.quality = \"superb\""), Catch::Contains("view.quality: must be"));
   CHECK_THAT(only_warning("view.antialiasing = 4"),
-             Catch::Contains(R"(view.antialiasing: must be "automatic", "off", "fxaa" or "msaa")"));
+             Catch::Contains(R"(view.antialiasing: must be "auto", "off", "fxaa" or "msaa")"));
   CHECK(only_warning("view.field_of_view = 400") ==
         "client.toml:1: view.field_of_view: must be a number from 30 to 110");
   CHECK(only_warning("view.radius = 6.5") ==

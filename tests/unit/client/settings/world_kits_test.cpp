@@ -24,6 +24,24 @@ TEST_CASE("lines of worlds are kept on disk, those of the worlds that were playe
   CHECK(load_kit(file, "aa") == std::nullopt);
 }
 
+TEST_CASE("lines that cannot be written are written later, the newest of each world",
+          "[client_settings]") {
+  const TempFolder folder;
+  const std::string place = folder / "state", file = place + "/worlds.toml";
+  std::ofstream(place) << "not a folder";
+  UnsavedKits kits;
+  kits.add("aa", "sphere 1");
+  kits.add("bb", "voxel 2");
+  CHECK_FALSE(kits.save(file));
+  kits.add("aa", "box 2");
+  CHECK_FALSE(kits.save(file));
+  REQUIRE(std::filesystem::remove(place));
+  REQUIRE(kits.save(file));
+  CHECK(kits.empty());
+  CHECK(load_kit(file, "aa") == "box 2");
+  CHECK(load_kit(file, "bb") == "voxel 2");
+}
+
 TEST_CASE("a broken file of lines is kept aside", "[client_settings]") {
   const TempFolder folder;
   const std::string file = folder / "worlds.toml";

@@ -79,6 +79,28 @@ TEST_CASE_METHOD(TerrainBench, "scatter puts copies of the clipboard on the grou
   }
 }
 
+TEST_CASE_METHOD(TerrainBench, "typed places of a stroke lie within a step of each other",
+                 "[tools]") {
+  predict({{FillBox{{{10, 0, 10}, {11, 1, 11}}}, {}, 4}});
+  box.select(VoxelBox{{10, 0, 10}, {11, 1, 11}});
+  REQUIRE(box.copy(replica, true));
+  const std::string tool = GENERATE(as<std::string>{}, "terrain", "path", "scatter");
+  REQUIRE(box.choose(tool));
+  const auto refusal = [&](VoxelPos first) {
+    TypedPlaces typed;
+    typed.places = {first, kTop};
+    box.type_places(typed);
+    const auto made = box.apply_typed(replica, 2);
+    return made ? std::string() : made.error();
+  };
+  const std::string too_far = "two places are more than 1024 voxels apart";
+  // Points half a voxel apart would fill the memory.
+  CHECK(refusal({kTop.x + 100'000'000, kTop.y, kTop.z}) == too_far);
+  CHECK(refusal({kTop.x, kTop.y, kTop.z - 1'025}) == too_far);
+  CHECK(refusal({kTop.x, kTop.y, kTop.z - 1'024}) != too_far);
+  CHECK(refusal({kTop.x - 1, kTop.y, kTop.z - 1}).empty());
+}
+
 TEST_CASE_METHOD(TerrainBench, "the solid tool fills the box between two clicks", "[tools]") {
   REQUIRE(box.choose("solid"));
   REQUIRE(box.set_parameter("kind", 1));

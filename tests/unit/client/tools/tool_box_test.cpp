@@ -114,6 +114,34 @@ TEST_CASE_METHOD(FlatBench, "fill changes the connected surface of one material,
   CHECK(at({14, -1, 12}) == 1);
 }
 
+TEST_CASE_METHOD(FlatBench, "a costly tool is previewed when the aim rests", "[tools]") {
+  predict({{FillBox{{{-4, -3, -4}, {5, 0, 5}}}, {}, kEmpty}});
+  box.set_materials(default_material_table());
+  REQUIRE(box.choose("flood"));
+  REQUIRE(box.set_parameter("depth", 2));
+  const auto step = [&](VoxelPos voxel, unsigned calls) {
+    for (unsigned i = 0; i < calls; ++i)
+      static_cast<void>(box.step_preview(replica, aim_at(voxel, Direction::pos_y), 64));
+  };
+  step({0, -4, 0}, ToolBox::kRestCalls);
+  step({1, -4, 0}, ToolBox::kRestCalls);
+  CHECK(box.preview().edits().empty());
+  step({1, -4, 0}, 1);
+  REQUIRE(box.preview().edits().size() == 1);
+  CHECK_FALSE(box.ghosts().empty());
+  step({2, -4, 0}, 1);
+  CHECK(box.preview().edits().empty());
+  CHECK(box.ghosts().empty());
+  // A refusal stands until the ground changes.
+  step({0, -1, 20}, ToolBox::kRestCalls + 1);
+  CHECK(box.preview_refusal() == "the hollow reaches ground that is not loaded");
+  predict({{FillBox{{{-1, 0, 18}, {2, 2, 23}}}, {}, 1},
+           {FillBox{{{0, 0, 20}, {1, 2, 21}}}, {}, kEmpty}});
+  step({0, -1, 20}, 300 + ToolBox::kRestCalls);
+  CHECK(box.preview_refusal().empty());
+  CHECK(box.preview().placed_voxels() == 2);
+}
+
 TEST_CASE_METHOD(FlatBench, "flood fills a hollow up to a level, with all of it as one action",
                  "[tools]") {
   // A pit of 9 x 5 x 9 voxels over four chunks, with a pillar, and a pond of another material.

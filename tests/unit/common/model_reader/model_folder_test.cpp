@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/model_reader/folder_files.hpp"
+#include "common/model_reader/gltf_buffers.hpp"
 #include "common/model_reader/gltf_extensions.hpp"
 #include "common/model_reader/model_folder.hpp"
 #include "common/model_reader/scene_materials.hpp"
@@ -80,6 +81,16 @@ TEST_CASE("required extensions are found in the text of a .gltf", "[model_reader
         std::vector<std::string>{"A", "B"});
   CHECK(required_extensions(R"({"extensionsRequired":["A)").empty());
   CHECK(required_extensions(R"({"extensionsRequired")").empty());
+}
+
+TEST_CASE("base64 is decoded with and without padding", "[model_reader]") {
+  CHECK(base64_decoded("") == "");
+  CHECK(base64_decoded("/+8=") == "\xff\xef");
+  CHECK(base64_decoded("/+8") == "\xff\xef");
+  CHECK(base64_decoded("YWJj") == "abc");
+  CHECK(base64_decoded("YWJjZA==") == "abcd");
+  CHECK_FALSE(base64_decoded("YW Jj").has_value());
+  CHECK_FALSE(base64_decoded("=YWJj").has_value());
 }
 
 TEST_CASE("numbers of colours become bytes", "[model_reader]") {

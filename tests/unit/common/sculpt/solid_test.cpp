@@ -39,8 +39,8 @@ bool belongs(const Solid& solid, VoxelPos at, VoxelPos sides) {
   if (!lies_in(solid.kind, at, sides)) return false;
   if (solid.fill == SolidFill::solid) return true;
   const std::int32_t n = solid.wall;
-  const bool is_open_below = solid.fill == SolidFill::walls || solid.kind == SolidKind::dome;
-  const bool is_open_above = solid.fill == SolidFill::walls;
+  const bool is_open_above = solid.fill == SolidFill::walls && solid.kind != SolidKind::torus;
+  const bool is_open_below = is_open_above || solid.kind == SolidKind::dome;
   const std::int32_t below = is_open_below ? 0 : n, above = is_open_above ? 0 : n;
   return !lies_in(solid.kind, {at.x - n, at.y - below, at.z - n},
                   {sides.x - 2 * n, sides.y - below - above, sides.z - 2 * n});
@@ -75,6 +75,16 @@ TEST_CASE("solids equal the rule for each voxel", "[sculpt]") {
   CHECK(wrong == 0);
   CHECK((build ? (*build)->touched() : 0) == count);
   if (!build) CHECK(build.error().code == ErrorCode::bad_value);
+}
+
+TEST_CASE("a ring that is not solid has its inner and its outer wall", "[sculpt]") {
+  const auto fill = GENERATE(SolidFill::hollow, SolidFill::walls);
+  const auto ring = solid_build({SolidKind::torus, fill, 1, Axis::y}, {70, 20, 70}, 1);
+  REQUIRE(ring);
+  // The tube is 20 voxels wide. Along the middle it begins at x = 0 and ends at x = 19.
+  CHECK((*ring)->at({0, 10, 35}).has_value());
+  CHECK_FALSE((*ring)->at({10, 10, 35}).has_value());
+  CHECK((*ring)->at({19, 10, 35}).has_value());
 }
 
 TEST_CASE("a solid that is too long is refused", "[sculpt]") {

@@ -68,6 +68,44 @@ TEST_CASE("no side of water stands beside an empty voxel", "[generate][landscape
   CHECK(above_sea > 500);
 }
 
+TEST_CASE("plants grow below the crowns of trees, and no trunk is a plant",
+          "[generate][landscape]") {
+  const auto land = landscape_of(7, "trees = 200\nplants = 400");
+  LandscapeVoxels voxels(*land);
+  const Material leaves = named("leaves");
+  int below_crowns = 0;
+  for (std::int32_t x = -64; x < 64; ++x) {
+    for (std::int32_t z = -64; z < 64; ++z) {
+      const std::int32_t top = land->surface_y(x, z);
+      if (voxels.at({x, top - 1, z}) != leaves) continue;
+      for (std::int32_t y = top - 2; y > top - 16; --y) {
+        if (voxels.at({x, y, z}) == named("tall_grass") || voxels.at({x, y, z}) == named("fern")) {
+          ++below_crowns;
+          CHECK(voxels.at({x, y - 1, z}) != kEmpty);
+        }
+      }
+    }
+  }
+  CHECK(below_crowns > 20);
+}
+
+TEST_CASE("tunnels of a column ascend and do not touch", "[generate][landscape]") {
+  const LandForm form(3);
+  const auto materials = LandMaterials::find(landscape_material_table());
+  REQUIRE(materials.has_value());
+  int pairs = 0;
+  for (std::int32_t x = -1024; x < 1024; x += 64) {
+    const LandColumns land(form, *materials, {0, 0, true}, 3, x, 0, 64, 64);
+    const auto& hollows = land.hollows();
+    for (std::size_t i = 1; i < hollows.size(); ++i) {
+      if (hollows[i - 1].column != hollows[i].column) continue;
+      ++pairs;
+      CHECK(hollows[i - 1].tunnel.to < hollows[i].tunnel.from);
+    }
+  }
+  CHECK(pairs > 10);
+}
+
 TEST_CASE("chunks come out alike in any order and from any thread", "[generate][landscape]") {
   std::vector<ChunkCoord> keys;
   for (std::int32_t x = -3; x < 3; ++x) {

@@ -29,14 +29,6 @@ TEST_CASE("noise is smooth, bounded and the same in its cell", "[generate][lands
   }
 }
 
-TEST_CASE("the root of a number is the floor of its root", "[generate][landscape]") {
-  for (std::int64_t root = 0; root < 3000; ++root) {
-    CHECK(integer_root(root * root) == root);
-    CHECK(integer_root(root * root + 2 * root) == root);
-  }
-  CHECK(integer_root((std::int64_t{1} << 52) - 1) == (1 << 26) - 1);
-}
-
 TEST_CASE("a fade goes from zero to one", "[generate][landscape]") {
   CHECK(fade_of(0) == 0);
   CHECK(fade_of(kOne) == kOne);
