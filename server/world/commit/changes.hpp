@@ -43,10 +43,10 @@ class Changes {
   /// Orders the offers at once and in order, as far as the log has room: behind all queued edits
   /// except large ones that wait for room (LargeEditPace) and the edits behind those. Requires that
   /// they pass check_server_edit(), that their client sequences ascend, that they have one author
-  /// and instance, and that their cause is not player. The edits of a large action are the exception:
-  /// they have the cause player, pass check_edit(), and large ones wait for room as those of
-  /// clients. Each offer costs its edit_price(), paid by the key of the author `payer` and the
-  /// address of the author's first session. An author without a session pays by the key alone.
+  /// and instance, and that their cause is not player. The edits of a large action are the
+  /// exception: they have the cause player, pass check_edit(), and large ones wait for room as
+  /// those of clients. Each offer costs its edit_price(), paid by the key of the author `payer` and
+  /// the address of the author's first session. An author without a session pays by the key alone.
   /// Nobody pays if `payer` is 0.
   ServerEditsResult order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
                                 const Clocks& now);
@@ -59,16 +59,16 @@ class Changes {
   /// Reads both clocks for the time of the log. Commits do that too, but the first commit may come
   /// later than the call that needs the time.
   void read_clocks(const Clocks& now) { order_.authority().log_clock().advance(now); }
-  /// Returns the record that makes the log's time that of the wall clock. Returns nullopt if none is
-  /// needed, because the time does not step back, and no restriction or invite in force has an end of
-  /// the time before: then accept_wall_clock() makes it so.
+  /// Returns the record that makes the log's time that of the wall clock. Returns nullopt if none
+  /// is needed, because the time does not step back, and no restriction or invite in force has an
+  /// end of the time before: then accept_wall_clock() makes it so.
   std::optional<CorrectTime> time_correction() const;
   /// Makes the log's time that of the wall clock. Requires that it is not ahead.
   void accept_wall_clock() { order_.authority().accept_wall_clock(); }
-  /// Makes the log's time that of a wall clock that has kept a jump ahead (LogClock::is_step_due()), by
-  /// a record if one is needed. `refusal` is why no CorrectTime may be ordered, if so: then, and if
-  /// the log takes no record, a later call tries again. Returns a line for the operator, if there is
-  /// news.
+  /// Makes the log's time that of a wall clock that has kept a jump ahead
+  /// (LogClock::is_step_due()), by a record if one is needed. `refusal` is why no CorrectTime may
+  /// be ordered, if so: then, and if the log takes no record, a later call tries again. Returns a
+  /// line for the operator, if there is news.
   std::optional<std::string> accept_kept_jump(const std::optional<std::string>& refusal,
                                               const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log, and as records that
@@ -83,10 +83,10 @@ class Changes {
   Result<Sequence, std::string> give_shapes(std::vector<GivenShape> rows, const Clocks& now);
 
   /// Orders textures for materials of the world by the console, one record for each: all or none.
-  /// Requires at least one, and pictures for which read_texture() succeeds. Returns the last record,
-  /// or why it was refused, as a sentence: a material that is not there, a side that has a picture
-  /// already, too many pictures (TextureTable::check()), and while the log takes no edits or lacks
-  /// room for all. Cost: O(bytes), to hash them.
+  /// Requires at least one, and pictures for which read_texture() succeeds. Returns the last
+  /// record, or why it was refused, as a sentence: a material that is not there, a side that has a
+  /// picture already, too many pictures (TextureTable::check()), and while the log takes no edits
+  /// or lacks room for all. Cost: O(bytes), to hash them.
   Result<Sequence, std::string> give_textures(std::span<const GivenTexturePtr> textures,
                                               const Clocks& now);
 
@@ -96,8 +96,8 @@ class Changes {
                                           const Clocks& now);
   /// Returns a content number for the file of a build, which was never used in the world.
   std::uint64_t next_build_content() { return order_.library().next_content(order_.epoch()); }
-  /// Orders the removal of a build by an author (0: the console). Returns the sequence of the record,
-  /// or why it was refused, as a sentence.
+  /// Orders the removal of a build by an author (0: the console). Returns the sequence of the
+  /// record, or why it was refused, as a sentence.
   Result<Sequence, std::string> remove_build(Sequence number, AuthorId author, const Clocks& now);
 
   /// Orders a record that sets the clock of the world, by an author (0: the console). Returns its
