@@ -39,9 +39,10 @@ void check_arrival(std::uint64_t seed) {
   CAPTURE(seed);
   const MaterialTable& materials = landscape_material_table();
   const auto land = landscape_of(seed);
-  REQUIRE(land->spawn().has_value());
+  const auto spawn = land->spawn();
+  REQUIRE(spawn.has_value());
   const VoxelPos at = spawn_point(*land, materials);
-  CHECK(at == *land->spawn());
+  CHECK(at == *spawn);
   CHECK(std::max(std::abs(at.x), std::abs(at.z)) <= 1536);
   LandscapeVoxels voxels(*land);
   CHECK(materials[voxels.at({at.x, at.y - 3, at.z})].visibility == Visibility::opaque);
@@ -235,7 +236,7 @@ TEST_CASE("a landscape works with each seed and at the ends of the world",
 }
 
 TEST_CASE("players arrive on level and dry ground without trees", "[generate][landscape][spawn]") {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) check_arrival(seed);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) check_arrival(seed);
 }
 
 TEST_CASE("a landscape has sea, snow and forests within 16 km of its origin",
@@ -244,6 +245,6 @@ TEST_CASE("a landscape has sea, snow and forests within 16 km of its origin",
 }
 
 TEST_CASE("landscapes of more seeds have variety and places to arrive at", "[.long]") {
-  for (std::uint64_t seed = 4; seed <= 12; ++seed) check_arrival(seed);
+  for (std::uint64_t seed = 3; seed <= 12; ++seed) check_arrival(seed);
   for (std::uint64_t seed = 3; seed <= 6; ++seed) check_variety(seed);
 }
