@@ -1,6 +1,6 @@
-// The silhouettes of plants in GLSL: what the patterns `blades`, `flower` and `foliage` leave of the
-// crossed planes of a plant. They are drawn, and cast shadows, if RUNSTONE_HOLES is defined. A silhouette has 16 x 16
-// cells, and differs from column to column of the world.
+// The silhouettes of plants in GLSL: what the patterns `blades`, `flower` and `foliage` leave of
+// the crossed planes of a plant. They are drawn, and cast shadows, if RUNSTONE_HOLES is defined. A
+// silhouette has 16 x 16 cells, and differs from column to column of the world.
 #pragma once
 
 namespace runstone {
