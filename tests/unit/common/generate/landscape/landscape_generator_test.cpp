@@ -114,9 +114,11 @@ TEST_CASE("plants grow below the crowns of trees, and no trunk is a plant",
   const auto land = landscape_of(7, "trees = 200\nplants = 400");
   LandscapeVoxels voxels(*land);
   const Material leaves = named("leaves");
+  const auto spawn = land->spawn();
+  REQUIRE(spawn.has_value());
   int below_crowns = 0;
-  for (std::int32_t x = -64; x < 64; ++x) {
-    for (std::int32_t z = -64; z < 64; ++z) {
+  for (std::int32_t x = spawn->x - 64; x < spawn->x + 64; ++x) {
+    for (std::int32_t z = spawn->z - 64; z < spawn->z + 64; ++z) {
       const std::int32_t top = land->surface_y(x, z);
       if (voxels.at({x, top - 1, z}) != leaves) continue;
       for (std::int32_t y = top - 2; y > top - 16; --y) {
