@@ -29,7 +29,7 @@ namespace runstone {
   "bool is_blade(ivec2 q, ivec2 at) {\n"                                              \
   "  int lean = (q.y * q.y) >> 6;\n"                                                  \
   "  int blade = q.x + (hash(ivec3(q.x >> 2, at)) > 0.0 ? lean : -lean);\n"           \
-  "  return float(q.y) < 9.5 + 13.0 * hash(ivec3(blade, at.yx));\n"                   \
+  "  return float(q.y) < 6.5 + 17.0 * hash(ivec3(blade, at.yx));\n"                   \
   "}\n"                                                                               \
   "bool is_foliage(ivec2 q, ivec2 at) {\n"                                            \
   "  vec2 d = (vec2(q) - 7.5) / 16.0;\n"                                              \
