@@ -175,6 +175,11 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
     parameter.value = words.word("VALUE");
     return parameter;
   }
+  if (verb == "expression") {
+    TextChange text{std::string(words.word("NAME")), {}};
+    text.text = words.rest();
+    return script::RunToolCommand{std::move(text)};
+  }
   if (verb == "aim") return aim_step(words);
   if (verb == "hold") return script::Hold{read_material(words)};
   if (verb == "use") return use_step(Part::click, words);
