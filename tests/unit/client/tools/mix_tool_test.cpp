@@ -64,7 +64,6 @@ TEST_CASE_METHOD(MixBench, "the tool mix works in the selection, and the left bu
   const auto cleared = click({0, -1, 0}, ToolButton::clear);
   REQUIRE(cleared);
   predict(*cleared);
-  // Each of these voxels lay on grass, also those above the ground, which were air.
   CHECK(at({0, -3, 0}) == kEmpty);
   CHECK(at({0, -1, 0}) == kEmpty);
   CHECK(at({0, -4, 0}) == 1);
@@ -113,8 +112,8 @@ TEST_CASE_METHOD(MixBench, "a box of many edits is one paste whose numbers are e
 TEST_CASE_METHOD(MixBench, "typed corners of the tool mix may lie in the air", "[tools]") {
   TypedPlaces typed;
   typed.places = {{0, 5, 0}, {3, 8, 3}};
-  carry_out(box, replica, 2, TextChange{"pattern", "glass"});
-  carry_out(box, replica, 2, PlacesChange{typed});
+  REQUIRE(carry_out(box, replica, 2, TextChange{"pattern", "glass"}));
+  REQUIRE(carry_out(box, replica, 2, PlacesChange{typed}));
   const auto made = carry_out(box, replica, 2, TypedApply{});
   REQUIRE(made);
   predict(*made);
