@@ -186,6 +186,11 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
     parameter.value = words.word("VALUE");
     return parameter;
   }
+  if (verb == "expression") {
+    TextChange text{std::string(words.word("NAME")), {}};
+    text.text = words.rest();
+    return script::RunToolCommand{std::move(text)};
+  }
   if (verb == "aim") return aim_step(words);
   if (verb == "hold") return script::Hold{read_material(words)};
   if (verb == "hotbar") return hotbar_step(words);

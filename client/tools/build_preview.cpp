@@ -231,12 +231,29 @@ void BuildPreview::collect() {
   is_changed_ = false;
 }
 
-std::uint64_t BuildPreview::voxels(bool is_removed) const {
+std::uint64_t BuildPreview::placed_voxels() const {
   std::uint64_t out = 0;
   for (const ShownBuild& shown : shown_) {
-    if (shown.is_removed == is_removed) out += shown.build->solid();
+    if (!shown.is_removed) out += shown.build->solid();
   }
   return out;
+}
+
+std::uint64_t BuildPreview::removed_voxels() const {
+  std::uint64_t out = 0;
+  for (const ShownBuild& shown : shown_) {
+    if (shown.is_removed) {
+      out += shown.build->solid();
+    } else if (shown.is_difference) {
+      out += shown.build->touched() - shown.build->solid();
+    }
+  }
+  return out;
+}
+
+bool BuildPreview::is_exact() const {
+  return std::all_of(shown_.begin(), shown_.end(),
+                     [](const ShownBuild& shown) { return shown.is_difference; });
 }
 
 std::int32_t BuildPreview::cell_voxels() const {

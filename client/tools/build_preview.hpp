@@ -25,6 +25,8 @@ struct ShownBuild {
   BuildPtr build;
   VoxelPos at;
   bool is_removed = false;
+  /// The touched cells are exactly the voxels that change.
+  bool is_difference = false;
   friend bool operator==(const ShownBuild&, const ShownBuild&) = default;
 };
 
@@ -52,9 +54,12 @@ class BuildPreview {
 
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   const std::vector<ShownBuild>& builds() const { return shown_; }
-  /// Returns the number of voxels that the builds set or clear, mask and present voxels ignored.
-  std::uint64_t placed_voxels() const { return voxels(false); }
-  std::uint64_t removed_voxels() const { return voxels(true); }
+  /// Returns the number of voxels that the builds set, and that they clear. They are upper bounds
+  /// unless is_exact(), because masks and present voxels are ignored.
+  std::uint64_t placed_voxels() const;
+  std::uint64_t removed_voxels() const;
+  /// Returns true if all builds are differences.
+  bool is_exact() const;
   /// Returns the width of the coarsest cells that are shown, in voxels, or 0 before there are any.
   std::int32_t cell_voxels() const;
 
@@ -88,7 +93,6 @@ class BuildPreview {
   void mesh_tile(Model& model);
   void coarsen(Model& model);
   void collect();
-  std::uint64_t voxels(bool is_removed) const;
 
   std::vector<ShownBuild> shown_;
   std::vector<Model> models_;  // of the builds of shown_, each once

@@ -6,6 +6,7 @@
 #include "client/tools/build_words.hpp"
 #include "client/tools/cell_list.hpp"
 #include "client/tools/flood_tool.hpp"
+#include "client/tools/mix_tool.hpp"
 #include "client/tools/placed_material.hpp"
 #include "client/tools/shown_voxels.hpp"
 #include "client/tools/solid_tool.hpp"
@@ -298,6 +299,7 @@ std::vector<std::unique_ptr<Tool>> make_tools() {
   out.push_back(std::make_unique<PasteTool>());
   out.push_back(make_flood_tool());
   out.push_back(make_solid_tool());
+  out.push_back(make_mix_tool());
   out.push_back(make_terrain_tool());
   out.push_back(make_path_tool());
   out.push_back(make_scatter_tool());

@@ -165,6 +165,7 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
       BuildPaste copy = paste;
       const VoxelPos sides = paste.build->sides();
       copy.build = *std::move(build);
+      copy.is_difference = false;
       if (x) copy.at.x = symmetry.centre2_x - (paste.at.x + sides.x - 1);
       if (z) copy.at.z = symmetry.centre2_z - (paste.at.z + sides.z - 1);
       if (!is_in_world(copy.at, sides)) return failure("a mirrored copy reaches outside the world");

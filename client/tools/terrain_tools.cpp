@@ -9,7 +9,9 @@
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
 #include "client/tools/turned_materials.hpp"
+#include "client/tools/typed_pattern.hpp"
 #include "common/builds/build_transforms.hpp"
+#include "common/patterns/column_patterns.hpp"
 #include "common/sculpt/path_brush.hpp"
 #include "common/sculpt/scatter.hpp"
 #include "common/sculpt/terrain_brush.hpp"
@@ -53,16 +55,6 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
   return *std::move(columns);
 }
 
-/// Returns the changes as an action. Fails with words for the player if there are none.
-ToolEdits action_of(const GroundColumns& columns, const ColumnChanges& changes, Mask mask,
-                    const ToolInput& input) {
-  const auto placed = build_of_changes(columns, changes);
-  if (!placed) return failure(words_of(placed.error()));
-  if (!placed->build) return failure("there is no ground to change here");
-  return paste_of_build({placed->build, placed->at, mask, EmptyCells::pasted},
-                        input.replica.edit_limits());
-}
-
 /// Brushes of the terrain tool with a larger radius are costly.
 constexpr std::int32_t kCheapRadiusMax = 16;
 
@@ -73,7 +65,40 @@ class GroundTool : public Tool {
   bool is_drawn() const final { return true; }
   bool chooses_solid() const final { return true; }
   std::string_view place_name(std::size_t) const final { return "place"; }
+
+ protected:
+  static std::vector<ToolText> ground_texts() {
+    return {{"where", "not is wood and below 60", ToolText::Kind::filter},
+            {"material", "70% gravel, 30% dirt, or what you hold", ToolText::Kind::mix}};
+  }
+  /// Returns the material that the brush sets: kMixedMaterial if a mix is typed, otherwise the held
+  /// one.
+  Material ground_material(const ToolInput& input) const {
+    return text("material").text.empty() ? input.aim.held : kMixedMaterial;
+  }
+  /// Returns the changes as an action: those that the typed filter lets through, with the materials of
+  /// the typed mix. Distances are measured from the first place. Fails with words for the player if
+  /// there are none.
+  ToolEdits action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
+                      std::uint64_t seed, const ToolInput& input) const;
 };
+
+ToolEdits GroundTool::action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
+                                std::uint64_t seed, const ToolInput& input) const {
+  const PatternFrame frame{seed, {2 * first.x, 2 * first.y, 2 * first.z}};
+  auto where = typed_pattern(text("where"), input.materials, frame);
+  if (!where) return failure(where.error());
+  auto material = typed_pattern(text("material"), input.materials, frame);
+  if (!material) return failure(material.error());
+  if (where->filter) changes = filtered(columns, changes, *where->filter);
+  if (material->mix) changes = mixed(columns, changes, *material->mix);
+  const auto placed = build_of_changes(columns, changes);
+  if (!placed) return failure(words_of(placed.error()));
+  if (!placed->build) return failure("there is no ground to change here");
+  const bool is_difference = mask().kind == MaskKind::everything;
+  return paste_of_build({placed->build, placed->at, mask(), EmptyCells::pasted, is_difference},
+                        input.replica.edit_limits());
+}
 
 class TerrainTool final : public GroundTool {
  public:
@@ -90,7 +115,8 @@ class TerrainTool final : public GroundTool {
              {"strength", "", 1, kBrushStrengthMax, 4, {}},
              {"falloff", "", 0, kBrushFalloffCount - 1, 0, {"smooth", "linear", "round", "none"}},
              {"seed", "", 0, 9999, 1, {}},
-             mask_parameter()}) {}
+             mask_parameter()},
+            ground_texts()) {}
   bool is_costly() const override { return value("radius") > kCheapRadiusMax; }
   ToolEdits plan(const ToolInput& input) const override;
 };
@@ -102,7 +128,7 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   brush.radius = value("radius");
   brush.strength = value("strength");
   brush.lowers = input.button == ToolButton::clear;
-  brush.material = input.aim.held;
+  brush.material = ground_material(input);
   brush.seed = static_cast<std::uint64_t>(value("seed"));
   if (brush.mode == BrushMode::overlay) {
     if (brush.lowers) return failure("overlay with the right button");
@@ -113,7 +139,8 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   const auto columns = read_shown(input.replica, brush_box(brush, *places), places->front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
-  return action_of(*columns, brush_changes(*columns, materials, brush, *places), mask(), input);
+  return action_of(*columns, brush_changes(*columns, materials, brush, *places), places->front(),
+                   brush.seed, input);
 }
 
 class PathTool final : public GroundTool {
@@ -122,7 +149,8 @@ class PathTool final : public GroundTool {
       : GroundTool("path", "a way along a curve, as long as the button is held",
                    {{"width", "voxels", 1, kPathWidthMax, 3, {}},
                     {"height", "", 0, 1, 0, {"ground", "even"}},
-                    mask_parameter()}) {}
+                    mask_parameter()},
+                   ground_texts()) {}
   ToolEdits plan(const ToolInput& input) const override;
 };
 
@@ -131,7 +159,7 @@ ToolEdits PathTool::plan(const ToolInput& input) const {
   PathBrush brush;
   brush.width = value("width");
   brush.height = static_cast<PathHeight>(value("height"));
-  brush.material = input.aim.held;
+  brush.material = ground_material(input);
   if (brush.material == kEmpty) return failure("hold a material for the way");
   const auto places = stroke_of(input);
   if (!places) return failure(places.error());
@@ -139,7 +167,8 @@ ToolEdits PathTool::plan(const ToolInput& input) const {
   const auto columns = read_shown(input.replica, path_box(brush, curve), places->front());
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
-  return action_of(*columns, path_changes(*columns, materials, brush, curve), mask(), input);
+  return action_of(*columns, path_changes(*columns, materials, brush, curve), places->front(), 1,
+                   input);
 }
 
 class ScatterTool final : public GroundTool {

@@ -1,10 +1,25 @@
 #include "client/tools/tool.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/patterns/pattern_parser.hpp"
 
 namespace runstone {
+namespace {
+
+/// Sets the chips of a text, or its error.
+template <class T>
+void take_parsed(const Result<T, PatternError>& parsed, ToolText& text) {
+  if (parsed) {
+    text.chips = chips_of(*parsed);
+  } else {
+    text.error = parsed.error().message();
+  }
+}
+
+}  // namespace
 
 Result<void, std::string> Tool::set(std::string_view parameter, std::int32_t value) {
   const auto it = std::find_if(parameters_.begin(), parameters_.end(),
@@ -26,6 +41,36 @@ std::int32_t Tool::value(std::string_view parameter) const {
                                [&](const ToolParameter& p) { return p.name == parameter; });
   RUNSTONE_ASSERT(it != parameters_.end());
   return it->value;
+}
+
+Result<void, std::string> Tool::set_text(std::string_view name, std::string text) {
+  const auto it =
+      std::find_if(texts_.begin(), texts_.end(), [&](const ToolText& t) { return t.name == name; });
+  if (it == texts_.end())
+    return failure("the tool " + std::string(name_) + " has no text " + std::string(name));
+  it->text = std::move(text);
+  it->error.clear();
+  it->chips.clear();
+  if (it->text.empty()) return {};
+  switch (it->kind) {
+    case ToolText::Kind::pattern:
+      take_parsed(parse_pattern(it->text), *it);
+      break;
+    case ToolText::Kind::mix:
+      take_parsed(parse_mix(it->text), *it);
+      break;
+    case ToolText::Kind::filter:
+      take_parsed(parse_filter(it->text), *it);
+      break;
+  }
+  return {};
+}
+
+const ToolText& Tool::text(std::string_view name) const {
+  const auto it =
+      std::find_if(texts_.begin(), texts_.end(), [&](const ToolText& t) { return t.name == name; });
+  RUNSTONE_ASSERT(it != texts_.end());
+  return *it;
 }
 
 ToolParameter Tool::mask_parameter() {

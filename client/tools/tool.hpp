@@ -30,6 +30,18 @@ struct ToolParameter {
   std::vector<std::string> choices;
 };
 
+/// A text of a tool that the player types, in the language of patterns (common/patterns). A window
+/// or a script shows and sets all texts in the same way.
+struct ToolText {
+  enum class Kind : std::uint8_t { pattern, mix, filter };
+  std::string name;  // one word, lower case
+  std::string hint;  // shown while the text is empty
+  Kind kind = Kind::pattern;
+  std::string text = {};                // empty: not given
+  std::string error = {};               // the mistake in the text, or empty
+  std::vector<std::string> chips = {};  // the parts of the text, as the tool understands them
+};
+
 /// The content of a paste, as it lies in the world: turns and mirrors make another build.
 struct ToolClipboard {
   BuildPtr build;  // null: nothing was copied
@@ -53,8 +65,9 @@ struct ToolInput {
 
 class Tool {
  public:
-  Tool(std::string_view name, std::string_view what, std::vector<ToolParameter> parameters)
-      : name_(name), what_(what), parameters_(std::move(parameters)) {}
+  Tool(std::string_view name, std::string_view what, std::vector<ToolParameter> parameters,
+       std::vector<ToolText> texts = {})
+      : name_(name), what_(what), parameters_(std::move(parameters)), texts_(std::move(texts)) {}
   virtual ~Tool() = default;
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
@@ -67,6 +80,11 @@ class Tool {
   /// the value is out of its range.
   Result<void, std::string> set(std::string_view parameter, std::int32_t value);
 
+  std::span<const ToolText> texts() const { return texts_; }
+  /// Sets a text by its name. A text with a mistake is kept with its error, and plan() fails. Fails
+  /// with words for the player if there is no such text.
+  Result<void, std::string> set_text(std::string_view name, std::string text);
+
   /// Returns the number of places that are chosen before a click completes an action.
   virtual std::size_t points_before() const { return 0; }
   /// Returns true if the places are collected while the button is held, and its release completes
@@ -75,6 +93,9 @@ class Tool {
   /// Returns true if both buttons choose the voxel that the player looks at. Otherwise
   /// ToolButton::place chooses the empty place in front of it.
   virtual bool chooses_solid() const { return false; }
+  /// Returns true if a place after the first one may be in the air although chooses_solid(), and if
+  /// all places that are typed may.
+  virtual bool reaches_air() const { return selects(); }
   /// Returns true if the chosen places become the selection, and no edit is made.
   virtual bool selects() const { return false; }
   /// Returns true if the first two places are opposite corners of the box that the tool works on.
@@ -91,6 +112,8 @@ class Tool {
  protected:
   /// Returns the value of a parameter. Requires a parameter of this tool.
   std::int32_t value(std::string_view parameter) const;
+  /// Returns a text. Requires a text of this tool.
+  const ToolText& text(std::string_view name) const;
   /// Returns the mask that the parameter of mask_parameter() chooses.
   Mask mask() const;
   static ToolParameter mask_parameter();
@@ -102,6 +125,7 @@ class Tool {
  private:
   const std::string_view name_, what_;
   std::vector<ToolParameter> parameters_;
+  std::vector<ToolText> texts_;
 };
 
 using ToolEdits = Result<ToolAction, std::string>;

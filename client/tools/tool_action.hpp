@@ -17,6 +17,8 @@ struct BuildPaste {
   VoxelPos at;  // of the corner of the build
   Mask mask;
   EmptyCells empty = EmptyCells::pasted;
+  /// The touched cells are exactly the voxels that differ from the shown ones.
+  bool is_difference = false;
   friend bool operator==(const BuildPaste&, const BuildPaste&) = default;
 
   VoxelBox box() const {

@@ -144,6 +144,11 @@ Result<void, std::string> ToolBox::set_parameter(std::string_view name, std::int
   return tools_[chosen_]->set(name, value);
 }
 
+Result<void, std::string> ToolBox::set_text(std::string_view name, std::string text) {
+  ++revision_;
+  return tools_[chosen_]->set_text(name, std::move(text));
+}
+
 void ToolBox::change_size(std::int32_t steps) {
   if (tool().parameters().empty()) return;
   const ToolParameter first = tool().parameters().front();
@@ -154,7 +159,7 @@ void ToolBox::change_size(std::int32_t steps) {
 
 Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton button) const {
   if (!aim.hit) {
-    const bool may_float = !points_.empty() && (tool().selects() || !tool().chooses_solid());
+    const bool may_float = !points_.empty() && (tool().reaches_air() || !tool().chooses_solid());
     if (!may_float) return failure("nothing is in reach");
     // The next place in the air lies as far away as the one before.
     return voxel_on_ray(aim, distance_to(aim, points_.back()));
@@ -247,7 +252,7 @@ ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) {
   aim.held = held;
   const auto material = replica.shown_at(target);
   if (material) aim.hit = RayHit{target, *material, typed_->face, 0};
-  if (tool().chooses_solid() && !tool().selects()) {
+  if (tool().chooses_solid() && !tool().reaches_air()) {
     if (!material) return failure("that place is not loaded");
     if (*material == kEmpty) return failure("there is only air at that place");
   }
@@ -601,7 +606,8 @@ ToolBox::ReplicaMark ToolBox::mark_of(const Replica& replica) {
 
 void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
   std::vector<ShownBuild> builds;
-  for (const BuildPaste& paste : made.pastes) builds.push_back({paste.build, paste.at});
+  for (const BuildPaste& paste : made.pastes)
+    builds.push_back({paste.build, paste.at, false, paste.is_difference});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {
     const auto* const fill = std::get_if<FillBox>(&edit.shape);

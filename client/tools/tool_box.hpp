@@ -32,6 +32,8 @@ class ToolBox {
   Result<void, std::string> choose(std::string_view name);
   /// Sets a parameter of the chosen tool. Fails as Tool::set() does.
   Result<void, std::string> set_parameter(std::string_view name, std::int32_t value);
+  /// Sets a text of the chosen tool. Fails as Tool::set_text() does.
+  Result<void, std::string> set_text(std::string_view name, std::string text);
   /// Changes the first parameter of the chosen tool by `steps`, within its range.
   void change_size(std::int32_t steps);
 

@@ -19,6 +19,9 @@ struct Carrier {
   ToolEdits operator()(const ParameterChange& c) const {
     return without_edits(box.set_parameter(c.name, c.value));
   }
+  ToolEdits operator()(const TextChange& c) const {
+    return without_edits(box.set_text(c.name, c.text));
+  }
   ToolEdits operator()(const PlacesChange& c) const {
     box.type_places(c.typed);
     return without_edits({});

@@ -18,6 +18,10 @@ struct ParameterChange {
   std::string name;
   std::int32_t value = 0;
 };
+/// Sets a text of the chosen tool.
+struct TextChange {
+  std::string name, text;
+};
 /// Sets the places of the chosen tool by their coordinates. With nullopt, clicks choose places
 /// again.
 struct PlacesChange {
@@ -52,7 +56,7 @@ struct PreviewChange {
 };
 
 using ToolCommand =
-    std::variant<ToolChoice, ParameterChange, PlacesChange, TypedApply, SelectionChange,
+    std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply, SelectionChange,
                  SelectionCommand, ClipboardTurn, SymmetryChange, PreviewChange>;
 
 /// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the

@@ -76,6 +76,36 @@ void build_parameters(const Tool& tool, std::vector<ToolCommand>& out) {
   }
 }
 
+/// Shows words one beside the other, like buttons that cannot be pressed, in lines that are as wide
+/// as the window.
+void build_chips(const std::vector<std::string>& chips) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  ImGui::BeginDisabled();
+  for (std::size_t i = 0; i < chips.size(); ++i) {
+    const float width = ImGui::CalcTextSize(chips[i].c_str()).x + 2 * style.FramePadding.x;
+    if (i != 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::SmallButton(chips[i].c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndDisabled();
+}
+
+void build_texts(const Tool& tool, std::vector<ToolCommand>& out) {
+  for (const ToolText& text : tool.texts()) {
+    std::string typed = text.text;
+    if (ImGui::InputTextWithHint(text.name.c_str(), text.hint.c_str(), &typed))
+      out.emplace_back(TextChange{text.name, typed});
+    if (!text.error.empty()) {
+      ImGui::PushTextWrapPos();
+      ImGui::TextColored(kToolWarning, "%s", text.error.c_str());
+      ImGui::PopTextWrapPos();
+    }
+    build_chips(text.chips);
+  }
+}
+
 void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
   const ToolBox& box = *state.tools;
   const EditPreview& preview = box.preview();
@@ -95,9 +125,10 @@ void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
   } else {
     const std::uint64_t set = preview.placed_voxels() + builds.placed_voxels();
     const std::uint64_t removed = preview.removed_voxels() + builds.removed_voxels();
-    // The builds are not compared with the world, so their numbers are upper bounds.
+    // Builds are not compared with the world: unless they are differences, their numbers are upper
+    // bounds.
     ImGui::TextUnformatted(fmt::format("sets {}{} and removes {} voxels",
-                                       builds.builds().empty() ? "" : "up to ", set, removed)
+                                       builds.is_exact() ? "" : "up to ", set, removed)
                                .c_str());
   }
   if (builds.cell_voxels() > 1)
@@ -149,6 +180,7 @@ void ToolWindow::build(const HudState& state, double scale, std::vector<ToolComm
   build_tools(*state.tools, out);
   ImGui::Separator();
   build_parameters(state.tools->tool(), out);
+  build_texts(state.tools->tool(), out);
   build_next_click(state, out);
   build_places(state, out);
   build_symmetry(state, out);
@@ -210,7 +242,7 @@ void ToolWindow::build_places(const HudState& state, std::vector<ToolCommand>& o
     if (ImGui::Button("one less")) places_.pop_back();
     ImGui::EndDisabled();
   }
-  if (tool.chooses_solid() && !tool.selects()) choice("face", face_, kDirections);
+  if (tool.chooses_solid() && !tool.reaches_air()) choice("face", face_, kDirections);
   if (!tool.selects()) {
     int button = clears_ ? 1 : 0;
     ImGui::RadioButton("set", &button, 0);

@@ -1,4 +1,4 @@
-// ColumnWriter: the voxels of one column before a brush, and its changes. Internal to sculpt.
+// ColumnWriter: the voxels of one column before a brush, and its changes. For the code of brushes.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -77,6 +77,20 @@ TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bot
   CHECK(paste->at == VoxelPos{7, 4, 7});  // 2 by 3 voxels with the place in their middle
 }
 
+TEST_CASE_METHOD(ToolScript, "a script types the texts of a tool", "[bots]") {
+  run("tool mix\nexpression pattern air where below 3\nplaces 0 2 0 3 3 3\napply\n"
+      "expression pattern air, \napply\nexpression colour red");
+  REQUIRE(host.edits.size() == 1);
+  const auto* paste = std::get_if<runstone::Paste>(&host.edits[0].edit.shape);
+  REQUIRE(paste != nullptr);
+  CHECK(paste->at == VoxelPos{0, 2, 0});
+  CHECK(paste->clipboard->touched() == 16);
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:6: edit refused: pattern: column 5: found the end but "
+                                 "expected a material",
+                                 "s.txt:7: edit refused: the tool mix has no text colour"});
+}
+
 TEST_CASE_METHOD(ToolScript, "a script names the file of the clipboard", "[bots]") {
   run("clipboard load my castle.schem");
   REQUIRE(runner->failures().size() == 1);

@@ -115,6 +115,13 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
       const std::int32_t high = std::min(p.high, p.low + 6);
       REQUIRE(bench.box.set_parameter(p.name, rng.between(p.low, high)));
     }
+    for (const ToolText& text : tool.texts()) {
+      const bool is_given = text.kind == ToolText::Kind::pattern || rng.below(2) == 0;
+      const char* const typed = text.kind == ToolText::Kind::filter    ? "not noise 20%"
+                                : text.kind == ToolText::Kind::pattern ? "air where not noise 20%"
+                                                                       : "air";
+      REQUIRE(bench.box.set_text(text.name, is_given ? typed : ""));
+    }
     bench.box.set_symmetry(
         {static_cast<SymmetryKind>(rng.between(0, 4)), rng.between(-9, 9), rng.between(-9, 9)});
     REQUIRE(bench.box.rotate(rng.between(0, 3)));

@@ -1,0 +1,61 @@
+#include "client/tools/mix_tool.hpp"
+
+#include "client/tools/action_source.hpp"
+#include "client/tools/build_words.hpp"
+#include "client/tools/typed_pattern.hpp"
+#include "common/patterns/replaced.hpp"
+
+namespace runstone {
+namespace {
+
+class MixTool final : public Tool {
+ public:
+  MixTool()
+      : Tool("mix", "a box by a pattern, such as 70% stone, 30% moss",
+             {{"seed", "", 0, 9999, 1, {}}, {"region", "", 0, 1, 0, {"clicks", "selection"}}},
+             {{"pattern", "70% stone, 30% moss where is dirt and exposed",
+               ToolText::Kind::pattern}}) {}
+  std::size_t points_before() const override { return is_selected() ? 0 : 1; }
+  bool chooses_solid() const override { return true; }
+  bool reaches_air() const override { return true; }
+  std::string_view place_name(std::size_t) const override {
+    return is_selected() ? "any place" : "corner";
+  }
+  bool is_costly() const override { return true; }
+  ToolEdits plan(const ToolInput& input) const override;
+
+ private:
+  bool is_selected() const { return value("region") == 1; }
+};
+
+ToolEdits MixTool::plan(const ToolInput& input) const {
+  if (is_selected() && !input.selection) return failure("nothing is selected");
+  const VoxelBox box =
+      is_selected()
+          ? *input.selection
+          : box_between(input.points.empty() ? input.target : input.points.front(), input.target);
+  const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+  if (!is_in_world(box.min, sides)) return failure("the box reaches outside the world there");
+  const PatternFrame frame{static_cast<std::uint64_t>(value("seed")), middle2_of(box)};
+  auto typed = typed_pattern(text("pattern"), input.materials, frame);
+  if (!typed) return failure(typed.error());
+  if (!typed->mix) return failure("type a pattern first, such as 70% stone, 30% gravel");
+  BoundMix mix = input.button == ToolButton::clear ? BoundMix::of(kEmpty) : *std::move(typed->mix);
+  const auto placed =
+      replaced(box, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
+               [&](ChunkCoord at) { return input.replica.shown({0, at}); });
+  if (!placed) {
+    return failure(
+        std::string(placed.error().what) +
+        (placed.error().code == ErrorCode::limit_exceeded ? ": choose a smaller box" : ""));
+  }
+  if (!placed->build) return failure("the pattern changes no voxel there");
+  return paste_of_build({placed->build, placed->at, {}, EmptyCells::pasted, true},
+                        input.replica.edit_limits());
+}
+
+}  // namespace
+
+std::unique_ptr<Tool> make_mix_tool() { return std::make_unique<MixTool>(); }
+
+}  // namespace runstone
