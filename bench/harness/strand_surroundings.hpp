@@ -32,6 +32,7 @@ class StrandSurroundings : public WorldEnvironment {
   void log_append(std::vector<PlayerRow> /*players*/,
                   std::vector<EditRecord> /*records*/) override {}
   void log_names(std::vector<NameChange> /*changes*/) override {}
+  bool save_state(SavedState /*state*/) override { return true; }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> /*chunks*/,
                       Sequence /*checkpoint*/) override {}

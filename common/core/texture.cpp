@@ -1,21 +1,14 @@
 #include "common/core/texture.hpp"
 
-#include <algorithm>
+#include <bit>
+
+#include "common/core/png_head.hpp"
 
 namespace runstone {
 namespace {
 
-/// The signature of a PNG, and the length and name of its first chunk.
-constexpr std::array<std::uint8_t, 16> kHeadOfPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n',
-                                                     0,    0,   0,   13,  'I',  'H',  'D',  'R'};
-/// The head and the 13 bytes of the first chunk.
-constexpr std::size_t kHeadBytes = kHeadOfPng.size() + 13;
-
-std::uint32_t big_endian_at(ByteView bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | bytes[at + i];
-  return value;
-}
+/// The signature of a PNG, and its first chunk without the checksum.
+constexpr std::size_t kHeadBytes = 8 + 8 + 13;
 
 /// Returns true if the PNG has colours of this type with so many bits.
 bool has_known_colours(std::uint8_t bits, std::uint8_t type) {
@@ -44,17 +37,18 @@ Result<void> check_texture_uses(const std::vector<TextureUse>& uses) {
 Result<std::uint16_t> texture_edge(ByteView png) {
   if (png.size() > kTextureBytesMax)
     return fail(ErrorCode::limit_exceeded, "the picture is longer than 24,576 bytes");
-  if (png.size() < kHeadBytes || !std::ranges::equal(png.first(kHeadOfPng.size()), kHeadOfPng))
-    return fail(ErrorCode::bad_value, "the picture is no PNG");
-  const std::uint32_t width = big_endian_at(png, 16), height = big_endian_at(png, 20);
-  if (width != height || (width != 16 && width != 32 && width != 64))
+  const auto sides = png_sides(png);
+  if (!sides || png.size() < kHeadBytes) return fail(ErrorCode::bad_value, "the picture is no PNG");
+  const std::uint32_t edge = sides->width;
+  if (sides->height != edge || !std::has_single_bit(edge) || edge < kTextureEdgeMin ||
+      edge > kTextureEdgeMax)
     return fail(ErrorCode::bad_value, "the picture is not square with 16, 32 or 64 pixels a side");
   if (!has_known_colours(png[24], png[25]))
     return fail(ErrorCode::bad_value,
                 "the picture has colours of more than 8 bits or of no known type");
   if (png[26] != 0 || png[27] != 0 || png[28] > 1)
     return fail(ErrorCode::bad_value, "the picture is packed in no known way");
-  return static_cast<std::uint16_t>(width);
+  return static_cast<std::uint16_t>(edge);
 }
 
 }  // namespace runstone

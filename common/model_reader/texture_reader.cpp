@@ -1,13 +1,13 @@
 #include "common/model_reader/texture_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <climits>
 #include <memory>
 #include <new>
 #include <string_view>
 #include <utility>
 
+#include "common/core/png_head.hpp"
 #include "common/model_reader/folder_files.hpp"
 
 #if defined(__GNUC__)
@@ -43,18 +43,6 @@ void apply(TextureReader::Alpha alpha, std::vector<std::uint8_t>& texels) {
     const bool is_opaque = alpha.rule == AlphaRule::opaque || texels[i] >= alpha.cutoff;
     texels[i] = is_opaque ? 255 : 0;
   }
-}
-
-/// Sets the sides that the head of a PNG names, which stb does not tell if they are too large.
-void read_png_sides(ByteView bytes, int& width, int& height) {
-  constexpr std::array<std::uint8_t, 8> kMark = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  if (bytes.size() < 24 || !std::equal(kMark.begin(), kMark.end(), bytes.begin())) return;
-  const auto side = [&bytes](std::size_t at) {
-    // Larger sides are no PNG.
-    return (bytes[at] & 0x7f) << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3];
-  };
-  width = side(16);
-  height = side(20);
 }
 
 }  // namespace
@@ -108,7 +96,11 @@ Result<std::optional<std::uint32_t>, std::string> TextureReader::decode(const st
   int width = 0, height = 0, channels = 0;
   if (bytes.size() > INT_MAX) return unreadable("too long");
   const auto size = static_cast<int>(bytes.size());
-  read_png_sides(bytes, width, height);
+  // stb does not tell sides that are too large.
+  if (const auto sides = png_sides(bytes)) {
+    width = static_cast<int>(std::min<std::uint32_t>(sides->width, INT_MAX));
+    height = static_cast<int>(std::min<std::uint32_t>(sides->height, INT_MAX));
+  }
   const bool is_known = stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) != 0;
   if (width > static_cast<int>(kModelTextureSideMax) ||
       height > static_cast<int>(kModelTextureSideMax)) {

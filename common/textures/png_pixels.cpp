@@ -1,7 +1,6 @@
 #include "common/textures/png_pixels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <climits>
 #include <cstdlib>
 #include <memory>
@@ -11,9 +10,6 @@
 namespace runstone {
 namespace {
 
-/// The signature of a PNG, and the length and name of its first chunk.
-constexpr std::array<std::uint8_t, 16> kPngBegin = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n',
-                                                    0,    0,   0,   13,  'I',  'H',  'D',  'R'};
 constexpr std::uint32_t kPngPixelsMax = 1U << 24;
 
 /// The largest block of memory that the decoder gets. It doubles the block of unpacked bytes until
@@ -52,20 +48,6 @@ void* bounded_realloc(void* block, std::size_t bytes) {
 #endif
 
 namespace runstone {
-
-std::optional<PngSides> png_sides(ByteView png) {
-  if (png.size() < kPngBegin.size() + 8 ||
-      !std::equal(kPngBegin.begin(), kPngBegin.end(), png.begin()))
-    return std::nullopt;
-  const auto side = [png](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | png[at + i];
-    return value;
-  };
-  const PngSides sides{side(16), side(20)};
-  if (sides.width == 0 || sides.height == 0) return std::nullopt;
-  return sides;
-}
 
 Result<PngPixels> read_png(ByteView png, std::uint32_t pixels_max) {
   RUNSTONE_ASSERT(pixels_max <= kPngPixelsMax);

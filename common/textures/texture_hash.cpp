@@ -14,8 +14,10 @@ TextureHash texture_hash(ByteView png) {
   return hash;
 }
 
-TextureEntry texture_entry(ByteView png, std::vector<TextureUse> uses) {
-  return {texture_hash(png), static_cast<std::uint32_t>(png.size()), std::move(uses)};
+TextureEntry texture_entry(ByteView png, std::vector<TextureUse> uses,
+                           const std::optional<TextureHash>& hash) {
+  return {hash ? *hash : texture_hash(png), static_cast<std::uint32_t>(png.size()),
+          std::move(uses)};
 }
 
 }  // namespace runstone

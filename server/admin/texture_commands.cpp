@@ -53,7 +53,12 @@ void preview_textures_of(const CommandCall& call, const std::string& place) {
   use_textures_of(call, place, TexturesUse::shown);
 }
 
-constexpr std::array<CommandRow, 2> kTextureRows = {{
+constexpr std::array<CommandRow, 4> kTextureRows = {{
+    // The first two rows refuse a line without a folder. Without them "textures" would be a part of
+    // the name of a material, and "preview" a folder.
+    {"materials textures", kLocal, "", parsed_by<parse_picture_folder, give_textures_of>()},
+    {"materials textures preview", kLocal, "",
+     parsed_by<parse_picture_folder, preview_textures_of>()},
     {"materials textures FILE", kLocal,
      "materials textures FILE   give materials the pictures of a folder: of PNGs that are named\n"
      "                          for them, of a game of Luanti, or of a resource pack of Minecraft\n"

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "server/runtime/logging.hpp"
 #include "server/textures/stored_textures.hpp"
 
 namespace runstone {
@@ -54,6 +55,19 @@ StoreResult<void> write_rest(Store& store, const LogPart& part, Sequence end) {
   return store.append_history(players, records);
 }
 
+/// Returns a part of the state that is kept besides the log. If it is damaged, logs a warning and
+/// returns an empty one, because no edit depends on it.
+template <typename Part>
+StoreResult<Part> part_or_none(StoreResult<Part> part, const char* lost) {
+  if (part || part.error().kind != StoreError::Kind::corrupt) return part;
+  logger("store").warn("{}: {}", part.error().message(), lost);
+  return Part{};
+}
+
+StoreResult<std::vector<LastPlace>> places_or_none(WorldReader& store) {
+  return part_or_none(store.saved_places(), "the places of the players are lost");
+}
+
 }  // namespace
 
 Result<WorldStart, std::string> read_world_start(WorldReader& store) {
@@ -98,9 +112,12 @@ Result<WorldStart, std::string> read_world_start(WorldReader& store) {
   auto textures = read_stored_textures(store);
   if (!textures) return failure(textures.error());
   start.textures = std::move(textures->given);
-  auto saved = store.saved_state();
-  if (!saved) return failure(saved.error().message());
-  start.saved = *std::move(saved);
+  auto places = places_or_none(store);
+  if (!places) return failure(places.error().message());
+  start.saved.places = *std::move(places);
+  const auto clock = part_or_none(store.saved_clock(), "the time of the world is lost");
+  if (!clock) return failure(clock.error().message());
+  start.saved.clock = *clock;
   if (const auto counted = store.check_counts(); !counted)
     return failure(counted.error().message());
   return start;
@@ -139,9 +156,9 @@ Result<Takeover, std::string> prepare_takeover(Store& store, const std::vector<L
   auto read = read_missed_log(store, std::max<Sequence>(1, last.seq), SIZE_MAX);
   if (!read) return failure(read.error());
   out.read = *std::move(read);
-  auto saved = store.saved_state();
-  if (!saved) return failure(saved.error().message());
-  out.places = std::move(saved->places);
+  auto places = places_or_none(store);
+  if (!places) return failure(places.error().message());
+  out.places = *std::move(places);
   return out;
 }
 

@@ -125,8 +125,8 @@ void ServerEnvironment::log_names(std::vector<NameChange> changes) {
   log_->writer().change_names(std::move(changes));
 }
 
-void ServerEnvironment::save_state(SavedState state) {
-  if (log_ != nullptr) log_->writer().save_state(std::move(state));
+bool ServerEnvironment::save_state(SavedState state) {
+  return log_ != nullptr && log_->writer().save_state(std::move(state));
 }
 
 void ServerEnvironment::log_chat(const ChatEntry& entry) {

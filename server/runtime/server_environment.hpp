@@ -82,7 +82,7 @@ class ServerEnvironment final : public WorldEnvironment {
   std::size_t log_queued_bytes() const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void log_names(std::vector<NameChange> changes) override;
-  void save_state(SavedState state) override;
+  bool save_state(SavedState state) override;
   void log_chat(const ChatEntry& entry) override;
   void load_chunk(const ChunkKey& key) override;
   void make_tile(TileRequest request) override;

@@ -10,7 +10,6 @@
 
 #include "common/core/ids.hpp"
 #include "common/runs/chunk.hpp"
-#include "common/tiles/tile_rules.hpp"
 #include "server/store/store_error.hpp"
 #include "server/store/world_info.hpp"
 
@@ -61,12 +60,10 @@ class ChunkReader : public virtual WorldInfo {
   /// Returns a stored tile, or nullopt if there is none, if the stored tiles were made by other
   /// rules, or if the world is of format 3 and open for reading only. Fails (corrupt) if the row is
   /// damaged; the tile can be made again.
-  virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key,
-                                                      std::uint32_t rules = kTileRules) = 0;
+  virtual StoreResult<std::optional<Chunk>> load_tile(const ChunkKey& key, std::uint32_t rules) = 0;
   /// Returns keys and versions of all stored tiles, ascending by key, or none if they were made by
   /// other rules.
-  virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys(
-      std::uint32_t rules = kTileRules) = 0;
+  virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> tile_keys(std::uint32_t rules) = 0;
   /// Returns a line for each row of tiles whose key is damaged: no tile has such a key, so no other
   /// function reads the row.
   virtual StoreResult<std::vector<std::string>> rows_of_no_tile() = 0;

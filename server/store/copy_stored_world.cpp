@@ -176,6 +176,9 @@ StoreResult<void> Copying::meta() {
   if (!source) return failed(source.error());
   auto target = MetaTable::open(to_);
   if (!target) return failed(target.error());
+  // read_all() leaves these out if they are damaged. A copy must not lack them without a word.
+  if (const auto places = source->places(); !places) return failed(places.error());
+  if (const auto clock = source->clock(); !clock) return failed(clock.error());
   const auto rows = source->read_all();
   if (!rows) return failed(rows.error());
   for (const auto& [key, value] : *rows) {

@@ -96,7 +96,7 @@ class LogReader : public virtual WorldInfo {
   virtual StoreResult<void> read_rights(const EachRecord& each) = 0;
   /// Calls `each` for all records that give textures, in order, until it returns false. They
   /// include those that a compaction moved out of the log.
-  virtual StoreResult<void> read_textures(const EachRecord& /*each*/) { return {}; }
+  virtual StoreResult<void> read_textures(const EachRecord& each) = 0;
   /// Returns the material table after edit `at`: meta().materials, and the rows that records of the
   /// log added. Fails (corrupt) if a record does not continue the table.
   virtual StoreResult<MaterialTable> materials(Sequence at) = 0;

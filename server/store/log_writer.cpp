@@ -61,24 +61,25 @@ void LogWriter::change_names(std::vector<NameChange> names) {
   queue(std::move(batch));
 }
 
-void LogWriter::save_state(SavedState state) {
-  if (!has_room(1)) return;
+bool LogWriter::save_state(SavedState state) {
+  if (!has_room(1)) return false;
   Batch batch;
   batch.room = 1;
   batch.state = std::move(state);
-  queue(std::move(batch));
+  return queue(std::move(batch));
 }
 
-void LogWriter::queue(Batch batch) {
+bool LogWriter::queue(Batch batch) {
   {
     const std::lock_guard guard(mutex_);
-    if (failed_ || stopping_) return;
+    if (failed_ || stopping_) return false;
     RUNSTONE_ASSERT(room_taken_ + batch.room <= limits_.queued_records_max);
     room_taken_ += batch.room;
     bytes_taken_ += batch.bytes;
     batches_.push_back(std::move(batch));
   }
   work_.notify_one();
+  return true;
 }
 
 bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint) {
@@ -247,23 +248,34 @@ StoreResult<void> LogWriter::write(Batch& group) {
     const std::size_t count = std::exchange(group.names, {}).size();
     if (callbacks_.on_names_written) callbacks_.on_names_written(count);
   }
-  if (group.state) {
-    if (auto saved = world_.save_state(*group.state); !saved) return saved;
-    group.state.reset();
-  }
   if (!group.players.empty() || !group.records.empty()) {
     if (auto appended = world_.append(group.players, group.records); !appended) return appended;
   }
-  const Batch written = std::exchange(group, {});
-  {
-    const std::lock_guard guard(mutex_);
-    room_taken_ -= written.room;
-    bytes_taken_ -= written.bytes;
-    counters_.commits += 1;
-    counters_.records += written.records.size();
+  // A state that is left takes room for one record.
+  std::optional<SavedState> state = std::exchange(group.state, std::nullopt);
+  Batch written = std::exchange(group, {});
+  if (state) {
+    group.room = 1;
+    group.state = std::move(state);
+    written.room -= group.room;
   }
-  if (!written.records.empty() && callbacks_.on_durable)
-    callbacks_.on_durable(written.records.back().version.seq);
+  if (written.room > 0) {
+    {
+      const std::lock_guard guard(mutex_);
+      room_taken_ -= written.room;
+      bytes_taken_ -= written.bytes;
+      counters_.commits += 1;
+      counters_.records += written.records.size();
+    }
+    if (!written.records.empty() && callbacks_.on_durable)
+      callbacks_.on_durable(written.records.back().version.seq);
+  }
+  if (group.state) {
+    if (auto saved = world_.save_state(*group.state); !saved) return saved;
+    group = {};
+    const std::lock_guard guard(mutex_);
+    room_taken_ -= 1;
+  }
   return {};
 }
 

@@ -110,9 +110,10 @@ class LogWriter {
   /// stopped drops them. They take room for one record, and are written before all records that are
   /// queued later.
   void change_names(std::vector<NameChange> names);
-  /// Queues what is kept besides the log. It takes room for one record, and of several in one
-  /// commit the newest is written, before the records. Does nothing without has_room().
-  void save_state(SavedState state);
+  /// Queues the state that is kept besides the log. It takes room for one record. Of several in one
+  /// commit the newest is written, after the records, because one of them may have set its clock.
+  /// Returns false, and takes nothing, without has_room() or if the writer has failed or stopped.
+  bool save_state(SavedState state);
   /// Queues a job. Returns false, and takes nothing, if the queue of jobs is full or the writer has
   /// failed or stopped.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
@@ -170,7 +171,8 @@ class LogWriter {
   /// Requires mutex_.
   bool is_room_in_queue(std::size_t records) const;
   bool queue(Job job);
-  void queue(Batch batch);
+  /// Returns false, and takes nothing, if the writer has failed or stopped.
+  bool queue(Batch batch);
   void run();
   /// Waits for work and takes it: a group unless one is left to write, and a job unless one is
   /// under way. Returns false if the writer stops and nothing is left. May return without work, so

@@ -56,14 +56,6 @@ StoreResult<std::vector<LastPlace>> MetaTable::places() {
   return places;
 }
 
-StoreResult<SavedState> MetaTable::saved_state() {
-  auto places = this->places();
-  if (!places) return failed(places.error());
-  const auto clock = this->clock();
-  if (!clock) return failed(clock.error());
-  return SavedState{*std::move(places), *clock};
-}
-
 StoreResult<void> MetaTable::put_clock(const SavedClock& clock) {
   Bytes bytes;
   ByteWriter writer(bytes);

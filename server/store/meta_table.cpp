@@ -174,6 +174,7 @@ StoreResult<MetaRows> MetaTable::read_all() {
     if (!*more) return rows;
     const std::string key(all_.text(0));
     auto value = read_row(all_, key);
+    if (!value && (key == kPlacesKey || key == kClockKey)) continue;
     if (!value) return failed(value.error());
     rows.insert_or_assign(key, *std::move(value));
   }

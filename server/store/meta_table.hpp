@@ -61,8 +61,8 @@ inline constexpr const char* kTexturesKey = "textures";
 /// The key of a row, always 1, that only a world has whose log has or had a gap.
 inline constexpr const char* kGapsKey = "gaps";
 
-/// The keys of the rows that saved_state() reads. Only a world whose clock was set has the first
-/// one.
+/// The keys of the rows that clock() and places() read. Only a world whose clock was set has the
+/// first one.
 inline constexpr const char* kClockKey = "world_clock";
 inline constexpr const char* kPlacesKey = "player_places";
 
@@ -70,7 +70,8 @@ class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
 
-  /// Returns all rows. Each checksum is verified.
+  /// Returns all rows. Each checksum is verified. The rows that clock() and places() read are left
+  /// out if they are damaged, because no edit depends on them: these two functions fail then.
   StoreResult<MetaRows> read_all();
   /// Writes a row in the caller's transaction, as do put_fold() and put_log_head().
   StoreResult<void> put(const std::string& key, const MetaValue& value);
@@ -94,9 +95,12 @@ class MetaTable {
   StoreResult<std::optional<Epoch>> open_epoch();
   StoreResult<void> put_open_epoch(std::optional<Epoch> epoch);
 
-  /// Returns the rows `world_clock` and `player_places`. Fails (corrupt) if one has an impossible
-  /// value.
-  StoreResult<SavedState> saved_state();
+  /// Returns row `world_clock`, or nullopt if there is none. Fails (corrupt) if it has an
+  /// impossible value.
+  StoreResult<std::optional<SavedClock>> clock();
+  /// Returns row `player_places`, or an empty list if there is none. Fails (corrupt) if it has an
+  /// impossible value.
+  StoreResult<std::vector<LastPlace>> places();
   StoreResult<void> put_clock(const SavedClock& clock);
   StoreResult<void> put_places(const std::vector<LastPlace>& places);
 
@@ -109,8 +113,6 @@ class MetaTable {
   StoreResult<MetaValue> read_row(sql::Statement& row, std::string_view key);
   StoreResult<std::optional<MetaValue>> find(const std::string& key);
   StoreResult<MetaValue> get(const std::string& key);
-  StoreResult<std::optional<SavedClock>> clock();
-  StoreResult<std::vector<LastPlace>> places();
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;
 
   std::string file_;

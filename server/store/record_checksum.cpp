@@ -5,8 +5,9 @@
 namespace runstone {
 
 std::uint64_t record_checksum(const EditRecord& record) {
-  const Bytes bytes = encode_record(record);
-  return XXH3_64bits(bytes.data(), bytes.size());
+  return record_checksum(ByteView(encode_record(record)));
 }
+
+std::uint64_t record_checksum(ByteView bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 }  // namespace runstone

@@ -111,20 +111,20 @@ StoreResult<void> SqlStore::add_claims() {
 StoreResult<void> SqlStore::convert_to_format_3() {
   if (auto made = add_tables_of_format_3(database()); !made) return made;
   if (auto added = add_claims(); !added) return added;
-  auto rights = RightsTable::open(database());
-  if (!rights) return failed(rights.error());
-  rights_ = *std::move(rights);
+  auto kept = KeptRecords::open(database());
+  if (!kept) return failed(kept.error());
+  kept_ = *std::move(kept);
   return meta_table_.put_fold(fold_key_of(kRights), {});
 }
 
 StoreResult<void> SqlStore::read_kept(Cause cause, const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
-    if (rights_) {
-      const auto compacted = rights_->records();
+    if (kept_) {
+      const auto compacted = kept_->records(cause);
       if (!compacted) return failed(compacted.error());
       if (auto sound = check_fold(kRights, compacted->fold); !sound) return sound;
       for (const EditRecord& record : compacted->rows) {
-        if (record.cause == cause && !each(record)) return {};
+        if (!each(record)) return {};
       }
     }
     LogQuery in_log;
@@ -141,7 +141,7 @@ StoreResult<void> SqlStore::keep_records(Cause cause, Sequence last) {
   in_log.last = last;
   StoreResult<void> kept;
   auto read = query_log(in_log, [&](const EditRecord& record) {
-    kept = rights_->add(record, *fold);
+    kept = kept_->add(record, *fold);
     return kept.has_value();
   });
   if (!read) return read;
@@ -216,12 +216,12 @@ StoreResult<void> SqlStore::accept_lost_rows(std::vector<std::string>& lost) {
     lost.push_back(sound.error().message());
     if (auto put = meta_table_.put_fold(fold_key_of(kClaims), claims->fold); !put) return put;
   }
-  const auto rights = rights_->records();
-  if (!rights) return failed(rights.error());
-  if (auto sound = check_fold(kRights, rights->fold); !sound) {
+  const auto kept = kept_->records();
+  if (!kept) return failed(kept.error());
+  if (auto sound = check_fold(kRights, kept->fold); !sound) {
     if (sound.error().may_pass()) return sound;
     lost.push_back(sound.error().message());
-    if (auto put = meta_table_.put_fold(fold_key_of(kRights), rights->fold); !put) return put;
+    if (auto put = meta_table_.put_fold(fold_key_of(kRights), kept->fold); !put) return put;
   }
   const auto found = player_table_.high_waters();
   if (!found) return failed(found.error());

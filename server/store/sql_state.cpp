@@ -6,20 +6,30 @@
 
 namespace runstone {
 
-StoreResult<SavedState> SqlStore::saved_state() {
-  return at_one_moment<SavedState>([&] { return meta_table_.saved_state(); });
+StoreResult<std::vector<LastPlace>> SqlStore::saved_places() {
+  return at_one_moment<std::vector<LastPlace>>([&] { return meta_table_.places(); });
+}
+
+StoreResult<std::optional<SavedClock>> SqlStore::saved_clock() {
+  return at_one_moment<std::optional<SavedClock>>([&] { return meta_table_.clock(); });
 }
 
 StoreResult<void> SqlStore::save_state(const SavedState& state) {
   return write([&]() -> StoreResult<void> {
-    const auto present = meta_table_.saved_state();
-    if (!present) return failed(present.error());
-    if (state.places != present->places) {
+    // No edit depends on these rows, so a damaged one does not end the log. Damaged places are
+    // replaced. A damaged clock stays until a record sets it.
+    const auto is_damaged = [](const auto& row) {
+      return !row && row.error().kind == StoreError::Kind::corrupt;
+    };
+    const auto places = meta_table_.places();
+    if (!places && !is_damaged(places)) return failed(places.error());
+    if (!places || state.places != *places) {
       if (auto put = meta_table_.put_places(state.places); !put) return put;
     }
-    const bool is_newest = state.clock && present->clock &&
-                           state.clock->record == present->clock->record &&
-                           state.clock != present->clock;
+    const auto clock = meta_table_.clock();
+    if (!clock && !is_damaged(clock)) return failed(clock.error());
+    const bool is_newest = state.clock && clock && *clock &&
+                           state.clock->record == (*clock)->record && state.clock != *clock;
     return is_newest ? meta_table_.put_clock(*state.clock) : StoreResult<void>();
   });
 }

@@ -21,7 +21,7 @@ SqlStore::SqlStore(std::unique_ptr<WorldBackend> backend, StoreAccess access, Ta
       player_table_(std::move(tables.players)),
       names_(std::move(tables.names)),
       claims_(std::move(tables.claims)),
-      rights_(std::move(tables.rights)),
+      kept_(std::move(tables.kept)),
       log_(std::move(tables.log)),
       segments_(std::move(tables.segments)),
       base_(std::move(tables.base)),

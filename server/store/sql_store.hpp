@@ -15,12 +15,12 @@
 #include "server/store/chunk_table.hpp"
 #include "server/store/claim_table.hpp"
 #include "server/store/durable_state.hpp"
+#include "server/store/kept_records.hpp"
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
-#include "server/store/rights_table.hpp"
 #include "server/store/segment_table.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/store.hpp"
@@ -88,7 +88,8 @@ class SqlStore final : public Store {
   StoreResult<std::vector<UsedName>> player_names() override;
   StoreResult<std::vector<NameClaim>> name_claims() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
-  StoreResult<SavedState> saved_state() override;
+  StoreResult<std::vector<LastPlace>> saved_places() override;
+  StoreResult<std::optional<SavedClock>> saved_clock() override;
   AuthorId author_max() const override { return state_.author_max; }
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;
@@ -137,7 +138,7 @@ class SqlStore final : public Store {
     PlayerTable players;
     NameTable names;
     std::optional<ClaimTable> claims;
-    std::optional<RightsTable> rights;
+    std::optional<KeptRecords> kept;
     LogTable log;
     SegmentTable segments;
     ChunkTable base, snapshots;
@@ -150,8 +151,8 @@ class SqlStore final : public Store {
   sql::Database& database() { return backend_->database(); }
   /// Converts a world of an older format, in one transaction.
   StoreResult<void> convert();
-  /// Returns the rules of tiles of the materials that are written.
-  StoreResult<std::uint32_t> present_tile_rules();
+  /// Returns the rules of tiles of the materials that are written. `rows`: of `meta`.
+  StoreResult<std::uint32_t> present_tile_rules(const MetaRows& rows);
   /// Deletes all tiles and records the present rules, in the caller's transaction.
   StoreResult<void> delete_tiles();
   /// Adds what format 3 has and format 2 lacks: the players own their names, and of several players
@@ -283,7 +284,7 @@ class SqlStore final : public Store {
   NameTable names_;
   // nullopt: a world of format 2 that is open for reading only
   std::optional<ClaimTable> claims_;
-  std::optional<RightsTable> rights_;
+  std::optional<KeptRecords> kept_;
   LogTable log_;
   SegmentTable segments_;
   // The row counts as they were written last; nullopt: they must be read. They are kept so that a

@@ -66,14 +66,14 @@ StoreResult<SqlStore::Tables> SqlStore::Tables::open(WorldBackend& backend) {
   const auto version = backend.format();
   if (!version) return failed(version.error());
   std::optional<ClaimTable> claims;
-  std::optional<RightsTable> rights;
+  std::optional<KeptRecords> kept;
   if (*version >= 3) {
     auto claims_opened = ClaimTable::open(database);
     if (!claims_opened) return failed(claims_opened.error());
     claims = *std::move(claims_opened);
-    auto rights_opened = RightsTable::open(database);
-    if (!rights_opened) return failed(rights_opened.error());
-    rights = *std::move(rights_opened);
+    auto kept_opened = KeptRecords::open(database);
+    if (!kept_opened) return failed(kept_opened.error());
+    kept = *std::move(kept_opened);
   }
   auto log = LogTable::open(database);
   if (!log) return failed(log.error());
@@ -92,7 +92,7 @@ StoreResult<SqlStore::Tables> SqlStore::Tables::open(WorldBackend& backend) {
     tiles = *std::move(tiles_opened);
   }
   return Tables{*std::move(meta),      *std::move(players), *std::move(names),
-                std::move(claims),     std::move(rights),   *std::move(log),
+                std::move(claims),     std::move(kept),     *std::move(log),
                 *std::move(segments),  *std::move(base),    *std::move(snapshots),
                 *std::move(keyframes), std::move(tiles)};
 }
@@ -153,7 +153,7 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   // A world that lacks edits stays as it is, until its losses are accepted. A reader does not see
   // tiles of other rules.
   if (access != StoreAccess::read_only && !store->loss_) {
-    const auto present = store->present_tile_rules();
+    const auto present = store->present_tile_rules(*rows);
     const auto rules = rows->find("tile_rules");
     const bool are_tiles_current =
         present && rules != rows->end() && rules->second == MetaValue{std::int64_t{*present}};
@@ -181,10 +181,8 @@ StoreResult<void> SqlStore::convert() {
   });
 }
 
-StoreResult<std::uint32_t> SqlStore::present_tile_rules() {
-  const auto rows = meta_table_.read_all();
-  if (!rows) return failed(rows.error());
-  if (!rows->contains(kShapesKey)) return kTileRules;
+StoreResult<std::uint32_t> SqlStore::present_tile_rules(const MetaRows& rows) {
+  if (!rows.contains(kShapesKey)) return kTileRules;
   const auto table = materials(kSequenceMax);
   if (!table) return failed(table.error());
   return tile_rules_of(tile_shapes_number(*table));
@@ -195,7 +193,8 @@ StoreResult<void> SqlStore::delete_tiles() {
   if (auto marked = raise_format(kWorldFormat); !marked) return marked;
   // Damage that keeps the materials from being read must not keep a repair from ending. 0 is the
   // number of no rules: the next opening tries again.
-  const auto rules = present_tile_rules();
+  const auto rows = meta_table_.read_all();
+  const auto rules = rows ? present_tile_rules(*rows) : failed(rows.error());
   return meta_table_.put("tile_rules", std::int64_t{rules ? *rules : 0});
 }
 

@@ -138,6 +138,8 @@ StoreResult<void> SqlStore::check_keyframes() {
 StoreResult<void> SqlStore::check() {
   if (auto sound = backend_->check(); !sound) return sound;
   if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
+  if (const auto places = saved_places(); !places) return failed(places.error());
+  if (const auto clock = saved_clock(); !clock) return failed(clock.error());
   if (const auto rows = players(); !rows) return failed(rows.error());
   if (const auto rows = names_.names(); !rows) return failed(rows.error());
   if (const auto rows = name_claims(); !rows) return failed(rows.error());

@@ -44,8 +44,11 @@ class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
   /// players are lost, so that no number is given to two players.
   virtual AuthorId author_max() const = 0;
 
-  /// Returns what is kept besides the log, as it was saved last. Fails (corrupt) if it is damaged.
-  virtual StoreResult<SavedState> saved_state() { return SavedState{}; }
+  /// Returns the places of players as they were saved last. Fails (corrupt) if they are damaged.
+  virtual StoreResult<std::vector<LastPlace>> saved_places() = 0;
+  /// Returns the clock as it was set or saved last, or nullopt if it was never set. Fails (corrupt)
+  /// if it is damaged.
+  virtual StoreResult<std::optional<SavedClock>> saved_clock() = 0;
 
   /// Returns the error if the world, when it was opened, lacked edits that had been durable, or if
   /// that cannot be known. Returns nullopt if the log is whole.

@@ -1,6 +1,6 @@
 // WorldSink: the writes of a running server: edits, names, snapshots, keyframes, tiles and files of
-// builds. Each
-// call is one transaction. It fails (locked) and writes nothing if another program owns the world.
+// builds. Each call is one transaction. It fails (locked) and writes nothing if another program
+// owns the world.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,6 @@
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
-#include "common/tiles/tile_rules.hpp"
 #include "server/store/keyframe.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
@@ -50,9 +49,9 @@ class WorldSink {
   /// Writes claims of names and removes released ones, in this order. All of it is durable on
   /// return. It may be repeated. Fails (bad_request) if another key owns a claimed name.
   virtual StoreResult<void> change_names(std::span<const NameChange> changes) = 0;
-  /// Replaces what is kept besides the log. The clock is left out if another record has set it
-  /// last.
-  virtual StoreResult<void> save_state(const SavedState& /*state*/) { return {}; }
+  /// Replaces the state that is kept besides the log. The clock is left out if another record has
+  /// set it last.
+  virtual StoreResult<void> save_state(const SavedState& state) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Deletes the tiles
   /// above these chunks that are older. Fails (bad_request) if a chunk or the checkpoint is ahead
   /// of the log.
@@ -79,7 +78,7 @@ class WorldSink {
   /// snapshot below it was saved meanwhile that is newer. All are left out if `rules`, by which
   /// they were made, are not those of the materials that are written (tile_rules_of()). Fails
   /// (bad_request) if a tile is ahead of the log.
-  virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules = kTileRules) = 0;
+  virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) = 0;
 };
 
 }  // namespace runstone

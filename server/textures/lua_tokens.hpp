@@ -1,5 +1,5 @@
-// LuaTokens: the words of a text in Lua, for a scan that runs nothing. Every text has words; what
-// is not well formed ends the last one.
+// LuaTokens: the words of a text in Lua, for a scan that runs nothing. Every text can be read: a
+// string or comment without an end ends with the text.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -171,7 +171,8 @@ const std::array<std::string, 6>* LuantiPictures::tiles_of(const std::string& no
 
 SidePicture LuantiPictures::picture_of(const std::string& tile) const {
   SidePicture out;
-  for (std::string_view left = tile; !left.empty();) {
+  // Layers above the last one that is taken are left out.
+  for (std::string_view left = tile; !left.empty() && out.layers.size() < kPictureLayersMax;) {
     const std::size_t end = std::min(left.find('^'), left.size());
     std::string_view part = left.substr(0, end);
     left.remove_prefix(std::min(end + 1, left.size()));

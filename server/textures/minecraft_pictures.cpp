@@ -19,6 +19,8 @@ constexpr std::size_t kJsonBytesMax = std::size_t{1} << 20,
                       kAllJsonBytesMax = std::size_t{64} << 20;
 /// The maximum length of a chain of parent models, or of texture names that refer to each other.
 constexpr int kChainMax = 16;
+/// Lists and objects within each other. Deeper ones are left out of what was read.
+constexpr int kJsonDepthMax = 64;
 constexpr std::size_t kElementsMax = 256;
 
 const Json kNoJson;
@@ -33,6 +35,12 @@ const Json& at(const Json& object, const char* key) {
 std::string text_at(const Json& object, const char* key) {
   const Json& value = at(object, key);
   return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+/// Returns the text of a text, a number or a truth, and "" of everything else.
+std::string plain_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_primitive() ? value.dump() : std::string();
 }
 
 /// Returns "minecraft/models/block/stone.json" of "minecraft:block/stone" or "block/stone".
@@ -74,7 +82,7 @@ bool fits_when(const Json& when, const ShapeStates& states, int depth = 0) {
         return false;
       continue;
     }
-    const std::string wanted = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string wanted = plain_text(value);
     const std::string present(states.get(key));
     if (present.empty()) continue;
     if (("|" + wanted + "|").find("|" + present + "|") == std::string::npos) return false;
@@ -127,7 +135,11 @@ const Json& MinecraftPictures::json_of(const std::string& path) {
   if (read_bytes_ > kAllJsonBytesMax) return json;
   if (const auto text = read_file(file->second, kJsonBytesMax)) {
     read_bytes_ += text->size();
-    json = Json::parse(*text, nullptr, false);
+    // Nothing below depends on how deep a file of a stranger is.
+    const auto is_shallow = [](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+      return depth <= kJsonDepthMax;
+    };
+    json = Json::parse(*text, is_shallow, false);
     if (json.is_discarded()) json = Json();
   }
   return json;

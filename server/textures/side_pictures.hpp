@@ -3,6 +3,7 @@
 // luanti_pictures.hpp, minecraft_pictures.hpp).
 #pragma once
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,13 @@
 
 namespace runstone {
 
+/// The pictures that lie over each other, at most.
+inline constexpr std::size_t kPictureLayersMax = 8;
+
 /// A picture by the path of its file. Further pictures lie over it, from the lower to the upper
 /// one.
 struct SidePicture {
-  std::vector<std::string> layers;  // empty: the side has no picture
+  std::vector<std::string> layers;  // at most kPictureLayersMax; empty: the side has no picture
   bool is_tinted = false;           // it is grey and gets the colour of the material
   friend auto operator<=>(const SidePicture&, const SidePicture&) = default;
 };

@@ -11,7 +11,8 @@ Result<StoredTextures, std::string> read_stored_textures(LogReader& reader) {
     const auto* texture = std::get_if<TextureEdit>(&record.edit.shape);
     if (texture == nullptr) return true;
     const GivenTexture& given = *texture->given;
-    if (const auto added = out.table.add(texture_entry(given.png, given.uses)); !added) {
+    if (const auto added = out.table.add(texture_entry(given.png, given.uses, given.hash));
+        !added) {
       wrong = reader.file() + ": edit_log seq=" + std::to_string(record.version.seq) + ": " +
               added.error().what;
       return false;

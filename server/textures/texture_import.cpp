@@ -88,19 +88,24 @@ class Taken {
   void add(const WantedPicture& wanted) {
     auto png = png_of_wanted(wanted);
     if (!png) return fault(png.error());
-    GivenTexture given{*std::move(png), {}};
+    const TextureHash hash = texture_hash(*png);
+    GivenTexture given{*std::move(png), {}, hash};
     for (const auto& [material, sides] : wanted.sides) {
       given.uses.push_back({material, sides});
       if (given.uses.size() == kTextureUsesMax) take(given);
+      if (is_full_) return;
     }
     if (!given.uses.empty()) take(given);
   }
+  /// Returns true if the table has refused a picture because it has too many, or too many bytes.
+  bool is_full() const { return is_full_; }
   std::size_t pictures() const { return table_.entries().size(); }
   std::size_t materials() const { return materials_.size(); }
 
  private:
   void take(GivenTexture& given) {
-    if (const auto added = table_.add(texture_entry(given.png, given.uses)); !added) {
+    if (const auto added = table_.add(texture_entry(given.png, given.uses, given.hash)); !added) {
+      is_full_ = added.error().code == ErrorCode::limit_exceeded;
       fault(added.error().what);
     } else {
       for (const TextureUse& use : given.uses) {
@@ -117,6 +122,7 @@ class Taken {
 
   TextureTable table_;
   std::set<Material> materials_;  // that get a picture
+  bool is_full_ = false;
   TextureImport& out_;
 };
 
@@ -136,6 +142,7 @@ Result<TextureImport, std::string> import_textures(const std::string& place,
   out.kind = (*source)->kind();
   Wanted wanted;
   for (std::size_t i = 1; i < materials.size(); ++i) {
+    if (should_continue && !should_continue()) return failure(place + ": was cancelled");
     const auto id = static_cast<Material>(i);
     const MaterialInfo& info = materials[id];
     if (info.visibility == Visibility::empty) continue;
@@ -155,9 +162,13 @@ Result<TextureImport, std::string> import_textures(const std::string& place,
     }
   }
   Taken taken(present, out);
-  for (const WantedPicture& picture : wanted.pictures()) {
+  const std::vector<WantedPicture>& pictures = wanted.pictures();
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
     if (should_continue && !should_continue()) return failure(place + ": was cancelled");
-    taken.add(picture);
+    taken.add(pictures[i]);
+    if (!taken.is_full()) continue;
+    out.faults += pictures.size() - i - 1;
+    break;
   }
   out.materials = taken.materials();
   out.pictures = taken.pictures() - present.entries().size();

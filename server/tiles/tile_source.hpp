@@ -6,9 +6,8 @@
 //   3. the table of tiles of the world;
 //   4. its eight children, which are chunks or tiles of the level below.
 // A tile of 1 or 3 is used only if no edit below it is newer, and if it was made by the rules that
-// TileVisibility names. A damaged row of a tile is reported
-// and the tile is made again. A damaged chunk is reported, and the tiles above it show nothing
-// there.
+// TileVisibility names. A damaged row of a tile is reported and the tile is made again. A damaged
+// chunk is reported, and the tiles above it show nothing there.
 // Threads: any. Calls block on the disk, so workers make them.
 #pragma once
 #include <atomic>
@@ -75,7 +74,7 @@ class TileSource {
   /// first make(), because the edits before the start are not known then. Cost: two look-ups. The
   /// function may wait for other threads for a moment.
   bool is_current(const ChunkKey& key, const Version& version, std::uint64_t claim_digest,
-                  std::uint32_t rules = kTileRules);
+                  std::uint32_t rules);
 
  private:
   class Making;  // one call of make()

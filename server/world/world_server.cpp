@@ -52,8 +52,8 @@ struct WorldServer::Rooms {
   BuildReads build_reads;
   BuildUploads build_uploads;
   TextureSending textures;
-  SavedState saved;     // what was saved last
-  TimeUs saved_us = 0;  // when; steady clock
+  SavedState saved;     // what was queued last for the store, or was there at the start
+  TimeUs saved_us = 0;  // when save_state() was called last; steady clock
 };
 
 namespace {
@@ -285,8 +285,7 @@ void WorldServer::save_state(TimeUs now_us, TimeUs clock_us) {
   rooms_->people.note_places();
   SavedState state{rooms_->people.places().all(), rooms_->order.clock().saved_at(clock_us)};
   if (state == rooms_->saved) return;
-  rooms_->environment.save_state(state);
-  rooms_->saved = std::move(state);
+  if (rooms_->environment.save_state(state)) rooms_->saved = std::move(state);
 }
 
 void WorldServer::save_state(const Clocks& now) { save_state(now.steady_us, now.steady_us); }
@@ -326,8 +325,13 @@ void WorldServer::tick(const Clocks& now) {
   rooms_->build_reads.serve(now);
   rooms_->build_uploads.tick(now);
   rooms_->textures.tick();
-  // The clock is saved as it will be at the next save: after a crash it never goes back.
-  if (now.steady_us - rooms_->saved_us >= kSaveStateUs)
+  // The clock is saved as it will be at the next save: after a crash it never goes back. For the
+  // same reason a clock that a new record has set is saved at once: that record has the time of its
+  // setting, from which the clock has run on.
+  const std::optional<SavedClock>& saved = rooms_->saved.clock;
+  const Sequence record = rooms_->order.clock().record();
+  const bool is_set_anew = record != (saved ? saved->record : 0);
+  if (is_set_anew || now.steady_us - rooms_->saved_us >= kSaveStateUs)
     save_state(now.steady_us, now.steady_us + kSaveStateUs);
   step_checkpointer(now);
   remove_closed();

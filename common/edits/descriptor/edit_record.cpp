@@ -59,10 +59,11 @@ Bytes encode_record(const EditRecord& record) {
   return out;
 }
 
-Result<EditRecord> decode_record(ByteView in) {
+namespace {
+
+/// Reads the fields up to the cause.
+void read_head(ByteReader& r, EditRecord& record) {
   constexpr std::uint64_t kU32Max = std::numeric_limits<std::uint32_t>::max();
-  ByteReader r(in);
-  EditRecord record;
   if (r.u8() != kEditRecordVersion) r.reject(ErrorCode::bad_version, "unknown edit record version");
   record.log = static_cast<LogId>(r.varint_max(kU32Max, "log id exceeds 32 bits"));
   record.version.epoch = static_cast<Epoch>(r.varint_max(kU32Max, "epoch exceeds 32 bits"));
@@ -74,6 +75,14 @@ Result<EditRecord> decode_record(ByteView in) {
   const std::uint8_t cause = r.u8();
   if (cause > kCauseMax) r.reject(ErrorCode::bad_value, "unknown cause");
   record.cause = static_cast<Cause>(cause <= kCauseMax ? cause : 0);
+}
+
+}  // namespace
+
+Result<EditRecord> decode_record(ByteView in) {
+  ByteReader r(in);
+  EditRecord record;
+  read_head(r, record);
   record.subject = r.varint();
   const auto coordinate = [&r] {
     return static_cast<std::int32_t>(
@@ -103,6 +112,13 @@ Result<EditRecord> decode_record(ByteView in) {
     return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
   }
   return record;
+}
+
+std::optional<Cause> cause_of_record(ByteView in) {
+  ByteReader r(in);
+  EditRecord record;
+  read_head(r, record);
+  return r.ok() ? std::optional(record.cause) : std::nullopt;
 }
 
 }  // namespace runstone

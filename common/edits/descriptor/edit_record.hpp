@@ -47,5 +47,8 @@ Bytes encode_record(const EditRecord& record);
 /// Decodes a record. Fails if the bytes are not canonical or the bounding box is not that of the
 /// descriptor.
 Result<EditRecord> decode_record(ByteView in);
+/// Returns the cause of a record from its bytes. Returns nullopt if they end before it or begin
+/// with another version. The rest is not read. Cost: O(1).
+std::optional<Cause> cause_of_record(ByteView in);
 
 }  // namespace runstone

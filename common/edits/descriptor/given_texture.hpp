@@ -2,6 +2,7 @@
 // docs/edit-log.md specifies the bytes.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -13,7 +14,11 @@ namespace runstone {
 struct GivenTexture {
   Bytes png;                     // for which texture_edge() succeeds
   std::vector<TextureUse> uses;  // as check_texture_uses() demands
-  friend bool operator==(const GivenTexture&, const GivenTexture&) = default;
+  /// texture_hash() of the PNG, if it is known already. No byte of the record has it.
+  std::optional<TextureHash> hash = std::nullopt;
+  friend bool operator==(const GivenTexture& a, const GivenTexture& b) {
+    return a.png == b.png && a.uses == b.uses;
+  }
 };
 
 /// The maximum size of the bytes: the PNG and its length, and of each use the step from the

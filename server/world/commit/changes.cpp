@@ -52,12 +52,11 @@ bool Changes::has_power(const RightsActor& actor) const {
          rights.has(Right::administer);
 }
 
-/// Returns the limit that rejects so many records for now, or "".
-const char* Changes::why_full(DiskNeed need, std::size_t records) const {
+std::optional<const char*> Changes::why_full(DiskNeed need, std::size_t records) const {
   const bool has_room =
       need == DiskNeed::space ? order_.log_has_room(records) : order_.log_has_queue_room();
   if (!has_room) return order_.is_disk_full() ? order_.disk_reason() : kNoRoomInLog;
-  return order_.is_memory_full() ? kMemoryIsFull : "";
+  return order_.is_memory_full() ? std::optional(kMemoryIsFull) : std::nullopt;
 }
 
 ServerEditsResult Changes::order_edits(const std::vector<EditOffer>& offers, AuthorId payer,
@@ -79,8 +78,10 @@ ServerEditsResult Changes::order(const std::vector<EditOffer>& offers, AuthorId 
   ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player || offer.is_of_large_action);
-    out.reason = why_full(need, 1);
-    if (*out.reason != '\0') break;
+    if (const auto why = why_full(need, 1)) {
+      out.reason = *why;
+      break;
+    }
     if (paying) {
       const std::uint64_t price = edit_price(offer.edit, config_.chunk_edge, paying->budget);
       if (const auto unpaid = quotas_.charge_edit(*paying, price, now.steady_us)) {
@@ -153,18 +154,17 @@ std::optional<std::string> Changes::accept_kept_jump(const std::optional<std::st
          *why;
 }
 
-ServerEditsResult Changes::order_materials(const std::vector<EditOffer>& offers,
-                                           const Clocks& now) {
+ServerEditsResult Changes::order_all(const std::vector<EditOffer>& offers, const Clocks& now) {
   using State = ServerEditsResult::State;
   commits_.commit_all(LargeEdits::paced, now);
   if (!order_.accepts_edits()) return {State::closed};
-  const char* const reason = why_full(DiskNeed::space, offers.size());
-  if (*reason != '\0') return {State::busy, 0, reason};
+  if (const auto why = why_full(DiskNeed::space, offers.size())) return {State::busy, 0, *why};
   for (const EditOffer& offer : offers) {
     const auto queued = order_.authority().enqueue(offer);
     RUNSTONE_ASSERT(queued.has_value());
   }
-  // One commit takes all of them (edit_work()), and the log writer writes it in one transaction.
+  // One commit takes all of them, up to kCommitEditsMax (edit_work()), and the log writer writes it
+  // in one transaction.
   commits_.commit_all(LargeEdits::paced, now);
   return {State::ordered, offers.size()};
 }
@@ -200,7 +200,7 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   std::vector<EditOffer> offers = {
       {op, Cause::materials, now.steady_us, materials_edit(std::move(added)), 0}};
   offer_shapes(given, now, offers);
-  const ServerEditsResult ordered = order_materials(offers, now);
+  const ServerEditsResult ordered = order_all(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return refusal(why_not_ordered(ordered));
   return AddedAt{order_.newest_materials(), first};
 }
@@ -213,7 +213,7 @@ Result<Sequence, std::string> Changes::give_shapes(std::vector<GivenShape> rows,
     return failure(std::string(fits.error().what));
   std::vector<EditOffer> offers;
   offer_shapes(rows, now, offers);
-  const ServerEditsResult ordered = order_materials(offers, now);
+  const ServerEditsResult ordered = order_all(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
   return order_.newest_materials();
 }
@@ -225,7 +225,7 @@ Result<Sequence, std::string> Changes::give_textures(std::span<const GivenTextur
   TextureTable table = order_.textures().table();
   std::vector<EditOffer> offers;
   for (const GivenTexturePtr& given : textures) {
-    const auto fits = table.add(texture_entry(given->png, given->uses));
+    const auto fits = table.add(texture_entry(given->png, given->uses, given->hash));
     // The uses ascend by material.
     if (fits && !materials.knows(given->uses.back().material))
       return failure("the world has no material " + std::to_string(given->uses.back().material));
@@ -239,11 +239,7 @@ Result<Sequence, std::string> Changes::give_textures(std::span<const GivenTextur
     const EditDescriptor edit{TextureEdit{given}, {}, kEmpty};
     offers.push_back({op, Cause::textures, now.steady_us, edit, 0});
   }
-  // Behind the edits that wait, so that the log has room for all of them or for none.
-  commits_.commit_all(LargeEdits::paced, now);
-  if (const std::string reason = why_full(DiskNeed::space, offers.size()); !reason.empty())
-    return failure(reason);
-  const ServerEditsResult ordered = order_edits(offers, 0, now);
+  const ServerEditsResult ordered = order_all(offers, now);
   if (ordered.state != ServerEditsResult::State::ordered) return failure(why_not_ordered(ordered));
   return order_.textures().newest();
 }

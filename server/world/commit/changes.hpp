@@ -86,7 +86,7 @@ class Changes {
   /// Requires at least one, and pictures for which read_texture() succeeds. Returns the last record,
   /// or why it was refused, as a sentence: a material that is not there, a side that has a picture
   /// already, too many pictures (TextureTable::check()), and while the log takes no edits or lacks
-  /// room for all. Cost: O(bytes), to hash them.
+  /// room for all. Cost: O(uses), and O(bytes) of the pictures without a hash.
   Result<Sequence, std::string> give_textures(std::span<const GivenTexturePtr> textures,
                                               const Clocks& now);
 
@@ -108,9 +108,10 @@ class Changes {
  private:
   Result<Sequence, std::string> change_library(const LibraryChange& change, AuthorId author,
                                                const Clocks& now);
-  /// Orders materials and shapes of the console, but none of them if the log lacks room for all.
-  /// They are one commit, so a crash does not leave materials without their shapes either.
-  ServerEditsResult order_materials(const std::vector<EditOffer>& offers, const Clocks& now);
+  /// Orders materials, shapes and textures of the console, but none of them if the log lacks room
+  /// for all. Up to kCommitEditsMax of them are one commit, so a crash does not leave materials
+  /// without their shapes either.
+  ServerEditsResult order_all(const std::vector<EditOffer>& offers, const Clocks& now);
   /// Appends the offers that give shapes. Requires rows that ascend by material.
   void offer_shapes(std::span<const GivenShape> rows, const Clocks& now,
                     std::vector<EditOffer>& offers);
@@ -118,7 +119,8 @@ class Changes {
     space,  // nothing is ordered while the disk is full
     none,   // what is ordered while the disk is full waits in memory
   };
-  const char* why_full(DiskNeed need, std::size_t records) const;
+  /// Returns the limit that rejects so many records for now, or nullopt if none does.
+  std::optional<const char*> why_full(DiskNeed need, std::size_t records) const;
   ServerEditsResult order(const std::vector<EditOffer>& offers, AuthorId payer, DiskNeed need,
                           const Clocks& now);
   std::optional<Payer> payer_of(AuthorId author) const;

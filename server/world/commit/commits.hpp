@@ -45,8 +45,8 @@ class Commits {
   void begin_epoch(Epoch epoch);
 
  private:
-  /// Applies the changes of rights and materials among these records. Sessions that may not stay
-  /// are closed.
+  /// Applies the changes of rights, materials, textures, the library and the clock among these
+  /// records. Closes the sessions that may not stay.
   void apply(const std::vector<EditRecord>& records, const Clocks& now);
   /// Sends edits that were ordered to the sessions, and does what they make necessary for tiles and
   /// for chunks that are not in memory.

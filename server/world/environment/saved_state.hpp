@@ -1,5 +1,5 @@
-// SavedState: what the store keeps of a world besides the log, and writes from time to time: where
-// players were last, and how far the clock of the world has come. No edit depends on it.
+// SavedState: the state of a world that the store keeps besides the log and writes once a minute:
+// where players were last, and how far the clock of the world has come. No edit depends on it.
 #pragma once
 #include <cstddef>
 #include <optional>

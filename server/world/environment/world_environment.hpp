@@ -233,9 +233,9 @@ class WorldEnvironment {
   virtual void player_left(const PlayerVisit& /*visit*/) {}
   /// Writes one line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
   virtual void report(OperatorLogLevel /*level*/, const std::string& /*line*/) {}
-  /// Queues what is kept besides the log. The newest state that is queued replaces those before it.
-  /// If the log takes nothing, or has no room, the state is not written; a later one brings it.
-  virtual void save_state(SavedState /*state*/) {}
+  /// Queues the state that is kept besides the log. The newest state that is queued replaces those
+  /// before it. Returns false, and takes nothing, if the log takes nothing or has no room.
+  virtual bool save_state(SavedState state) = 0;
 };
 
 }  // namespace runstone

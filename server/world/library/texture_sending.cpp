@@ -4,44 +4,41 @@
 
 namespace runstone {
 
-TextureParts TextureSending::next_parts(const Wanting& wanting) const {
+void TextureSending::encode_next(Wanting& wanting) const {
   const WorldTextures& textures = order_.textures();
   TextureParts message;
   std::size_t bytes = 0;
-  for (const TextureHash& hash : wanting.waiting) {
-    if (message.parts.size() == kTexturesWantedMax) break;
-    TexturePart part{hash, {}};
-    const auto index = textures.table().find(hash);
-    const bool is_sent =
-        index && (*index >= wanting.answers.size() || wanting.answers[*index] < kTextureAnswersMax);
-    if (is_sent) {
+  while (!wanting.waiting.empty() && message.parts.size() < kTexturesWantedMax) {
+    TexturePart part{wanting.waiting.front(), {}};
+    const auto index = textures.table().find(part.hash);
+    if (index && *index >= wanting.answers.size()) wanting.answers.resize(*index + 1U);
+    if (index && wanting.answers[*index] < kTextureAnswersMax) {
       const Bytes& png = textures.png(*index);
       if (bytes != 0 && bytes + png.size() > kTextureMessageBytes) break;
       part.png = png;
+      ++wanting.answers[*index];
     }
     bytes += sizeof(TextureHash) + part.png.size();
+    wanting.waiting.pop_front();
     message.parts.push_back(std::move(part));
   }
-  return message;
+  wanting.unsent_parts = message.parts.size();
+  wanting.unsent = encode_message(message);
 }
 
 void TextureSending::send(const Session& session, Wanting& wanting, std::size_t count) {
-  for (; count > 0 && !wanting.waiting.empty(); --count) {
-    const TextureParts message = next_parts(wanting);
-    if (!sessions_.send(session, encode_message(message))) return;
-    for (const TexturePart& part : message.parts) {
-      wanting.waiting.pop_front();
-      if (part.png.empty()) continue;
-      const std::size_t index = *order_.textures().table().find(part.hash);
-      if (index >= wanting.answers.size()) wanting.answers.resize(index + 1);
-      ++wanting.answers[index];
-    }
+  for (; count > 0 && !wanting.is_answered(); --count) {
+    if (!wanting.unsent) encode_next(wanting);
+    if (!sessions_.send(session, *wanting.unsent)) return;
+    wanting.unsent.reset();
+    wanting.unsent_parts = 0;
   }
 }
 
 void TextureSending::on_wanted(Session& session, const TexturesWanted& wanted) {
   Wanting& wanting = by_session_[session.id];
-  if (wanting.waiting.size() + wanted.hashes.size() > kTexturesUnansweredMax) {
+  const std::size_t unanswered = wanting.waiting.size() + wanting.unsent_parts;
+  if (unanswered + wanted.hashes.size() > kTexturesUnansweredMax) {
     return sessions_.close(session, GoodbyeReason::flooding,
                            "more textures are wanted than may be unanswered");
   }
@@ -57,7 +54,7 @@ void TextureSending::drained(const Session& session) {
 
 void TextureSending::tick() {
   for (auto& [id, wanting] : by_session_) {
-    if (wanting.waiting.empty()) continue;
+    if (wanting.is_answered()) continue;
     const Session* const session = std::as_const(sessions_).find(id);
     if (session != nullptr) send(*session, wanting, kPartsAtOnce);
   }

@@ -3,6 +3,7 @@
 // order of the queue hold for them as for terrain. Bounds:
 //   - a session has kTexturesUnansweredMax pictures unanswered, otherwise it is closed;
 //   - a picture is sent to a session kTextureAnswersMax times. Later answers are empty;
+//   - a message that found the queue of its session full is kept, encoded, until it is sent;
 //   - a call sends a session as much as its queue takes, kPartsAtOnce messages at most.
 // Thread: the world strand.
 #pragma once
@@ -42,12 +43,15 @@ class TextureSending {
   static constexpr std::size_t kPartsAtOnce = 16;
   struct Wanting {
     std::deque<TextureHash> waiting;
-    std::vector<std::uint8_t> answers;  // by entry of the table
+    std::optional<EncodedMessage> unsent;  // the next message; its pictures do not wait any more
+    std::size_t unsent_parts = 0;          // pictures of `unsent`
+    std::vector<std::uint8_t> answers;     // by entry of the table; `unsent` included
+    bool is_answered() const { return waiting.empty() && !unsent; }
   };
   /// Sends at most `count` messages, as many as the queue takes.
   void send(const Session& session, Wanting& wanting, std::size_t count);
-  /// Makes the next message. Requires that a picture waits.
-  TextureParts next_parts(const Wanting& wanting) const;
+  /// Makes the next message: `unsent`. Requires that there is none, and that a picture waits.
+  void encode_next(Wanting& wanting) const;
 
   Sessions& sessions_;
   const Order& order_;

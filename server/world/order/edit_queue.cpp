@@ -17,6 +17,8 @@ constexpr std::size_t kWorkMax = 128 * 1024;
 constexpr std::size_t kEditWork = 128;     // the fields of OrderedEdit without the descriptor
 constexpr std::size_t kChunkWork = 64;     // at least 10, a varint of OrderedEdit::previous
 constexpr std::size_t kClipboardWork = 2;  // for a byte, at least 1
+// An edit that no commit message has. So many as a commit may hold are one commit.
+constexpr std::size_t kUnsentWork = kWorkMax / kCommitEditsMax;
 static_assert(kWorkMax < kServerEditBytesMax / 2 && kEditWork +
                                                             kClipboardWork * kDescriptorBytesMax +
                                                             kChunkWork * kTouchedChunksMax <
@@ -35,7 +37,7 @@ std::size_t memory_of(const EditOffer& offer) {
 
 std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge) {
   // No commit message has them, because no session sees them as edits.
-  if (changes_materials(edit)) return kEditWork;
+  if (changes_materials(edit) || given_texture_of(edit) != nullptr) return kUnsentWork;
   const auto* paste = std::get_if<Paste>(&edit.shape);
   const std::size_t descriptor = paste == nullptr
                                      ? descriptor_bytes_max(kind_of(edit))

@@ -32,7 +32,9 @@ struct EditOffer {
 };
 
 /// Returns the work of an edit: an upper bound of its bytes in a commit message, in which its
-/// chunks weigh more because each of them is swept. Cost: O(1); stroke: O(points).
+/// chunks weigh more because each of them is swept. Materials, shapes and textures are in no such
+/// message, and have so little work that kCommitEditsMax of them are one commit. Cost: O(1);
+/// stroke: O(points).
 std::size_t edit_work(const EditDescriptor& edit, std::int32_t chunk_edge);
 /// Returns true if an edit with this work waits for room: a large edit of a player.
 constexpr bool waits_for_room(std::size_t work, Cause cause) {

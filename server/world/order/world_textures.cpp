@@ -10,7 +10,7 @@ WorldTextures::WorldTextures(std::span<const GivenTexturePtr> start) {
 }
 
 void WorldTextures::add(const GivenTexturePtr& given) {
-  TextureEntry entry = texture_entry(given->png, given->uses);
+  TextureEntry entry = texture_entry(given->png, given->uses, given->hash);
   const auto added = table_.add(entry);
   RUNSTONE_ASSERT(added.has_value());
   if (table_.entries().size() > pictures_.size()) pictures_.push_back(given);

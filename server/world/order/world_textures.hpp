@@ -1,6 +1,7 @@
 // WorldTextures: the textures of the world as the world strand knows them: their table, and the
 // bytes of the pictures, which players fetch.
-// Thread: the world strand. Memory: at most kTexturesBytesMax of pictures, and 8 bytes a use.
+// Thread: the world strand. Memory: at most kTexturesBytesMax of pictures, 12 bytes a use, and 12
+// bytes a material up to the last one.
 #pragma once
 #include <memory>
 #include <span>

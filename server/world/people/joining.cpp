@@ -200,6 +200,12 @@ bool Joining::close_if_forged(Session& session, const Signature& signature) {
   return true;
 }
 
+void Joining::note_place_of(const PublicKey& key) {
+  for (const Session* other : std::as_const(world_.sessions).open()) {
+    if (other->key == key && other->has(kFeatureVisits)) world_.places.note(key, other->pose);
+  }
+}
+
 /// Returns the other open session of the session's client, of which there is one at most, or null.
 Session* Joining::other_session_of(const Session& session) {
   for (Session* other : world_.sessions.open()) {
@@ -261,6 +267,8 @@ void Joining::open(Session& session, const Clocks& now) {
   // Its player joined at another server, and has been there since before this server owned the
   // world, or since before the connection with that server broke.
   const bool goes_on = session.author != 0;
+  // Before an older session of the player is closed: its place is where this one begins.
+  note_place_of(session.key);
   if (Session* const other = other_session_of(session))
     world_.sessions.close(*other, GoodbyeReason::already_connected,
                           "the same client connected again");

@@ -38,7 +38,7 @@ class Joining {
     Presence& presence;
     ChatRoom& chat;
     Visits& visits;
-    const PlayerPlaces& places;
+    PlayerPlaces& places;
   };
   Joining(const World& world, RandomBytes random);
 
@@ -91,6 +91,8 @@ class Joining {
   };
   Welcome welcome_of(const PublicKey& key) const;
   std::string no_seat(const Session& session) const;
+  /// Notes where the open sessions of the player are.
+  void note_place_of(const PublicKey& key);
   Session* other_session_of(const Session& session);
   // Each closes the session and returns true if the condition holds.
   bool close_if_no_seat(Session& session);

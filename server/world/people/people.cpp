@@ -89,7 +89,9 @@ void People::forget(const Session& session) {
   if (session.stage == SessionStage::open) {
     world_.order.author_left(session.author);
     visits_.left(session);
-    if (session.has(kFeatureVisits)) places_.note(session.key, session.pose);
+    // Another session of the player, which goes on, has the newer place.
+    if (session.has(kFeatureVisits) && !visits_.is_here(session.key))
+      places_.note(session.key, session.pose);
   }
   presence_.forget(session);
   chat_.forget(session.id);

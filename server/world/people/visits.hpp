@@ -30,6 +30,11 @@ class Visits {
   void joined(const Session& session, bool goes_on, const Clocks& now);
   /// Reports that an open session has ended. The next tick() notes the time.
   void left(const Session& session);
+  /// Returns true if a session of the key is open. Cost: O(log players).
+  bool is_here(const PublicKey& key) const {
+    const auto found = visitors_.find(key);
+    return found != visitors_.end() && found->second.sessions > 0;
+  }
   /// Says who has left. Call it on every tick of a server that owns the world.
   void tick(const Clocks& now);
   /// Forgets everybody, and takes the players with open sessions for those who are here.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/core/hex.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
@@ -50,7 +51,7 @@ std::string make_world(const TempFolder& folder) {
   REQUIRE(store->save_keyframe(kept, keyframe).has_value());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> tiles = {
       {{3, {0, -1, -1}}, golden_chunk(4, {1, 2})}};
-  REQUIRE(store->save_tiles(tiles).has_value());
+  REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
   return store->file();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/runs/run_chunk.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/replay/digest_list.hpp"
 #include "server/tiles/tile_source.hpp"
 #include "tests/support/core/temp_folder.hpp"
@@ -172,7 +173,7 @@ void store_tiles(const std::string& folder, const ChunkKey& key) {
   REQUIRE(made.has_value());
   std::vector<std::pair<ChunkKey, ChunkPtr>> tiles;
   for (const MadeTile& tile : *made) tiles.emplace_back(tile.key, tile.tile);
-  REQUIRE(store->save_tiles(tiles).has_value());
+  REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
 }
 
 }  // namespace
@@ -193,13 +194,13 @@ TEST_CASE("verify compares stored tiles with their chunks", "[store][replay][til
     Digest sound;
     {
       const auto store = *open_world(world, StoreAccess::read_write);
-      tile = **store->load_tile({1, {1, 0, 0}});
+      tile = **store->load_tile({1, {1, 0, 0}}, kTileRules);
       sound = tile.digest;
       fill(tile.voxels, index_of({7, 7, 7}, tile.voxels.extent, tile.voxels.order), 1, 2);
       tile.digest = digest_of(tile.voxels);
       const std::vector<std::pair<ChunkKey, ChunkPtr>> tiles = {
           {{1, {1, 0, 0}}, std::make_shared<const Chunk>(tile)}};
-      REQUIRE(store->save_tiles(tiles).has_value());
+      REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
     }
     const ReplayOutcome different = run_replay({"verify", "--world", world, "--json", json});
     INFO(different.out << different.err);

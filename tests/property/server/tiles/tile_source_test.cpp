@@ -110,7 +110,7 @@ void edit_and_compare(TileWorld& world, std::uint8_t level_max, int steps) {
   world.save_all();
   for (const auto& made : not_saved) world.save_tiles(made);
   world.start();
-  const auto stored = *world.store->tile_keys();
+  const auto stored = *world.store->tile_keys(kTileRules);
   CHECK_FALSE(stored.empty());
   for (const auto& [key, version] : stored) {
     CAPTURE(key.lod, key.at.x, key.at.y, key.at.z);

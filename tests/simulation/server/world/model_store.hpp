@@ -58,6 +58,12 @@ class ModelStore final : public Store {
     }
     return {};
   }
+  StoreResult<void> read_textures(const EachRecord& each) override {
+    for (const EditRecord& record : database_.log()) {
+      if (given_texture_of(record.edit) != nullptr && !each(record)) break;
+    }
+    return {};
+  }
   using LogReader::materials;
   StoreResult<MaterialTable> materials(Sequence /*at*/) override { return meta_.materials; }
 
@@ -103,6 +109,10 @@ class ModelStore final : public Store {
     return database_.players().empty() ? 0 : database_.players().rbegin()->first;
   }
 
+  StoreResult<std::vector<LastPlace>> saved_places() override { return std::vector<LastPlace>(); }
+  StoreResult<std::optional<SavedClock>> saved_clock() override {
+    return std::optional<SavedClock>();
+  }
   const std::optional<StoreError>& loss() const override { return loss_; }
   StoreResult<void> begin_reads() override { return {}; }
   StoreResult<void> end_reads() override { return {}; }
@@ -114,6 +124,7 @@ class ModelStore final : public Store {
     database_.append(*term_, players, records);
     return {};
   }
+  StoreResult<void> save_state(const SavedState& /*state*/) override { return may_write(); }
   StoreResult<void> append_history(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) override {
     return append(players, records);

@@ -28,6 +28,12 @@ TEST_CASE("materials textures gives the pictures of a folder, once", "[admin][te
   CHECK(bench.give({}, "log cause textures").text.find("textures texture of " + name) !=
         std::string::npos);
   CHECK_FALSE(bench.give({}, "materials textures " + pictures.path() + "/none").is_ok);
+  for (const std::string line : {"materials textures", "materials textures preview"}) {
+    const CommandAnswer without_folder = bench.give({}, line);
+    CHECK_FALSE(without_folder.is_ok);
+    CHECK(without_folder.text.ends_with(
+        ": one folder of pictures comes after it, in quotes if it has blanks"));
+  }
   const PublicKey key = key_pair_of(seed_of(3)).public_key;
   CHECK_FALSE(bench.give({1, {key, true}}, "materials textures " + pictures.path()).is_ok);
 }

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/runtime/derived_config.hpp"
@@ -143,6 +145,36 @@ TEST_CASE("a start fails on a damaged last record and names it", "[server]") {
   const auto start = read_world_start(**store);
   REQUIRE_FALSE(start.has_value());
   CHECK(start.error().find("edit_log seq=6") != std::string::npos);
+}
+
+TEST_CASE("a start goes on without places or a clock that are damaged", "[server]") {
+  const auto [key, is_clock] =
+      GENERATE(std::pair{"player_places", false}, std::pair{"world_clock", true});
+  CAPTURE(key);
+  const TempFolder folder;
+  const auto records = make_world(folder / "world");
+  const SavedState saved{{LastPlace{}}, SavedClock{kRecords + 1, {5, 1}}};
+  {
+    auto store = open_world(folder / "world", StoreAccess::read_write);
+    REQUIRE(store.has_value());
+    EditRecord of_clock;
+    of_clock.version = {1, kRecords + 1};
+    of_clock.op = {0, 1, 1};
+    of_clock.cause = Cause::clock;
+    of_clock.time_us = records.back().time_us;
+    of_clock.edit = clock_edit(saved.clock->time);
+    REQUIRE((*store)->append({}, std::span(&of_clock, 1)).has_value());
+    REQUIRE((*store)->save_state(saved).has_value());
+  }
+  REQUIRE(raw_sql(folder / "world/world.sqlite",
+                  std::string("UPDATE meta SET checksum = checksum + 1 WHERE key = '") + key +
+                      "'; SELECT changes()") == "1");
+  auto store = open_world(folder / "world", StoreAccess::read_write);
+  REQUIRE(store.has_value());
+  const auto start = read_world_start(**store);
+  REQUIRE(start.has_value());
+  CHECK(start->saved.places == (is_clock ? saved.places : std::vector<LastPlace>()));
+  CHECK(start->saved.clock == (is_clock ? std::nullopt : saved.clock));
 }
 
 // A takeover by a server that has followed the owner of the world.

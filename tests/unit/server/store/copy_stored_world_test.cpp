@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/store.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
@@ -34,7 +35,7 @@ std::unique_ptr<Store> make_copied_world(const std::string& place) {
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE(store->append(players, sample_records(rng, 1, 1, kCopiedEdits)).has_value());
   REQUIRE(store->save_snapshots(snapshots, 12).has_value());
-  REQUIRE(store->save_tiles(tiles).has_value());
+  REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
   const std::vector<NameChange> names = {{{"ana", "Ana", sample_player(1).key}},
                                          {{"ben", "Ben", sample_player(2).key}}};
   REQUIRE(store->change_names(names).has_value());
@@ -78,14 +79,14 @@ void check_same_worlds(const std::string& first, const std::string& second) {
   CHECK(b->name_claims()->size() == 2);
   CHECK(a->player_names()->size() == b->player_names()->size());
   CHECK(*a->snapshot_keys() == *b->snapshot_keys());
-  CHECK(*a->tile_keys() == *b->tile_keys());
-  CHECK(b->tile_keys()->size() == kCopiedChunks);
+  CHECK(*a->tile_keys(kTileRules) == *b->tile_keys(kTileRules));
+  CHECK(b->tile_keys(kTileRules)->size() == kCopiedChunks);
   for (std::int32_t i = 0; i < kCopiedChunks; ++i) {
     CAPTURE(i);
     const ChunkKey key{0, nth_place(i)}, tile{2, nth_place(i)};
     CHECK(*a->load_base(key) == *b->load_base(key));
     CHECK(*a->load_snapshot(key) == *b->load_snapshot(key));
-    CHECK(*a->load_tile(tile) == *b->load_tile(tile));
+    CHECK(*a->load_tile(tile, kTileRules) == *b->load_tile(tile, kTileRules));
   }
   CHECK(b->check().has_value());
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/digest.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/sqlite_backend.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
@@ -112,7 +113,7 @@ class RichWorld {
     later = snapshots[1].second = sample_chunk(rng, {1, kLaterEdit});
     REQUIRE(store->save_snapshots(snapshots, 10).has_value());
     const KeyedChunkPtrs tiles = {{{1, {0, 0, 0}}, sample_chunk(rng, {1, kLaterEdit})}};
-    REQUIRE(store->save_tiles(tiles).has_value());
+    REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
     const auto chunks = chunks_at(rng, {1, 15}, 3);
     REQUIRE(
         store->save_keyframe(chunks, keyframe_of(records[kRichKeyframe - 1], chunks)).has_value());
@@ -258,7 +259,7 @@ TEST_CASE("an error of the disk leaves no half snapshot, tile or keyframe",
     if (!store || !writer.does([&] { return store->raise_epoch(); })) return saved;
     saved.snapshots = writer.does([&] { return store->save_snapshots(snapshots, kRichEdits); });
     if (!saved.snapshots) return saved;
-    saved.tiles = writer.does([&] { return store->save_tiles(tiles); });
+    saved.tiles = writer.does([&] { return store->save_tiles(tiles, kTileRules); });
     if (!saved.tiles) return saved;
     saved.keyframe = writer.does([&] { return store->save_keyframe(chunks, keyframe); });
     return saved;
@@ -274,7 +275,7 @@ TEST_CASE("an error of the disk leaves no half snapshot, tile or keyframe",
     }
     std::size_t tiles_there = 0;
     for (const auto& [key, tile] : tiles) {
-      const auto loaded = store.load_tile(key);
+      const auto loaded = store.load_tile(key, kTileRules);
       REQUIRE(loaded.has_value());
       tiles_there += *loaded == *tile ? 1 : 0;
     }

@@ -30,6 +30,11 @@ class FillingSink final : public WorldSink {
     names += changes.size();
     return {};
   }
+  StoreResult<void> save_state(const SavedState& /*state*/) override {
+    if (is_full) return no_room();
+    ++states;
+    return {};
+  }
   StoreResult<void> save_snapshots(ChunkSpan /*chunks*/,
                                    std::optional<Sequence> /*checkpoint*/) override {
     return is_full || is_full_for_snapshots ? no_room() : StoreResult<void>{};
@@ -43,8 +48,8 @@ class FillingSink final : public WorldSink {
   }
 
   std::atomic<bool> is_full{false}, is_full_for_snapshots{false};
-  std::vector<Sequence> written;  // read it after stop()
-  std::size_t names = 0;          // likewise
+  std::vector<Sequence> written;      // read it after stop()
+  std::size_t names = 0, states = 0;  // writes; read them after stop()
 
  private:
   static StoreResult<void> no_room() {
@@ -119,6 +124,22 @@ TEST_CASE("a full disk keeps every queued record, and writing goes on when there
   CHECK(bench.durable == 8);
   CHECK_FALSE(bench.has_failed);
   CHECK(bench.reasons == std::vector<std::string>{"w: disk full", ""});
+}
+
+TEST_CASE("a saved state waits for space, and none is taken while the disk is full",
+          "[store][log-writer][sqlite]") {
+  SpaceBench bench;
+  bench.sink.is_full = true;
+  REQUIRE(bench.writer->save_state({}));
+  bench.full.acquire();
+  CHECK_FALSE(bench.writer->save_state({}));
+  bench.sink.is_full = false;
+  bench.enough.acquire();
+  CHECK(bench.writer->save_state({}));
+  bench.writer->stop();
+  CHECK(bench.sink.states == 2);
+  CHECK(bench.writer->counters().queued_records == 0);
+  CHECK_FALSE(bench.has_failed);
 }
 
 TEST_CASE("a stop on a full disk gives up and says how many records are lost",

@@ -109,7 +109,7 @@ TEST_CASE("shapes end the stored tiles unless their materials are new",
   const ChunkKey key = tiles[0].first;
   auto store = *create_world(place / "w", sample_meta());
   REQUIRE(store->raise_epoch().has_value());
-  REQUIRE(store->save_tiles(tiles).has_value());
+  REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
   const auto rules = [&] { return tile_rules_of(tile_shapes_number(*store->materials())); };
   const auto next = static_cast<Material>(store->meta().materials.size());
 
@@ -118,7 +118,7 @@ TEST_CASE("shapes end the stored tiles unless their materials are new",
   REQUIRE(store->append({}, std::vector{added, record_of_shapes(2, {{next, kSlab}})}).has_value());
   const std::uint32_t with_ramp = rules();
   CHECK(with_ramp != kTileRules);
-  CHECK_FALSE(store->load_tile(key)->has_value());
+  CHECK_FALSE(store->load_tile(key, kTileRules)->has_value());
   CHECK(store->load_tile(key, with_ramp)->has_value());
   CHECK(store->tile_keys(with_ramp)->size() == 1);
 

@@ -122,7 +122,7 @@ TEST_CASE("queued records count with the memory that they take, until they are d
   CHECK(writer.queued_bytes() == 0);
 }
 
-TEST_CASE("of several saved states the newest is written, before the records of its commit",
+TEST_CASE("of several saved states the newest is written, after the records of its commit",
           "[store][log-writer]") {
   FakeSink sink;
   SplitMix64 rng(1);
@@ -130,17 +130,33 @@ TEST_CASE("of several saved states the newest is written, before the records of 
   writer.append({}, sample_records(rng, 1, 1, 1));
   sink.entered.acquire();  // being written
   const SavedState newest{{}, SavedClock{1, {5, 1}}};
-  writer.save_state({});
+  CHECK(writer.save_state({}));
   writer.append({}, sample_records(rng, 1, 2, 1));
-  writer.save_state(newest);
+  CHECK(writer.save_state(newest));
   sink.open_gate();
   writer.stop();
   REQUIRE(sink.commits.size() == 3);
-  CHECK(sink.commits[1].state == newest);
-  CHECK(sink.commits[2].records.size() == 1);
+  CHECK(sink.commits[1].records.size() == 1);
+  CHECK(sink.commits[2].state == newest);
   CHECK(writer.counters().queued_records == 0);
-  writer.save_state(newest);  // has no effect any more
+  CHECK_FALSE(writer.save_state(newest));
   CHECK(writer.counters().queued_records == 0);
+}
+
+TEST_CASE("a state for which the queue has no room is not taken", "[store][log-writer]") {
+  FakeSink sink;
+  SplitMix64 rng(1);
+  LogWriter::Limits limits;
+  limits.queued_records_max = 2;
+  LogWriter writer(sink, {}, limits);
+  writer.append({}, sample_records(rng, 1, 1, 1));
+  sink.entered.acquire();  // being written
+  CHECK(writer.save_state({{}, SavedClock{1, {5, 1}}}));
+  CHECK_FALSE(writer.save_state({{}, SavedClock{1, {6, 1}}}));
+  sink.open_gate();
+  writer.stop();
+  REQUIRE(sink.commits.size() == 2);
+  CHECK(sink.commits[1].state == SavedState{{}, SavedClock{1, {5, 1}}});
 }
 
 TEST_CASE("one file of a build is written at a time, in parts, and may be removed again",

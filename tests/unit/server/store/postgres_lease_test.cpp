@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/tiles/tile_rules.hpp"
 #include "server/store/postgres_lease.hpp"
 #include "server/store/world_schema.hpp"
 #include "tests/support/sql/raw_sql.hpp"
@@ -229,7 +230,7 @@ TEST_CASE("every write confirms the lease, also on a connection that is alive",
   };
   refused(store->append({}, records));
   refused(store->save_snapshots({}, Sequence{0}));
-  refused(store->save_tiles({}));
+  refused(store->save_tiles({}, kTileRules));
   refused(store->save_keyframe({}, std::nullopt));
   CHECK_FALSE(store->raise_epoch().has_value());
   CHECK(*store->last_sequence() == 0);

@@ -27,7 +27,7 @@ struct TiledWorld {
   }
   void save_tile(const ChunkKey& key, Version version) {
     const KeyedChunks tiles = {{key, sample_chunk(rng, version)}};
-    REQUIRE(store->save_tiles(tiles).has_value());
+    REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
   }
   void save_snapshot(ChunkCoord at, Version version) {
     const KeyedChunks chunks = {{{0, at}, sample_chunk(rng, version)}};
@@ -52,15 +52,16 @@ TEST_CASE("tiles are read as they were written, and a later one replaces an earl
   TiledWorld world;
   KeyedChunks tiles = {{{1, {0, -1, 2}}, sample_chunk(world.rng, {1, 3})},
                        {{8, {0, 0, -1}}, sample_chunk(world.rng, {0, 0})}};
-  REQUIRE(world.store->save_tiles(tiles).has_value());
-  CHECK(**world.store->load_tile(tiles[0].first) == *tiles[0].second);
-  CHECK(**world.store->load_tile(tiles[1].first) == *tiles[1].second);
-  CHECK_FALSE(world.store->load_tile({2, {0, -1, 2}})->has_value());
-  CHECK(*world.store->tile_keys() == Keys{{{1, {0, -1, 2}}, {1, 3}}, {{8, {0, 0, -1}}, {0, 0}}});
+  REQUIRE(world.store->save_tiles(tiles, kTileRules).has_value());
+  CHECK(**world.store->load_tile(tiles[0].first, kTileRules) == *tiles[0].second);
+  CHECK(**world.store->load_tile(tiles[1].first, kTileRules) == *tiles[1].second);
+  CHECK_FALSE(world.store->load_tile({2, {0, -1, 2}}, kTileRules)->has_value());
+  CHECK(*world.store->tile_keys(kTileRules) ==
+        Keys{{{1, {0, -1, 2}}, {1, 3}}, {{8, {0, 0, -1}}, {0, 0}}});
 
   tiles = {{{1, {0, -1, 2}}, sample_chunk(world.rng, {1, 9})}};
-  REQUIRE(world.store->save_tiles(tiles).has_value());
-  CHECK(**world.store->load_tile(tiles[0].first) == *tiles[0].second);
+  REQUIRE(world.store->save_tiles(tiles, kTileRules).has_value());
+  CHECK(**world.store->load_tile(tiles[0].first, kTileRules) == *tiles[0].second);
   CHECK(world.store->check().has_value());
 }
 
@@ -72,9 +73,9 @@ TEST_CASE("a snapshot deletes the tiles above it that are older", "[store][tiles
   world.save_tile(tile_of({-5, 3, 6}, 8), {0, 30});  // an older epoch
   world.save_tile({1, {7, 7, 7}}, {1, 1});
   world.save_snapshot({-5, 3, 6}, {1, 7});
-  CHECK(*world.store->tile_keys() == Keys{{{1, {7, 7, 7}}, {1, 1}},
-                                          {tile_of({-5, 3, 6}, 2), {1, 7}},
-                                          {tile_of({-5, 3, 6}, 3), {1, 8}}});
+  CHECK(*world.store->tile_keys(kTileRules) == Keys{{{1, {7, 7, 7}}, {1, 1}},
+                                                    {tile_of({-5, 3, 6}, 2), {1, 7}},
+                                                    {tile_of({-5, 3, 6}, 3), {1, 8}}});
 }
 
 TEST_CASE("a tile that was made before a newer snapshot below it is left out", "[store][tiles]") {
@@ -83,8 +84,9 @@ TEST_CASE("a tile that was made before a newer snapshot below it is left out", "
   const KeyedChunks tiles = {{{1, {0, 0, 0}}, sample_chunk(world.rng, {1, 6})},
                              {{2, {0, 0, 0}}, sample_chunk(world.rng, {1, 7})},
                              {{1, {1, 0, 0}}, sample_chunk(world.rng, {1, 6})}};
-  REQUIRE(world.store->save_tiles(tiles).has_value());
-  CHECK(*world.store->tile_keys() == Keys{{{1, {1, 0, 0}}, {1, 6}}, {{2, {0, 0, 0}}, {1, 7}}});
+  REQUIRE(world.store->save_tiles(tiles, kTileRules).has_value());
+  CHECK(*world.store->tile_keys(kTileRules) ==
+        Keys{{{1, {1, 0, 0}}, {1, 6}}, {{2, {0, 0, 0}}, {1, 7}}});
 }
 
 TEST_CASE("a tile that cannot be stored is refused, and nothing is written", "[store][tiles]") {
@@ -104,10 +106,10 @@ TEST_CASE("a tile that cannot be stored is refused, and nothing is written", "[s
     wrong.digest = wrong.digest + Digest{{1, 1}};
     tiles.emplace_back(ChunkKey{1, {1, 0, 0}}, std::make_shared<const Chunk>(wrong));
   }
-  const auto saved = world.store->save_tiles(tiles);
+  const auto saved = world.store->save_tiles(tiles, kTileRules);
   REQUIRE_FALSE(saved.has_value());
   CHECK(saved.error().kind == StoreError::Kind::bad_request);
-  CHECK(world.store->tile_keys()->empty());
+  CHECK(world.store->tile_keys(kTileRules)->empty());
 }
 
 TEST_CASE("a damaged column of a tile is an error that names file, table and tile",
@@ -121,7 +123,7 @@ TEST_CASE("a damaged column of a tile is an error that names file, table and til
     world.save_tile({2, {1, -2, 3}}, {1, 5});
     REQUIRE(raw_sql(world.file(),
                     std::string("UPDATE tile SET ") + change + "; SELECT changes()") == "1");
-    const auto loaded = world.store->load_tile({2, {1, -2, 3}});
+    const auto loaded = world.store->load_tile({2, {1, -2, 3}}, kTileRules);
     REQUIRE_FALSE(loaded.has_value());
     CHECK(loaded.error().kind == StoreError::Kind::corrupt);
     CHECK(loaded.error().file == world.file());
@@ -135,16 +137,16 @@ TEST_CASE("an import of base chunks and an accepted loss delete all tiles", "[st
     const auto store = *create_world(place.path(), sample_meta());
     SplitMix64 rng(5);
     const KeyedChunks tiles = {{{1, {0, 0, 0}}, sample_chunk(rng, {})}};
-    REQUIRE(store->save_tiles(tiles).has_value());
+    REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
     const KeyedChunks base = {{{0, {9, 9, 9}}, sample_chunk(rng, {})}};
     REQUIRE(store->save_base(base).has_value());
-    CHECK(store->tile_keys()->empty());
+    CHECK(store->tile_keys(kTileRules)->empty());
   }
   SECTION("loss") {
     TiledWorld world;
     world.save_tile({1, {0, 0, 0}}, {1, 6});
     REQUIRE(world.store->accept_losses().has_value());
-    CHECK(world.store->tile_keys()->empty());
+    CHECK(world.store->tile_keys(kTileRules)->empty());
   }
 }
 
@@ -162,7 +164,8 @@ TEST_CASE("a compaction deletes the tiles that are older than the snapshots it m
   REQUIRE(world.store->save_keyframe(kept, keyframe).has_value());
   const auto compacted = world.store->compact(20);
   if (!compacted) FAIL(compacted.error().message());
-  CHECK(*world.store->tile_keys() == Keys{{{1, {4, 0, 0}}, {1, 3}}, {{2, {0, 0, 0}}, {1, 20}}});
+  CHECK(*world.store->tile_keys(kTileRules) ==
+        Keys{{{1, {4, 0, 0}}, {1, 3}}, {{2, {0, 0, 0}}, {1, 20}}});
 }
 
 TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes them",
@@ -180,12 +183,12 @@ TEST_CASE("tiles of other rules are not there for a reader, and a writer deletes
     const std::size_t left = change != nullptr ? 0 : 1;
     {
       const auto reader = *open_world(world.place.path(), StoreAccess::read_only);
-      CHECK(reader->tile_keys()->size() == left);
-      CHECK(reader->load_tile({1, {0, 0, 0}})->has_value() == (left == 1));
+      CHECK(reader->tile_keys(kTileRules)->size() == left);
+      CHECK(reader->load_tile({1, {0, 0, 0}}, kTileRules)->has_value() == (left == 1));
     }
     CHECK(raw_sql(file, "SELECT count(*) FROM tile") == "1");  // a reader deletes nothing
     world.store = *open_world(world.place.path(), StoreAccess::read_write);
-    CHECK(world.store->tile_keys()->size() == left);
+    CHECK(world.store->tile_keys(kTileRules)->size() == left);
     CHECK(raw_sql(file, "SELECT value FROM meta WHERE key = 'tile_rules'") ==
           std::to_string(kTileRules));
     CHECK(raw_sql(file, "PRAGMA user_version") == "5");
@@ -201,14 +204,14 @@ TEST_CASE("a world of format 3 has no tiles for a reader, and gets the table fro
   make_format_3(world.file());
   {
     const auto reader = *open_world(world.place.path(), StoreAccess::read_only);
-    CHECK(reader->tile_keys()->empty());
-    CHECK_FALSE(reader->load_tile({1, {0, 0, 0}})->has_value());
+    CHECK(reader->tile_keys(kTileRules)->empty());
+    CHECK_FALSE(reader->load_tile({1, {0, 0, 0}}, kTileRules)->has_value());
     CHECK(reader->check().has_value());
   }
   CHECK(raw_sql(world.file(), "PRAGMA user_version") == "3");  // a reader converts nothing
   world.store = *open_world(world.place.path(), StoreAccess::read_write);
   CHECK(raw_sql(world.file(), "PRAGMA user_version") == "5");
   world.save_tile({1, {0, 0, 0}}, {1, 6});
-  CHECK(world.store->tile_keys()->size() == 1);
+  CHECK(world.store->tile_keys(kTileRules)->size() == 1);
   CHECK(world.store->check().has_value());
 }

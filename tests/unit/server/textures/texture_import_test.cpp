@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/textures/texture_picture.hpp"
+#include "server/textures/side_pictures.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/textures/test_png.hpp"
 
@@ -218,6 +219,51 @@ TEST_CASE("a resource pack of Minecraft says its textures by models", "[textures
   // Grey that is tinted has the colour of the material.
   CHECK(shown(3, pos_y) == 40);
   CHECK(found.without == 3);
+}
+
+TEST_CASE("files of Minecraft that are nested deep are read without what is deep", "[textures]") {
+  const TempFolder folder;
+  const std::string mc = folder / "assets/minecraft/";
+  constexpr std::size_t kDeep = 500'000;
+  const std::string nested = std::string(kDeep, '[') + std::string(kDeep, ']');
+  write_text(mc + "blockstates/when.json", R"({"multipart": [{"when": {"facing": )" + nested +
+                                               R"(}, "apply": {"model": "block/stone"}}]})");
+  write_text(mc + "blockstates/beside.json",
+             R"({"x": )" + nested + R"(, "variants": {"": {"model": "block/stone"}}})");
+  write_text(mc + "models/block/stone.json", R"({"textures": {"particle": "block/stone"}})");
+  write_file(mc + "textures/block/stone.png", picture(7));
+  const MaterialTable materials =
+      table_of_names({"minecraft:when[facing=east]", "minecraft:beside"});
+  const TextureImport found = found_in(folder.path(), materials);
+  const Shown shown(found);
+  CHECK(shown(1, Direction::pos_y) == -1);
+  CHECK(shown(2, Direction::pos_y) == 7);
+}
+
+TEST_CASE("of more layers than eight the upper ones are left out", "[textures]") {
+  const TempFolder folder;
+  write_text(folder / "game.conf", "title = x\n");
+  std::string tile;
+  for (std::uint8_t i = 1; i <= kPictureLayersMax + 1; ++i) {
+    const std::string name = "p" + std::to_string(i) + ".png";
+    write_file(folder / ("mods/a/textures/" + name), picture(i));
+    tile += (i == 1 ? "" : "^") + name;
+  }
+  write_text(folder / "mods/a/init.lua",
+             "minetest.register_node(\"a:many\", {tiles = {\"" + tile + "\"}})\n");
+  const TextureImport found = found_in(folder.path(), table_of_names({"a:many"}));
+  CHECK(Shown(found)(1, Direction::pos_y) == kPictureLayersMax);
+}
+
+TEST_CASE("an import ends when it is cancelled, also while no picture is found", "[textures]") {
+  const TempFolder folder;
+  write_file(folder / "other.png", picture(1));
+  const MaterialTable materials = table_of_names({"stone", "sand", "dirt"});
+  int calls = 0;
+  const auto cancelled = import_textures(folder.path(), materials, {}, [&] { return ++calls < 2; });
+  REQUIRE_FALSE(cancelled.has_value());
+  CHECK(cancelled.error() == folder.path() + ": was cancelled");
+  CHECK(calls == 2);
 }
 
 }  // namespace runstone::test

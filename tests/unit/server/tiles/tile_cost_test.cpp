@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/os/steady_clock.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
@@ -76,7 +77,7 @@ Cost cost_of(const GeneratorPin& pin, std::uint8_t level) {
   };
   const double before = file_bytes();
   const TimeUs start = steady_now_us();
-  REQUIRE(store->save_tiles(made).has_value());
+  REQUIRE(store->save_tiles(made, kTileRules).has_value());
   cost.save_us = static_cast<double>(steady_now_us() - start) / static_cast<double>(made.size());
   cost.disk_bytes = (file_bytes() - before) / static_cast<double>(made.size());
   std::vector<ChunkKey> stored;

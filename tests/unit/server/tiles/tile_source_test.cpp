@@ -128,7 +128,7 @@ TEST_CASE("tiles of other rules are neither used nor current", "[tiles][shapes]"
   CHECK_FALSE(world.source->is_current(key, version, digest + 1, other.rules));
   // The store has the number of the rules of its own materials.
   REQUIRE(world.store->save_tiles({}, other.rules).has_value());
-  CHECK(world.store->load_tile(key).value().has_value());
+  CHECK(world.store->load_tile(key, kTileRules).value().has_value());
   CHECK_FALSE(world.store->load_tile(key, other.rules).value().has_value());
   CHECK(world.store->tile_keys(other.rules)->empty());
 }
@@ -145,7 +145,7 @@ TEST_CASE("a source that reads no stored tiles makes all of chunks", "[tiles]") 
   const auto made = source.make({{2, {0, 0, 0}}, world.head, {}}, *world.visibility);
   REQUIRE(made.has_value());
   CHECK(made->size() == 9);
-  CHECK(*made->back().tile == **world.store->load_tile({2, {0, 0, 0}}));
+  CHECK(*made->back().tile == **world.store->load_tile({2, {0, 0, 0}}, kTileRules));
 }
 
 TEST_CASE("a damaged row of a tile is reported and made anew", "[tiles][damage]") {
@@ -261,7 +261,7 @@ TEST_CASE("a folder that cannot be read fails a tile, and the next call tries ag
 namespace {
 
 bool is_current(TileWorld& world, const ChunkKey& key, const Chunk& copy) {
-  return world.source->is_current(key, copy.version, copy.digest.lane[0]);
+  return world.source->is_current(key, copy.version, copy.digest.lane[0], kTileRules);
 }
 
 }  // namespace

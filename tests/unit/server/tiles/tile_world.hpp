@@ -14,6 +14,7 @@
 #include "common/core/tile_keys.hpp"
 #include "common/generate/generator.hpp"
 #include "common/mesh/visibility.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "server/history/base_chunk.hpp"
 #include "server/history/chunk_source.hpp"
 #include "server/store/store.hpp"
@@ -109,7 +110,7 @@ class TileWorld {
     for (const MadeTile& tile : made) {
       if (tile.is_worth_storing()) tiles.emplace_back(tile.key, tile.tile);
     }
-    REQUIRE(store->save_tiles(tiles).has_value());
+    REQUIRE(store->save_tiles(tiles, kTileRules).has_value());
   }
   std::string file() const { return folder / "world.sqlite"; }
 

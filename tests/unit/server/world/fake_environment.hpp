@@ -38,6 +38,7 @@ class FakeEnvironment : public WorldEnvironment {
   };
 
   std::vector<Sent> sent;
+  std::vector<Sent> unsent;  // messages that found the queue of their session full
   /// The calls of send_to_all(): the kind of the message, and the number of sessions.
   std::vector<std::pair<MessageKind, std::size_t>> rounds;
   std::vector<SentSnapshot> snapshots;                // updates included
@@ -105,7 +106,10 @@ class FakeEnvironment : public WorldEnvironment {
   std::size_t log_bytes = 0;                    // of memory that waiting records take
 
   bool send(SessionId session, const EncodedMessage& message) override {
-    if (full.contains(session)) return false;
+    if (full.contains(session)) {
+      unsent.push_back({session, message});
+      return false;
+    }
     if (class_of(message) == FrameClass::edits && refuse_edits.contains(session)) return false;
     sent.push_back({session, message});
     return true;
@@ -161,7 +165,11 @@ class FakeEnvironment : public WorldEnvironment {
   void log_names(std::vector<NameChange> changes) override {
     names.insert(names.end(), changes.begin(), changes.end());
   }
-  void save_state(SavedState state) override { states.push_back(std::move(state)); }
+  bool save_state(SavedState state) override {
+    if (!log_has_room(1)) return false;
+    states.push_back(std::move(state));
+    return true;
+  }
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }

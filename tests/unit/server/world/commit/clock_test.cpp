@@ -73,6 +73,27 @@ TEST_CASE("the clock is saved ahead while it runs, and as it is at a stop", "[wo
   CHECK(bench.environment.states[1].clock == SavedClock{1, later(kDusk, bench.time_us - set_us)});
 }
 
+TEST_CASE("a clock that was set is saved with the next tick, and again until the log takes it",
+          "[world][world_time]") {
+  WorldTimeBench bench;
+  bench.tick();
+  bench.set(kDusk);
+  bench.environment.log_room = false;
+  bench.tick(50'000);
+  CHECK(bench.environment.states.empty());
+  bench.environment.log_room = true;
+  bench.tick(50'000);
+  REQUIRE(bench.environment.states.size() == 1);
+  // It is ahead of the clock, so a crash before the next save does not set the clock back.
+  CHECK(bench.environment.states[0].clock == SavedClock{1, later(kDusk, 60'100'000)});
+  bench.tick(50'000);
+  CHECK(bench.environment.states.size() == 1);
+  bench.set({5, 1});
+  bench.tick(50'000);
+  REQUIRE(bench.environment.states.size() == 2);
+  CHECK(bench.environment.states[1].clock->record == 2);
+}
+
 TEST_CASE("a world that starts again goes on with the saved time", "[world][world_time]") {
   WorldStart start;
   start.saved.clock = SavedClock{1, kDusk};

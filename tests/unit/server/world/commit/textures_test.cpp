@@ -64,6 +64,23 @@ TEST_CASE("given textures are records, and the list reaches the sessions with th
   CHECK(bench.server.order().textures().table().entries().size() == 2);
 }
 
+TEST_CASE("a log without room for all textures takes none, and one commit takes all of them",
+          "[world][textures]") {
+  TextureBench bench;
+  std::vector<GivenTexturePtr> textures;
+  for (std::uint8_t i = 0; i < 4; ++i)
+    textures.push_back(given_of(i, {{static_cast<Material>(i + 1), 63}}));
+  bench.environment.log_records_max = textures.size() - 1;
+  CHECK_FALSE(bench.give(textures).has_value());
+  CHECK(bench.environment.records.empty());
+  CHECK(bench.server.order().textures().table().empty());
+  bench.environment.log_records_max = textures.size();
+  const auto commits = bench.server.counters().commits;
+  REQUIRE(bench.give(textures).has_value());
+  CHECK(bench.environment.records.size() == textures.size());
+  CHECK(bench.server.counters().commits == commits + 1);
+}
+
 TEST_CASE("a second picture for a side is refused, and so are unknown materials",
           "[world][textures]") {
   TextureBench bench;

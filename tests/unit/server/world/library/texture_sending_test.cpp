@@ -65,6 +65,39 @@ TEST_CASE("a picture is sent a few times to a session", "[world][textures]") {
   CHECK(bench.environment.closed.empty());
 }
 
+TEST_CASE("a message that finds the queue full is kept and sent once", "[world][textures]") {
+  SendingBench bench;
+  bench.environment.full.insert(1);
+  bench.want({bench.hashes[0], bench.hashes[1]});
+  for (int i = 0; i < 3; ++i) bench.tick();
+  std::vector<std::shared_ptr<const Bytes>> kept;
+  for (const auto& [session, message] : bench.environment.unsent) {
+    if (message.kind == kKindOf<TextureParts>) kept.push_back(message.bytes);
+  }
+  REQUIRE(kept.size() >= 2);
+  CHECK(kept.front() == kept.back());  // it was encoded once
+  CHECK(bench.parts_of(1).empty());
+  bench.environment.full.clear();
+  bench.tick();
+  const auto parts = bench.parts_of(1);
+  REQUIRE(parts.size() == 2);
+  CHECK(parts[0].png == bench.textures[0]->png);
+  CHECK(parts[1].png == bench.textures[1]->png);
+  bench.tick();
+  CHECK(bench.parts_of(1).size() == 2);
+}
+
+TEST_CASE("pictures of a message that waits are unanswered", "[world][textures]") {
+  SendingBench bench;
+  bench.environment.full.insert(1);
+  const std::vector<TextureHash> many(kTexturesWantedMax, bench.hashes[0]);
+  bench.want(many);
+  bench.want(many);
+  CHECK(bench.environment.closed.empty());
+  bench.want({bench.hashes[1]});
+  CHECK(bench.environment.closed.size() == 1);
+}
+
 TEST_CASE("a client that wants textures without the feature is closed", "[world][textures]") {
   SendingBench bench;
   bench.join_with(2, 2, kFeatureMaterials);

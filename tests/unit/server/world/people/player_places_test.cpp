@@ -59,6 +59,40 @@ TEST_CASE("a player joins where the player left, and a new one at the spawn", "[
   CHECK(accepted(4).place == pose_at(40));
 }
 
+TEST_CASE("a client that connects again begins where its older session is", "[world][places]") {
+  FeatureBench bench;
+  const auto accepted = [&](SessionId session) {
+    return bench.environment.messages<SessionAccepted>(session, kEdge).at(0);
+  };
+  bench.join_with(1, 1, kFeatureVisits);
+  bench.server.received(1, Move{pose_at(40)}, bench.now());
+  bench.join_with(2, 1, kFeatureVisits);  // the same client: session 1 is closed
+  CHECK(accepted(2).place == pose_at(40));
+  bench.server.received(2, Move{pose_at(60)}, bench.now());
+  bench.server.disconnected(2);
+  bench.join_with(3, 1, kFeatureVisits);
+  CHECK(accepted(3).place == pose_at(60));
+}
+
+TEST_CASE("a session that ends leaves the place of another session of the player",
+          "[world][places]") {
+  FeatureBench bench;
+  bench.join(1, 1, 1, {}, kFeatureVisits);
+  bench.server.received(1, Move{pose_at(40)}, bench.now());
+  bench.join(2, 1, 2, {}, kFeatureVisits);  // another client of the player
+  bench.server.received(2, Move{pose_at(60)}, bench.now());
+  bench.server.people().note_places();
+  const auto place = [&] {
+    return bench.server.people().places().find(key_pair_of(seed_of(1)).public_key);
+  };
+  CHECK(place() == pose_at(60));
+  bench.server.disconnected(1);
+  CHECK(place() == pose_at(60));
+  bench.server.received(2, Move{pose_at(70)}, bench.now());
+  bench.server.disconnected(2);
+  CHECK(place() == pose_at(70));
+}
+
 TEST_CASE("places are saved from time to time, only if they have changed", "[world][places]") {
   FeatureBench bench;
   bench.tick(60'000'000);
