@@ -11,7 +11,7 @@
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/record_checksum.hpp"
-#include "server/store/rights_table.hpp"
+#include "server/store/kept_records.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -122,7 +122,7 @@ StoreResult<std::uint64_t> BackupRows::fill_base(sql::Database& database, const 
 
 StoreResult<std::uint64_t> BackupRows::fill_kept_records(sql::Database& database,
                                                          const LogEnd& head) {
-  auto table = RightsTable::open(database);
+  auto table = KeptRecords::open(database);
   if (!table) return failed(table.error());
   const auto there = table->records();
   if (!there) return failed(there.error());

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLogHeaderBytes = 32, kLogFrameHeaderBytes = 24;
 constexpr std::uint32_t kLogMagic = 0x377f0682;  // the last bit: checksums are big-endian
+constexpr std::uint32_t kFormatRepaired = 4;  // the first one with all tables
 constexpr std::array<std::size_t, 4> kPageBytesTried = {2'048, 4'096, 1'024, 8'192};
 
 /// The running checksum of the write-ahead log.
@@ -78,11 +79,15 @@ StoreResult<void> PageFile::read_header() {
       std::equal(kMagic.begin(), kMagic.end(), header->begin(),
                  [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }) &&
       sqlite_u32(*header, 68) == kApplicationId;
-  // Only an unharmed header names a later format: a damaged one is repaired all the same.
+  // A damaged header says nothing about the format: the world is repaired all the same.
   if (is_ours) {
-    if (auto known = check_format(file_, sqlite_u32(*header, 60));
-        !known && known.error().kind == StoreError::Kind::newer_version)
-      return known;
+    const std::uint32_t format = sqlite_u32(*header, 60);
+    if (auto known = check_format(file_, format); !known) return known;
+    if (format < kFormatRepaired) {
+      return failure(StoreError{StoreError::Kind::bad_request, file_, "",
+                                "is of world format " + std::to_string(format) +
+                                    ", which cannot be repaired: put it back from a backup"});
+    }
     page_bytes_ = static_cast<std::size_t>((*header)[16]) << 8 | (*header)[17];
     if (page_bytes_ == 1) page_bytes_ = 65'536;
   } else {

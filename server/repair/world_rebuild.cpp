@@ -10,7 +10,7 @@
 #include "server/store/durable_mark.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
-#include "server/store/rights_table.hpp"
+#include "server/store/kept_records.hpp"
 #include "server/store/segment_table.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
@@ -247,7 +247,7 @@ StoreResult<void> WorldRebuild::complete_tables() {
   done = complete(
       "rights_record", "rights_record_fold",
       [&]() -> StoreResult<RowFold> {
-        auto table = RightsTable::open(database);
+        auto table = KeptRecords::open(database);
         if (!table) return failed(table.error());
         const auto rows = table->records();
         if (!rows) return failed(rows.error());
@@ -396,7 +396,7 @@ StoreResult<void> WorldRebuild::write_meta() {
   const auto claimed = claims->claims();
   if (!claimed) return failed(claimed.error());
   if (auto put = meta->put_fold("name_claim_fold", claimed->fold); !put) return put;
-  auto rights = RightsTable::open(*database_);
+  auto rights = KeptRecords::open(*database_);
   if (!rights) return failed(rights.error());
   const auto records = rights->records();
   if (!records) return failed(records.error());
