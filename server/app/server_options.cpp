@@ -187,8 +187,7 @@ CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
       ->required()
       ->check(folder_refusal);
   repair
-      ->add_option("--from", out.from,
-                   "folder of an older backup, from which lost rows are taken")
+      ->add_option("--from", out.from, "folder of an older backup, from which lost rows are taken")
       ->check(folder_refusal);
   repair->add_flag("--in-place", out.in_place,
                    "give the repaired world the name of the damaged one at the end; --to is then "
@@ -222,10 +221,11 @@ int arguments_before_command(int argc, const char* const* argv) {
 void print_unknown_argument(const CLI::App& app) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const std::string argument = app.remaining(true).front();
-  std::cerr << "runstone-server: \"" << argument
-            << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
-            << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
-            << "; --help lists the flags\n";
+  std::cerr
+      << "runstone-server: \"" << argument
+      << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
+      << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
+      << "; --help lists the flags\n";
 }
 
 }  // namespace

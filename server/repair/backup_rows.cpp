@@ -7,11 +7,11 @@
 #include "server/history/world_at.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/claim_table.hpp"
+#include "server/store/kept_records.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/record_checksum.hpp"
-#include "server/store/kept_records.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_folder.hpp"
 

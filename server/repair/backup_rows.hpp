@@ -17,7 +17,8 @@ namespace runstone {
 
 class BackupRows {
  public:
-  /// Opens the world in the folder of a backup, and verifies every row of it. The error is one line.
+  /// Opens the world in the folder of a backup, and verifies every row of it. The error is one
+  /// line.
   static Result<BackupRows, std::string> open(const std::string& folder);
 
   const std::string& file() const { return store_->file(); }
@@ -52,7 +53,7 @@ class BackupRows {
 
   std::unique_ptr<Store> store_;
   std::unique_ptr<Generator> generator_;
-  Sequence common_ = 0;     // the last record of the common history
+  Sequence common_ = 0;      // the last record of the common history
   AuthorId author_max_ = 0;  // the highest author number of the common history
 };
 

@@ -76,7 +76,8 @@ std::int64_t row_checksum(const FoundColumns& table, const StoredRow& row) {
 /// Returns true if the row holds the record of its sequence.
 bool is_kept_record(const StoredRow& row) {
   const auto record = decode_record(*std::get_if<Bytes>(&row[1]));
-  return record && static_cast<std::int64_t>(record->version.seq) == std::get<std::int64_t>(row[0]) &&
+  return record &&
+         static_cast<std::int64_t>(record->version.seq) == std::get<std::int64_t>(row[0]) &&
          static_cast<std::int64_t>(record_checksum(*record)) == std::get<std::int64_t>(row[2]);
 }
 
@@ -112,8 +113,7 @@ StoreResult<bool> RowProof::proves(const FoundColumns& table, const StoredRow& r
   // Log 0 is the only one.
   if (std::get<std::int64_t>(row[0]) != 0 || std::get<std::int64_t>(row[1]) < 1) return false;
   const sql::ResetAtEnd reset_at_end(record_);
-  for (std::size_t i = 1; i < row.size(); ++i)
-    bind_value(record_, static_cast<int>(i), row[i]);
+  for (std::size_t i = 1; i < row.size(); ++i) bind_value(record_, static_cast<int>(i), row[i]);
   const auto found = record_.step();
   if (!found) return failed(found.error());
   return LogTable::record_in(record_).has_value();
@@ -133,7 +133,8 @@ std::optional<FoundTable> RowProof::likely_table_of(const StoredRow& row) {
   std::optional<FoundTable> likely;
   for (const FoundColumns& table : kTables) {
     if (!has_columns_of(table, row)) continue;
-    if (likely) return std::nullopt;
+    // An index of chunks has rows of five integers, too.
+    if (likely || table.table == FoundTable::player_instance) return std::nullopt;
     likely = table.table;
   }
   return likely;

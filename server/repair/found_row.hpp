@@ -12,7 +12,8 @@
 
 namespace runstone {
 
-/// The tables whose rows a repair looks for. The others are indexes and caches, which it makes anew.
+/// The tables whose rows a repair looks for. The others are indexes and caches, which it makes
+/// anew.
 enum class FoundTable {
   meta,
   edit_log,
@@ -48,7 +49,7 @@ class RowProof {
   /// Returns the table whose row this is, or nullopt if no checksum proves it.
   StoreResult<std::optional<FoundTable>> table_of(const StoredRow& row);
   /// Returns the table that a row with these columns may be from, although its checksum is wrong.
-  /// Returns nullopt if it is of no table, or if several tables have such columns.
+  /// Returns nullopt if it is of no table, or if several tables or indexes have such columns.
   static std::optional<FoundTable> likely_table_of(const StoredRow& row);
 
  private:

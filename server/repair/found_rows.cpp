@@ -46,8 +46,7 @@ bool only_rises(std::string_view key) {
 }
 
 std::int32_t coordinate(std::int64_t value) {
-  return static_cast<std::int32_t>(
-      std::clamp<std::int64_t>(value, -kWorldLimit, kWorldLimit));
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, -kWorldLimit, kWorldLimit));
 }
 
 }  // namespace
@@ -103,7 +102,10 @@ void FoundRows::add_damaged(FoundTable table, const StoredRow& row) {
   if (table != FoundTable::edit_log) {
     const auto* key = std::get_if<std::int64_t>(&row.front());
     const auto* text = std::get_if<std::string>(&row.front());
-    damage_.push_back(name + " " + (key != nullptr ? std::to_string(*key) : text ? *text : "?") +
+    damage_.push_back(name + " " +
+                      (key != nullptr ? std::to_string(*key)
+                       : text         ? *text
+                                      : "?") +
                       ": checksum is wrong");
     return;
   }
@@ -113,10 +115,9 @@ void FoundRows::add_damaged(FoundTable table, const StoredRow& row) {
   if (author > 0 && author <= std::numeric_limits<AuthorId>::max())
     record.author = static_cast<AuthorId>(author);
   record.time_us = integer(row, 6);
-  record.box = {{coordinate(integer(row, 9)), coordinate(integer(row, 10)),
-                 coordinate(integer(row, 11))},
-                {coordinate(integer(row, 12)), coordinate(integer(row, 13)),
-                 coordinate(integer(row, 14))}};
+  record.box = {
+      {coordinate(integer(row, 9)), coordinate(integer(row, 10)), coordinate(integer(row, 11))},
+      {coordinate(integer(row, 12)), coordinate(integer(row, 13)), coordinate(integer(row, 14))}};
   unproven_.emplace(static_cast<Sequence>(integer(row, 1)), record);
 }
 

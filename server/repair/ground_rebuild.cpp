@@ -30,8 +30,7 @@ StoreResult<ReplayedChunk*> GroundRebuild::chunk_of(const ChunkKey& key) {
   if (found == chunks_.end()) {
     auto base = base_chunk(store_, generator_, key);
     if (!base) return failure(base.error());
-    found =
-        chunks_.emplace(key, ReplayedChunk(*std::move(base), origin_of(key.at, edge_))).first;
+    found = chunks_.emplace(key, ReplayedChunk(*std::move(base), origin_of(key.at, edge_))).first;
   }
   return &found->second;
 }
@@ -53,8 +52,7 @@ StoreResult<void> GroundRebuild::compare(const ChunkKey& key) {
   return {};
 }
 
-StoreResult<void> GroundRebuild::read(
-    const std::function<void(Sequence, Sequence)>& on_progress) {
+StoreResult<void> GroundRebuild::read(const std::function<void(Sequence, Sequence)>& on_progress) {
   const auto range = store_.log_range();
   if (!range) return failure(range.error());
   const auto keys = store_.snapshot_keys();

@@ -1,7 +1,7 @@
-// ground_rebuild: the chunks of a repaired world. Base and log say what they hold. A snapshot of the
-// damaged world may show edits that the log lacks: then the present voxels of the chunk are those of
-// the snapshot and of the later edits, and an edit of the server at the end of the log writes them.
-// So players find the ground as they left it, wherever a snapshot is sound.
+// ground_rebuild: the chunks of a repaired world. Base and log say what they hold. A snapshot of
+// the damaged world may show edits that the log lacks: then the present voxels of the chunk are
+// those of the snapshot and of the later edits, and an edit of the server at the end of the log
+// writes them. So players find the ground as they left it, wherever a snapshot is sound.
 #pragma once
 #include <functional>
 #include <map>
@@ -28,8 +28,8 @@ class GroundRebuild {
   std::vector<EditDescriptor> missing_edits(std::vector<KeptGround>& ground);
   /// Follows these records, which were appended to the log.
   void follow(const std::vector<EditRecord>& records);
-  /// Writes the snapshots of all edited chunks into a world that has none, and moves its checkpoint to
-  /// the end of the log.
+  /// Writes the snapshots of all edited chunks into a world that has none, and moves its checkpoint
+  /// to the end of the log.
   StoreResult<void> save(Store& store);
 
  private:

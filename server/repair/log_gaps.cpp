@@ -58,7 +58,8 @@ class GapPlan {
       if (added->first > materials_ && !add_materials(added->first - materials_)) return false;
       materials_ = std::max(materials_, added->first + added->rows.size());
       newest_materials_ = record.version.seq;
-    } else if (const std::size_t needed = has_voxels(record.edit) ? material_max(record.edit) + 1U : 0;
+    } else if (const std::size_t needed =
+                   has_voxels(record.edit) ? material_max(record.edit) + 1U : 0;
                needed > materials_) {
       return add_materials(needed - materials_);
     }
@@ -202,32 +203,33 @@ StoreResult<std::map<Sequence, LostRecord>> find_lost_records(sql::Database& dat
   if (lost.empty()) return known;
   auto row = database.prepare("SELECT author, cause FROM edit_log WHERE log = 0 AND seq = ?1");
   if (!row) return failed(row.error());
-  auto read = scan_index_pages(pages, [&](const std::vector<IndexEntry>& entries) -> StoreResult<void> {
-    const auto is_lost = [&](const IndexEntry& entry) {
-      return std::ranges::binary_search(lost, entry.seq);
-    };
-    if (std::ranges::none_of(entries, is_lost)) return {};
-    // The sound records of the page show which of the two indexes it belongs to.
-    std::size_t by_author = 0, by_cause = 0;
-    for (const IndexEntry& entry : entries) {
-      const sql::ResetAtEnd reset_at_end(*row);
-      const auto found = row->bind(1, static_cast<std::int64_t>(entry.seq)).step();
-      if (!found) return failed(found.error());
-      if (!*found) continue;
-      by_author += row->integer(0) == entry.value ? 1 : 0;
-      by_cause += row->integer(1) == entry.value ? 1 : 0;
-    }
-    if (by_author == by_cause) return {};
-    for (const IndexEntry& entry : entries) {
-      if (!is_lost(entry) || entry.value < 0) continue;
-      if (by_cause > by_author && entry.value <= kCauseMax) {
-        known[entry.seq].cause = static_cast<Cause>(entry.value);
-      } else if (by_author > by_cause && entry.value <= std::numeric_limits<AuthorId>::max()) {
-        known[entry.seq].author = static_cast<AuthorId>(entry.value);
-      }
-    }
-    return {};
-  });
+  auto read =
+      scan_index_pages(pages, [&](const std::vector<IndexEntry>& entries) -> StoreResult<void> {
+        const auto is_lost = [&](const IndexEntry& entry) {
+          return std::ranges::binary_search(lost, entry.seq);
+        };
+        if (std::ranges::none_of(entries, is_lost)) return {};
+        // The sound records of the page show which of the two indexes it belongs to.
+        std::size_t by_author = 0, by_cause = 0;
+        for (const IndexEntry& entry : entries) {
+          const sql::ResetAtEnd reset_at_end(*row);
+          const auto found = row->bind(1, static_cast<std::int64_t>(entry.seq)).step();
+          if (!found) return failed(found.error());
+          if (!*found) continue;
+          by_author += row->integer(0) == entry.value ? 1 : 0;
+          by_cause += row->integer(1) == entry.value ? 1 : 0;
+        }
+        if (by_author == by_cause) return {};
+        for (const IndexEntry& entry : entries) {
+          if (!is_lost(entry) || entry.value < 0) continue;
+          if (by_cause > by_author && entry.value <= kCauseMax) {
+            known[entry.seq].cause = static_cast<Cause>(entry.value);
+          } else if (by_author > by_cause && entry.value <= std::numeric_limits<AuthorId>::max()) {
+            known[entry.seq].author = static_cast<AuthorId>(entry.value);
+          }
+        }
+        return {};
+      });
   if (!read) return failed(read.error());
   return known;
 }

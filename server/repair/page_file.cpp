@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLogHeaderBytes = 32, kLogFrameHeaderBytes = 24;
 constexpr std::uint32_t kLogMagic = 0x377f0682;  // the last bit: checksums are big-endian
-constexpr std::uint32_t kFormatRepaired = 4;  // the first one with all tables
+constexpr std::uint32_t kFormatRepaired = 4;     // the first one with all tables
 constexpr std::array<std::size_t, 4> kPageBytesTried = {2'048, 4'096, 1'024, 8'192};
 
 /// The running checksum of the write-ahead log.
@@ -129,15 +129,14 @@ StoreResult<void> PageFile::read_log() {
   const auto header = read_from(*log_, 0, kLogHeaderBytes);
   LogChecksum checksum((header ? (*header)[3] & 1U : 0U) != 0);
   if (header) checksum.add(ByteView(*header).first(24));
-  bool is_sound = header && (sqlite_u32(*header, 0) & ~1U) == kLogMagic && checksum.is(*header, 24) &&
-                  sqlite_u32(*header, 8) == page_bytes_;
+  bool is_sound = header && (sqlite_u32(*header, 0) & ~1U) == kLogMagic &&
+                  checksum.is(*header, 24) && sqlite_u32(*header, 8) == page_bytes_;
   if (!is_sound) damage_.push_back("the header of world.sqlite-wal is damaged");
-  // Frames of an earlier use of the file have other salts. If the header is damaged, the first frame
-  // has the salts.
+  // Frames of an earlier use of the file have other salts. If the header is damaged, the first
+  // frame has the salts.
   Bytes salts;
   if (is_sound) salts.assign(header->begin() + 16, header->begin() + 24);
   std::map<std::uint32_t, std::uint64_t> open;  // since the last commit
-  std::uint32_t committed_pages = 0;
   for (std::uint64_t at = kLogHeaderBytes; at + kLogFrameHeaderBytes + page_bytes_ <= bytes;
        at += kLogFrameHeaderBytes + page_bytes_) {
     const auto frame = read_from(*log_, at, kLogFrameHeaderBytes + page_bytes_);
@@ -165,7 +164,7 @@ StoreResult<void> PageFile::read_log() {
     if (const std::uint32_t size = sqlite_u32(*frame, 4); size != 0) {
       for (const auto& [page, from] : open) committed_[page] = from;
       open.clear();
-      committed_pages = size;
+      committed_pages_ = size;
     }
   }
   // A transaction that was not committed was never durable, unless its end is torn.
@@ -174,7 +173,7 @@ StoreResult<void> PageFile::read_log() {
     torn_.try_emplace(page, from);
     torn_frames_.emplace_back(page, from);
   }
-  pages_ = std::max(pages_, committed_pages);
+  pages_ = std::max(pages_, committed_pages_);
   return {};
 }
 
@@ -205,7 +204,8 @@ std::optional<Bytes> PageFile::record_of(const PageCell& cell, Age age) {
   while (record.size() < cell.record_bytes) {
     std::optional<Bytes> part;
     const auto torn = age == Age::torn ? torn_.find(next) : torn_.end();
-    if (torn != torn_.end()) part = read_from(*log_, torn->second + kLogFrameHeaderBytes, page_bytes_);
+    if (torn != torn_.end())
+      part = read_from(*log_, torn->second + kLogFrameHeaderBytes, page_bytes_);
     if (!part) part = page(next);
     if (!part) return std::nullopt;
     next = sqlite_u32(*part, 0);
@@ -244,9 +244,14 @@ void PageFile::read_free_pages() {
     for (std::uint32_t i = 0; i < leaves && is_sound; ++i) take(sqlite_u32(*list, 8 + 4 * i));
     trunk = sqlite_u32(*list, 0);
   }
-  if (is_sound && found == expected) return;
-  damage_.push_back("the list of free pages is damaged");
-  is_free_.assign(is_free_.size(), false);
+  if (!is_sound || found != expected) {
+    damage_.push_back("the list of free pages is damaged");
+    is_free_.assign(is_free_.size(), false);
+  }
+  // A file that has become smaller is cut off when its log is moved into it.
+  if (committed_pages_ == 0 || has_torn_pages()) return;
+  for (std::uint32_t number = committed_pages_ + 1; number <= pages_; ++number)
+    is_free_[number] = true;
 }
 
 }  // namespace runstone

@@ -33,13 +33,15 @@ class PageFile {
   std::uint32_t pages() const { return pages_; }
   /// Returns a page, or nullopt if it cannot be read.
   std::optional<Bytes> page(std::uint32_t number);
+  bool has_torn_pages() const { return !torn_frames_.empty(); }
   /// Returns the torn frames, each with its number of a page and its bytes.
   std::vector<std::pair<std::uint32_t, Bytes>> torn_pages();
   /// Returns the bytes before the header of a page.
   static std::size_t header_bytes(std::uint32_t number) {
     return number == 1 ? kDatabaseHeaderBytes : 0;
   }
-  /// Returns the whole record of a cell, with its overflow pages. Returns nullopt if they end early.
+  /// Returns the whole record of a cell, with its overflow pages. Returns nullopt if they end
+  /// early.
   std::optional<Bytes> record_of(const PageCell& cell, Age age);
   /// Returns true for each page that SQLite does not use. Element 0 is not a page.
   const std::vector<bool>& free_pages() const { return is_free_; }
@@ -63,6 +65,7 @@ class PageFile {
   std::optional<sql::VfsFile> log_;
   std::size_t page_bytes_ = 0;
   std::uint32_t pages_ = 0;
+  std::uint32_t committed_pages_ = 0;  // as the last commit of the log says; 0: there is none
   // Where the newest frame of a page begins in the log.
   std::map<std::uint32_t, std::uint64_t> committed_, torn_;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> torn_frames_;

@@ -41,8 +41,8 @@ Result<FileLock, std::string> lock_world(const std::string& folder) {
                       : "world.lock cannot be written: " + lock.error().what));
 }
 
-/// Returns a record that adds the materials that the voxels of `edits` have and the table lacks, and
-/// behind it the records of the edits.
+/// Returns a record that adds the materials that the voxels of `edits` have and the table lacks,
+/// and behind it the records of the edits.
 std::vector<EditRecord> records_of(std::vector<EditDescriptor> edits, std::size_t materials,
                                    const LogEnd& last, Epoch epoch, TimeUs now_us,
                                    WorldRebuild& rebuild, RepairReport& report) {
@@ -96,12 +96,11 @@ StoreResult<void> rebuild_ground(const std::string& folder, TimeUs now_us, bool 
   if (!range) return failure(range.error());
   const auto materials = (*store)->materials();
   if (!materials) return failure(materials.error());
-  const auto records = records_of(std::move(edits), materials->size(), range->last, *epoch, now_us,
-                                  rebuild, report);
+  const auto records =
+      records_of(std::move(edits), materials->size(), range->last, *epoch, now_us, rebuild, report);
   for (std::size_t at = 0; at < records.size(); at += kEditsAtOnce) {
-    const std::span<const EditRecord> part(
-        records.begin() + static_cast<std::ptrdiff_t>(at),
-        std::min(kEditsAtOnce, records.size() - at));
+    const std::span<const EditRecord> part(records.begin() + static_cast<std::ptrdiff_t>(at),
+                                           std::min(kEditsAtOnce, records.size() - at));
     if (auto appended = (*store)->append({}, part); !appended) return appended;
   }
   ground.follow(records);

@@ -1,5 +1,5 @@
-// runstone-server repair: makes a sound world of a damaged one. It reads every row that can be read,
-// makes everything else anew, says what is gone, and proves the result.
+// runstone-server repair: makes a sound world of a damaged one. It reads every row that can be
+// read, makes everything else anew, says what is gone, and proves the result.
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -17,10 +17,11 @@ struct RepairRequest {
   bool progress = false;  // print progress even if standard error is no terminal
 };
 
-/// Makes the repaired world in the new folder `to`, and prints what was found, what is gone, and the
-/// proof. The damaged world stays as it is; no server may run it. `now_us` is the time in UTC. The
-/// error is one line. Fails if
-///   - the world cannot be repaired, or another program writes or repairs it. `to` is not there then;
+/// Makes the repaired world in the new folder `to`, and prints what was found, what is gone, and
+/// the proof. The damaged world stays as it is; no server may run it. `now_us` is the time in UTC.
+/// The error is one line. Fails if
+///   - the world cannot be repaired, or another program writes or repairs it. `to` is not there
+///     then;
 ///   - the repaired world is not sound. It stays in `to`, and nothing is exchanged.
 Result<void, std::string> repair(const RepairRequest& request, TimeUs now_us, std::ostream& out);
 

@@ -64,9 +64,8 @@ void print(const RepairReport& report, std::int32_t edge, std::ostream& out) {
     out << "materials   " << report.materials_made
         << " rows named lost_ID stand for materials that are lost\n";
   }
-  const bool has_lost_rights = std::ranges::any_of(report.lost, [](const LostEdit& edit) {
-    return !edit.cause || edit.cause == Cause::rights;
-  });
+  const bool has_lost_rights = std::ranges::any_of(
+      report.lost, [](const LostEdit& edit) { return !edit.cause || edit.cause == Cause::rights; });
   if (has_lost_rights) {
     out << "rights      changes of rights may be lost: look at roles, bans and protected boxes\n";
   }

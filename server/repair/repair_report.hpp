@@ -29,15 +29,15 @@ struct KeptGround {
 };
 
 struct RepairReport {
-  std::vector<std::string> damage;    // one line each
-  std::uint64_t records = 0;          // of the log that were found
+  std::vector<std::string> damage;  // one line each
+  std::uint64_t records = 0;        // of the log that were found
   std::uint64_t records_from_backup = 0;
   std::vector<LostEdit> lost;
-  std::size_t materials_made = 0;     // rows in place of lost ones
+  std::size_t materials_made = 0;  // rows in place of lost ones
   std::vector<KeptGround> ground;
-  std::vector<std::string> taken;     // from the backup, one line for each table
-  std::vector<std::string> losses;    // of other tables than the log, one line each
-  Epoch epoch = 0;                    // of the repaired world
+  std::vector<std::string> taken;   // from the backup, one line for each table
+  std::vector<std::string> losses;  // of other tables than the log, one line each
+  Epoch epoch = 0;                  // of the repaired world
 };
 
 /// Prints the report. `edge` is that of the chunks.

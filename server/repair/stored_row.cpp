@@ -41,7 +41,7 @@ std::optional<StoredRow> decode_stored_row(ByteView record) {
   while (at < types.size()) {
     const auto type = read_sqlite_varint(types, at);
     if (!type || *type == 7 || *type == 10 || *type == 11) return std::nullopt;
-    const std::uint64_t bytes = *type >= 12 ? (*type - 12) / 2
+    const std::uint64_t bytes = *type >= 12  ? (*type - 12) / 2
                                 : *type <= 6 ? integer_bytes(*type)
                                              : 0;
     if (bytes > body.size()) return std::nullopt;

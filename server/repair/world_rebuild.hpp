@@ -22,8 +22,8 @@ namespace runstone {
 
 class WorldRebuild {
  public:
-  /// `folder` has the damaged world and its durable mark. `backup` may be null. `now_us` is the time
-  /// in UTC. All must outlive the object.
+  /// `folder` has the damaged world and its durable mark. `backup` may be null. `now_us` is the
+  /// time in UTC. All must outlive the object.
   WorldRebuild(const std::string& folder, PageFile& pages, BackupRows* backup, TimeUs now_us,
                RepairReport& report)
       : folder_(folder), pages_(pages), backup_(backup), now_us_(now_us), report_(report) {}

@@ -24,8 +24,7 @@ class Scan {
       : pages_(pages), proof_(proof), events_(events) {}
 
   StoreResult<void> page(std::uint32_t number, const Bytes& bytes, RowOrigin origin) {
-    const auto found =
-        cells_of(bytes, PageFile::header_bytes(number), pages_.page_bytes());
+    const auto found = cells_of(bytes, PageFile::header_bytes(number), pages_.page_bytes());
     if (!found) {
       const bool is_blank = std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0; });
       if (origin == RowOrigin::used && is_blank) damaged(number, "has only zeros");

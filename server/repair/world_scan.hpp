@@ -38,8 +38,8 @@ struct IndexEntry {
   std::int64_t value = 0;
   Sequence seq = 0;
 };
-/// Calls `each` for the entries of each page of an index of the log by author or by cause. The pages
-/// do not say which of the two it is.
+/// Calls `each` for the entries of each page of an index of the log by author or by cause. The
+/// pages do not say which of the two it is.
 StoreResult<void> scan_index_pages(
     PageFile& pages, const std::function<StoreResult<void>(const std::vector<IndexEntry>&)>& each);
 

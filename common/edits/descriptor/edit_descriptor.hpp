@@ -169,8 +169,9 @@ struct GapEdit {
 };
 
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit, ShapesEdit, TextureEdit, ClockEdit, GapEdit>;
+using EditShape =
+    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit, MaterialsEdit,
+                 LibraryEdit, ShapesEdit, TextureEdit, ClockEdit, GapEdit>;
 
 struct EditDescriptor {
   EditShape shape;

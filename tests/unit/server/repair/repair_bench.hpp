@@ -1,6 +1,7 @@
-// RepairBench: a world of three authors with snapshots, a keyframe and a change of rights, its damage,
-// and its repair.
+// RepairBench: a world of three authors with snapshots, a keyframe and a change of rights, its
+// damage, and its repair.
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -28,9 +29,9 @@ using ChunkDigests = std::map<ChunkKey, Digest>;
 
 class RepairBench {
  public:
-  /// Makes the world, and a copy of it as it was after kRepairBackup edits. `compacted` edits are in
-  /// the base. If `is_open`, the copy that is repaired was made while a program wrote the world: its
-  /// newest edits are in the write-ahead log alone.
+  /// Makes the world, and a copy of it as it was after kRepairBackup edits. `compacted` edits are
+  /// in the base. If `is_open`, the copy that is repaired was made while a program wrote the world:
+  /// its newest edits are in the write-ahead log alone.
   explicit RepairBench(std::uint64_t seed = 1, Sequence compacted = 0, bool is_open = false) {
     SplitMix64 rng(seed);
     auto made = create_world(source_, sample_meta());
@@ -53,6 +54,9 @@ class RepairBench {
         row.visibility = Visibility::opaque;
         record.edit = materials_edit(
             {static_cast<Material>(sample_meta().materials.size()), {std::move(row)}});
+      } else if (seq == 70) {
+        record.edit = {
+            SetVoxel{{0, 0, 0}}, {}, static_cast<Material>(sample_meta().materials.size())};
       }
       REQUIRE(store->append(players, std::vector{record}).has_value());
       players.clear();
@@ -63,7 +67,7 @@ class RepairBench {
       if (seq == kRepairCheckpoint) save_snapshots(*store, seq);
     }
     records = records_of(*store);
-    digests = digests_of(*store);
+    digests_ = digests_of(*store);
     if (is_open) copy_world(world);
     store.reset();
     if (!is_open) copy_world(world);
@@ -92,12 +96,14 @@ class RepairBench {
     REQUIRE(read.has_value());
     return out;
   }
-  ChunkDigests digests_of(Store& store) const {
+  /// Returns true if a world shows the same voxels as the undamaged one.
+  bool has_same_ground(Store& store) const {
     auto end = WorldAt::open(store, *generator_, *store.last_sequence());
     REQUIRE(end.has_value());
-    ChunkDigests out;
-    for (const ChunkKey& key : end->edited()) out[key] = end->chunk(key)->digest;
-    return out;
+    return std::ranges::all_of(digests_, [&](const auto& row) {
+      const auto chunk = end->chunk(row.first);
+      return chunk && chunk->digest == row.second;
+    });
   }
   /// Overwrites bytes of a file.
   static void overwrite(const std::string& file, std::uint64_t at, const std::string& bytes) {
@@ -116,10 +122,16 @@ class RepairBench {
   TempFolder folder;
   const std::string world = folder / "world", to = folder / "new", backup = folder / "backup";
   std::map<Sequence, EditRecord> records;  // of the undamaged world
-  ChunkDigests digests;                    // of the undamaged world
   std::string printed;
 
  private:
+  ChunkDigests digests_of(Store& store) const {
+    auto end = WorldAt::open(store, *generator_, *store.last_sequence());
+    REQUIRE(end.has_value());
+    ChunkDigests out;
+    for (const ChunkKey& key : end->edited()) out[key] = end->chunk(key)->digest;
+    return out;
+  }
   static PublicKey players_key(AuthorId author) { return sample_player(author).key; }
   void copy_world(const std::string& target) const {
     std::filesystem::create_directory(target);
@@ -149,6 +161,7 @@ class RepairBench {
 
   const std::string source_ = folder / "source";
   std::unique_ptr<Generator> generator_;
+  ChunkDigests digests_;  // of the undamaged world
 };
 
 }  // namespace runstone::test
