@@ -76,6 +76,7 @@ struct Mirror {
   void operator()(ShapesEdit&) const {}
   void operator()(TextureEdit&) const {}
   void operator()(ClockEdit&) const {}
+  void operator()(GapEdit&) const {}
 };
 
 /// Appends an edit unless it has the voxels of another one. A copy onto itself has, although its

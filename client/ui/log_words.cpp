@@ -23,6 +23,8 @@ std::string kind_words(EditKind kind) {
       return "texture of materials";
     case EditKind::clock:
       return "time of the world";
+    case EditKind::gap:
+      return "lost record";
     default:
       return name_of(kind);
   }
@@ -47,6 +49,7 @@ std::string record_words(EditKind kind, Cause cause) {
     case Cause::library:
     case Cause::textures:
     case Cause::clock:
+    case Cause::gap:
       return kind_words(kind);
   }
   return kind_words(kind);

@@ -52,14 +52,15 @@ enum class Cause : std::uint8_t {
   materials = 7,  // new materials, by the console
   library = 8,    // a change of the library of builds, by a player or by the console (author 0)
   clock = 9,      // the clock of the world is set, by a player or by the console (author 0)
-  textures = 10   // a picture for sides of materials, by the console
+  textures = 10,  // a picture for sides of materials, by the console
+  gap = 11        // a record that a repair could not read stood here
 };
-inline constexpr std::uint8_t kCauseMax = 10;
+inline constexpr std::uint8_t kCauseMax = 11;
 /// Returns true if the edits with this cause change voxels. The others change rights, materials,
-/// textures, the library of builds or the clock.
+/// textures, the library of builds or the clock, or stand for a lost record.
 constexpr bool changes_voxels(Cause cause) {
   return cause != Cause::rights && cause != Cause::materials && cause != Cause::library &&
-         cause != Cause::clock && cause != Cause::textures;
+         cause != Cause::clock && cause != Cause::textures && cause != Cause::gap;
 }
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs

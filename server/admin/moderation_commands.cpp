@@ -25,20 +25,29 @@ std::string memory_text(std::size_t bytes) {
   return std::to_string(bytes / (1024 * 1024)) + " MiB";
 }
 
+/// Returns a line with what to do about damaged rows, or an empty text if none is known.
+std::string damage_text(const OperatorActions& actions) {
+  const std::uint64_t faults = actions.row_faults ? actions.row_faults() : 0;
+  if (faults == 0) return "";
+  return "\nDAMAGE: " + std::to_string(faults) +
+         " rows or parts of the world are damaged: the log of the server names them; stop it and run "
+         "`runstone-server repair`";
+}
+
 void show_status(const CommandCall& call) {
   const WorldServer& world = call.world();
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer("sessions " + std::to_string(world.session_count()) + ", edits " +
-              std::to_string(world.order().head()) + " (on disk " +
-              std::to_string(world.order().durable()) + "), since the start " +
-              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-              " rejected\nchunks in memory " +
-              std::to_string(world.order().chunks().resident_count()) + " (" +
-              memory_text(memory.voxels) + "), waiting edits " +
-              memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
-              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-              std::to_string(call.services.rollback.running()));
+  call.answer(
+      "sessions " + std::to_string(world.session_count()) + ", edits " +
+      std::to_string(world.order().head()) + " (on disk " +
+      std::to_string(world.order().durable()) + "), since the start " +
+      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
+      " (" + memory_text(memory.voxels) + "), waiting edits " +
+      memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
+      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+      std::to_string(call.services.rollback.running()) + damage_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

@@ -33,6 +33,8 @@ struct OperatorActions {
   std::function<bool(std::uint64_t content, std::shared_ptr<const Bytes> file,
                      std::function<void(const std::string&)> done)>
       save_build_file;
+  /// Returns how many damaged rows the check of the world has found. The runtime sets it.
+  std::function<std::uint64_t()> row_faults;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

@@ -27,7 +27,7 @@ struct CauseName {
   std::string_view name;
   Cause cause;
 };
-constexpr std::array<CauseName, 11> kCauses = {{{"player", Cause::player},
+constexpr std::array<CauseName, 12> kCauses = {{{"player", Cause::player},
                                                 {"console", Cause::console},
                                                 {"rollback", Cause::rollback},
                                                 {"undo", Cause::undo},
@@ -37,9 +37,11 @@ constexpr std::array<CauseName, 11> kCauses = {{{"player", Cause::player},
                                                 {"materials", Cause::materials},
                                                 {"library", Cause::library},
                                                 {"clock", Cause::clock},
-                                                {"textures", Cause::textures}}};
+                                                {"textures", Cause::textures},
+                                                {"gap", Cause::gap}}};
 constexpr const char* kCauseNames =
-    "player, console, rollback, undo, redo, import, rights, materials, library, clock or textures";
+    "player, console, rollback, undo, redo, import, rights, materials, library, clock, textures or "
+    "gap";
 
 CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   if (word.starts_with('#')) {
@@ -218,6 +220,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"textures\": textures stay");
   if (preview.filter.cause == Cause::clock)
     return failure("rollback preview cause \"clock\": `time` sets the time of the world");
+  if (preview.filter.cause == Cause::gap)
+    return failure("rollback preview cause \"gap\": these records are lost and have no voxels");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return failure(
@@ -336,6 +340,10 @@ std::string log_line(const EditRecord& record, const std::string& author,
     return line + " " + library_change_text(*change);
   if (const WorldTime* time = world_time_of(record.edit))
     return line + " time " + day_time_text(time->day_ms) + " rate " + std::to_string(time->rate);
+  if (const GapEdit* gap = gap_of(record.edit)) {
+    const std::string whose = gap->author == 0 ? "" : " of #" + std::to_string(gap->author);
+    return line + " lost record" + whose;
+  }
   return line + " " + edit_text(record, materials);
 }
 

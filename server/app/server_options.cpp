@@ -171,6 +171,32 @@ CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
   return restore;
 }
 
+CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
+  CLI::App* const repair =
+      app.add_subcommand("repair", "make a sound world of a damaged one, and say what is gone");
+  // A world in a database has no pages that could be read.
+  const auto refusal = [](const std::string& place) {
+    return check_database_address(place)
+               ? "is in a database: `runstone-server copy` it to a folder first, and back afterwards"
+               : folder_refusal(place);
+  };
+  repair->add_option("--world", out.world, "folder of the damaged world; no server may run it")
+      ->required()
+      ->check(refusal);
+  repair->add_option("--to", out.to, "the new folder; empty, or not there")
+      ->required()
+      ->check(folder_refusal);
+  repair
+      ->add_option("--from", out.from, "folder of an older backup, from which lost rows are taken")
+      ->check(folder_refusal);
+  repair->add_flag("--in-place", out.in_place,
+                   "give the repaired world the name of the damaged one at the end; --to is then "
+                   "the damaged one");
+  repair->add_flag("--progress", out.progress,
+                   "print progress even if standard error is no terminal");
+  return repair;
+}
+
 CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   CLI::App* const control =
       app.add_subcommand("control", "give a running server a command, such as `control help`");
@@ -195,10 +221,11 @@ int arguments_before_command(int argc, const char* const* argv) {
 void print_unknown_argument(const CLI::App& app) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const std::string argument = app.remaining(true).front();
-  std::cerr << "runstone-server: \"" << argument
-            << "\" is no subcommand (import, compact, copy, backup, restore, control) and no flag"
-            << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
-            << "; --help lists the flags\n";
+  std::cerr
+      << "runstone-server: \"" << argument
+      << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
+      << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
+      << "; --help lists the flags\n";
 }
 
 }  // namespace
@@ -210,6 +237,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   CopyRequest copy_request;
   BackupRequest backup_request;
   RestoreRequest restore_request;
+  RepairRequest repair_request;
   ControlRequest control_request;
   CLI::App app{"Runstone world server"};
   // The last value wins, so that arguments appended to a fixed command line (a container's) change
@@ -221,6 +249,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   const CLI::App* const copy = add_copy(app, copy_request);
   const CLI::App* const backup = add_backup(app, backup_request);
   const CLI::App* const restore = add_restore(app, restore_request);
+  const CLI::App* const repair = add_repair(app, repair_request);
   const CLI::App* const control = add_control(app, control_request);
   const int parsed = arguments_before_command(argc, argv);
   try {
@@ -236,6 +265,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   if (copy->parsed()) out.copy = copy_request;
   if (backup->parsed()) out.backup = backup_request;
   if (restore->parsed()) out.restore = restore_request;
+  if (repair->parsed()) out.repair = repair_request;
   if (control->parsed()) {
     control_request.words = control->remaining();
     control_request.words.insert(control_request.words.end(), argv + parsed, argv + argc);

@@ -9,6 +9,7 @@
 #include "server/admin/copy_program.hpp"
 #include "server/backup/backup_program.hpp"
 #include "server/import/import_program.hpp"
+#include "server/repair/repair_program.hpp"
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
@@ -25,6 +26,7 @@ struct ServerOptions {
   std::optional<CopyRequest> copy;        // the copy subcommand
   std::optional<BackupRequest> backup;    // the backup subcommand
   std::optional<RestoreRequest> restore;  // the restore subcommand
+  std::optional<RepairRequest> repair;    // the repair subcommand
   bool console = false;          // read commands from standard input even if it is no terminal
   bool stop_with_input = false;  // stop when standard input ends
   std::optional<ControlRequest> control;  // the control subcommand

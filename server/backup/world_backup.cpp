@@ -46,27 +46,6 @@ bool is_configuration(const fs::directory_entry& entry) {
          entry.path().extension() == ".toml" && entry.file_size(error) <= kConfigurationBytesMax;
 }
 
-/// Copies the configuration. Returns the names of what is left out.
-Result<std::vector<std::string>, std::string> copy_configuration(const fs::path& from,
-                                                                 const fs::path& to) {
-  std::vector<std::string> left_out;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(from, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name == kDatabase || name == kMark ||
-        std::find(kMadeAnew.begin(), kMadeAnew.end(), name) != kMadeAnew.end())
-      continue;
-    if (!is_configuration(entry)) {
-      left_out.push_back(name);
-    } else if (auto copied = copy_small(entry.path(), to / name); !copied) {
-      return failure(copied.error());
-    }
-  }
-  if (error) return failure(from.string() + ": cannot be read: " + error.message());
-  std::sort(left_out.begin(), left_out.end());
-  return left_out;
-}
-
 /// Moves the write-ahead log of a closed database into it. Closing it does the same, and says nothing
 /// if it could not.
 StoreResult<void> move_log(const std::string& file) {
@@ -123,7 +102,7 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
   const auto moment = copy_database(database, use, (target / kDatabase).string(), pace, progress);
   if (!moment) return failure(moment.error().message());
   backup.moment = *moment;
-  auto left_out = copy_configuration(source, target);
+  auto left_out = copy_configuration(from, to);
   if (!left_out) return failure(left_out.error());
   backup.left_out = *std::move(left_out);
   backup.copy_s = seconds_since(begun);
@@ -141,6 +120,26 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
   }
   for (const std::string_view name : kMadeAnew) fs::remove(target / name, error);
   return backup;
+}
+
+Result<std::vector<std::string>, std::string> copy_configuration(const std::string& from,
+                                                                 const std::string& to) {
+  std::vector<std::string> left_out;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(from, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kDatabase || name == kMark ||
+        std::find(kMadeAnew.begin(), kMadeAnew.end(), name) != kMadeAnew.end())
+      continue;
+    if (!is_configuration(entry)) {
+      left_out.push_back(name);
+    } else if (auto copied = copy_small(entry.path(), fs::path(to) / name); !copied) {
+      return failure(copied.error());
+    }
+  }
+  if (error) return failure(from + ": cannot be read: " + error.message());
+  std::sort(left_out.begin(), left_out.end());
+  return left_out;
 }
 
 bool is_inside(const std::string& inner, const std::string& outer) {

@@ -33,6 +33,11 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
                                                const BackupPace& pace,
                                                const BackupProgress& progress);
 
+/// Copies the configuration, the files *.toml, from a world's folder to another one. Returns the
+/// names of what is left out: neither configuration nor files of a world. The error is one line.
+Result<std::vector<std::string>, std::string> copy_configuration(const std::string& from,
+                                                                 const std::string& to);
+
 /// Returns true if the folder `inner` is `outer` or lies in it. Symbolic links are resolved.
 bool is_inside(const std::string& inner, const std::string& outer);
 

@@ -15,6 +15,7 @@ struct RuntimeCounters {
   std::int64_t commit_enqueue_us = 0;  // processor time that queueing commits took
   std::uint64_t memory_bytes = 0;      // of the process
   std::uint64_t log_lines_dropped = 0;
+  std::uint64_t row_faults = 0;  // that the check of the rows has found
 };
 
 /// Returns one line of fields. Thread: the world strand.

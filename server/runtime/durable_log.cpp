@@ -40,6 +40,7 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   if (options.keyframes) {
     keyframes_ = std::make_unique<KeyframeThread>(place, generator, *options.keyframes, *writer_);
   }
+  if (options.checks_rows) check_ = std::make_unique<CheckThread>(place);
   store_.watch_ownership([this](const StoreError& error) { on_failed(error); });
 }
 
@@ -87,6 +88,7 @@ void DurableLog::on_space(DiskSpace space, const std::string& reason) {
 
 void DurableLog::stop() {
   store_.watch_ownership({});
+  if (check_) check_->stop();
   if (keyframes_) keyframes_->stop();
   writer_->stop();
 }

@@ -1,4 +1,4 @@
-// DurableLog: the log writer and the keyframe thread of a running world. It reports their progress
+// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It reports their progress
 // on the world strand. Several group commits become one report if the strand has not run in
 // between.
 // Threads: writer() as LogWriter says; the events run on the world strand.
@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/generate/generator.hpp"
+#include "server/runtime/check_thread.hpp"
 #include "server/runtime/keyframe_thread.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/log_writer.hpp"
@@ -25,6 +26,7 @@ class DurableLog {
     std::uint64_t reserve_bytes = 0;          // LogWriter::Limits::reserve_bytes
     Sequence durable = 0;                     // what the log holds already
     std::optional<KeyframePolicy> keyframes;  // nullopt: no keyframes are made
+    bool checks_rows = false;                 // all rows are read and verified meanwhile
   };
   struct Events {
     /// Reports that every edit up to the sequence is on disk.
@@ -63,7 +65,9 @@ class DurableLog {
   bool is_full() const { return is_full_.load(); }
   /// Returns the last edit that is on disk. Thread: any.
   Sequence durable() const { return durable_.load(); }
-  /// Stops making keyframes, writes what is queued, and ends both threads. On a full disk the edits
+  /// Returns how many faults the check of the rows has found. Thread: any.
+  std::uint64_t row_faults() const { return check_ ? check_->faults() : 0; }
+  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full disk the edits
   /// behind durable() are lost. It may be called again.
   void stop();
 
@@ -81,6 +85,7 @@ class DurableLog {
   std::atomic<bool> is_full_{false};
   std::unique_ptr<LogWriter> writer_;
   std::unique_ptr<KeyframeThread> keyframes_;  // null without a policy; uses writer_
+  std::unique_ptr<CheckThread> check_;         // null without checks_rows
 };
 
 }  // namespace runstone

@@ -141,6 +141,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
       evidence.is_synchronised = is_clock_synchronised();
       return doubt_of_clock_behind(evidence);
     };
+    actions.row_faults = [this] { return log_ ? log_->row_faults() : 0; };
     // The log writer is another one after each takeover.
     actions.save_build_file = [this](std::uint64_t content, std::shared_ptr<const Bytes> file,
                                      std::function<void(const std::string&)> done) {
@@ -163,6 +164,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
   options.reserve_bytes = config_.disk_reserve_mib << 20;
   options.durable = durable;
   if (config_.keyframe_edits > 0) options.keyframes = KeyframePolicy{config_.keyframe_edits};
+  options.checks_rows = true;
   // A task that on_space posts from the constructor runs later.
   log_ = std::make_unique<DurableLog>(strand_, store, world_place(config_), generator_, options,
                                       log_events());
@@ -336,7 +338,7 @@ void ServerCore::log_counters() {
 
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
   const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
-                                memory_bytes, dropped_log_lines()};
+                                memory_bytes, dropped_log_lines(), log_ ? log_->row_faults() : 0};
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
 }
 

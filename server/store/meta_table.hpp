@@ -58,6 +58,8 @@ inline constexpr const char* kLogErasKey = "log_eras";
 inline constexpr const char* kShapesKey = "shapes";
 /// The key of a row, always 1, that only a world has to which a texture was given.
 inline constexpr const char* kTexturesKey = "textures";
+/// The key of a row, always 1, that only a world has whose log has or had a gap.
+inline constexpr const char* kGapsKey = "gaps";
 
 /// The keys of the rows that clock() and places() read. Only a world whose clock was set has the
 /// first one.

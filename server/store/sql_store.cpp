@@ -206,6 +206,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   if (auto added = add_eras(records); !added) return added;
   if (auto applied = apply_library(records, is_history); !applied) return applied;
   if (auto marked = mark_textures(records); !marked) return marked;
+  if (auto marked = mark_gaps(records); !marked) return marked;
   if (auto set = set_clock(records); !set) return set;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
@@ -228,6 +229,14 @@ StoreResult<void> SqlStore::add_eras(std::span<const EditRecord> records) {
   eras->insert(eras->end(), added.begin(), added.end());
   if (auto put = meta_table_.put_log_eras(*eras); !put) return put;
   return raise_format(kWorldFormatOfEras);
+}
+
+StoreResult<void> SqlStore::mark_gaps(std::span<const EditRecord> records) {
+  const bool has_gaps = std::ranges::any_of(
+      records, [](const EditRecord& record) { return gap_of(record.edit) != nullptr; });
+  if (!has_gaps) return {};
+  if (auto put = meta_table_.put(kGapsKey, std::int64_t{1}); !put) return put;
+  return raise_format(kWorldFormatOfGaps);
 }
 
 StoreResult<void> SqlStore::raise_format(std::uint32_t format) {

@@ -203,6 +203,8 @@ class SqlStore final : public Store {
   StoreResult<void> append_materials(const EditRecord& record, MaterialTable& table) const;
   /// Marks the world as one with textures if a record gives one.
   StoreResult<void> mark_textures(std::span<const EditRecord> records);
+  /// Marks the world as one with gaps if a record is one.
+  StoreResult<void> mark_gaps(std::span<const EditRecord> records);
   /// Marks the world as one with shapes if a record gives some, and records the rules of tiles that
   /// follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
   /// records are inserted.

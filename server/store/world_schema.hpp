@@ -34,15 +34,18 @@ inline constexpr std::uint32_t kWorldFormatOfTextures = 9;
 /// The format of a world whose clock was set (kClockKey): its log has records that programs of
 /// format 9 do not know. It has the tables of a library only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfClock = 10;
+/// The format of a world that was repaired and lacks records (kGapsKey): its log has records that
+/// programs of format 10 do not know. It has the tables of a library only if it has a library.
+inline constexpr std::uint32_t kWorldFormatOfGaps = 11;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Returns "world formats 5, 6, 7, 8, 9 and 10": those that this program makes, for --version.
+/// Returns "world formats 5, 6, 7, 8, 9, 10 and 11": those that this program makes, for --version.
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
          std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) + ", " +
          std::to_string(kWorldFormatOfShapes) + ", " + std::to_string(kWorldFormatOfTextures) +
-         " and " + std::to_string(kWorldFormatOfClock);
+         ", " + std::to_string(kWorldFormatOfClock) + " and " + std::to_string(kWorldFormatOfGaps);
 }
 
 /// Makes all tables in the caller's transaction.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "common/edits/descriptor/placed_clipboard.hpp"
@@ -118,6 +119,8 @@ Result<void> validate_shape(const ClockEdit& shape) {
   return {};
 }
 
+Result<void> validate_shape(const GapEdit&) { return {}; }
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -176,6 +179,11 @@ void write_shape(ByteWriter& w, const TextureEdit& shape) { write_given_texture(
 void write_shape(ByteWriter& w, const ClockEdit& shape) {
   w.varint(shape.time.day_ms);
   w.varint(shape.time.rate);
+}
+
+void write_shape(ByteWriter& w, const GapEdit& shape) {
+  w.u8(shape.begins_era ? 1 : 0);
+  w.varint(shape.author);
 }
 
 std::int32_t read_coordinate(ByteReader& r) {
@@ -239,6 +247,16 @@ WorldTime read_world_time(ByteReader& r) {
   return time;
 }
 
+GapEdit read_gap(ByteReader& r) {
+  GapEdit gap;
+  const std::uint8_t flags = r.u8();
+  if (flags > 1) r.reject(ErrorCode::bad_value, "unknown flags of a gap");
+  gap.begins_era = flags == 1;
+  gap.author = static_cast<AuthorId>(
+      r.varint_max(std::numeric_limits<AuthorId>::max(), "author exceeds 32 bits"));
+  return gap;
+}
+
 Material read_material(ByteReader& r) {
   return static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
 }
@@ -257,6 +275,7 @@ bool is_kind(std::uint8_t tag) {
     case EditKind::shapes:
     case EditKind::texture:
     case EditKind::clock:
+    case EditKind::gap:
       return true;
   }
   return false;
@@ -299,6 +318,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       return TextureEdit{std::make_shared<const GivenTexture>(read_given_texture(r))};
     case EditKind::clock:
       return ClockEdit{read_world_time(r)};
+    case EditKind::gap:
+      return read_gap(r);
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -309,7 +330,7 @@ EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
       EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
       EditKind::paste,     EditKind::rights,   EditKind::materials,   EditKind::library,
-      EditKind::shapes,    EditKind::texture,  EditKind::clock};
+      EditKind::shapes,    EditKind::texture,  EditKind::clock,       EditKind::gap};
   const AddedMaterials* added = added_materials_of(edit);
   if (added != nullptr && has_looks(*added)) return EditKind::materials_with_looks;
   return kKinds[edit.shape.index()];
@@ -336,6 +357,8 @@ EditDescriptor texture_edit(GivenTexture given) {
 }
 
 EditDescriptor clock_edit(const WorldTime& time) { return {ClockEdit{time}, {}, kEmpty}; }
+
+EditDescriptor gap_edit(const GapEdit& gap) { return {gap, {}, kEmpty}; }
 
 Result<void> validate(const EditDescriptor& edit) {
   if (static_cast<std::uint8_t>(edit.mask.kind) >
@@ -403,11 +426,11 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
 Result<EditDescriptor> decode_voxel_edit(ByteView in) {
   // By the kind alone, because the rest of such an edit costs time to check.
   if (!in.empty() && in[0] >= static_cast<std::uint8_t>(EditKind::rights) &&
-      in[0] <= static_cast<std::uint8_t>(EditKind::clock))
+      in[0] <= static_cast<std::uint8_t>(EditKind::gap))
     return fail(
         ErrorCode::unknown_kind,
-        "a change of rights, materials, shapes, textures, the library or the clock is no edit "
-        "of voxels");
+        "a change of rights, materials, shapes, textures, the library or the clock, or a gap, is "
+        "no edit of voxels");
   return decode_descriptor(in);
 }
 

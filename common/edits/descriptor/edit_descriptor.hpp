@@ -3,7 +3,8 @@
 // chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
 // in the log and in exports. The meaning of a kind is frozen; a change is a new kind. Some kinds
 // have no voxels: they change who may do what, add materials, give them shapes or textures, change
-// the library of builds, or set the clock of the world. They stand in the same order as the others.
+// the library of builds, set the clock of the world, or stand for a lost record. They stand in the
+// same order as the others.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,8 @@ enum class EditKind : std::uint8_t {
   library = 10,
   shapes = 11,
   texture = 12,
-  clock = 13
+  clock = 13,
+  gap = 14
 };
 
 /// The condition on the present voxels of the geometry that an edit may write. The values are
@@ -157,9 +159,19 @@ struct ClockEdit {
   friend bool operator==(const ClockEdit&, const ClockEdit&) = default;
 };
 
+/// Stands in the log for a record that was lost, so that sequence numbers have no gaps. It has no
+/// voxels and touches no chunk.
+struct GapEdit {
+  AuthorId author = 0;  // of the lost record; 0: the server, or not known
+  // The lost record corrected the time of the log: times may fall here.
+  bool begins_era = false;
+  friend bool operator==(const GapEdit&, const GapEdit&) = default;
+};
+
 // The order is that of EditKind. Both kinds of new materials are MaterialsEdit.
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit,
-                               MaterialsEdit, LibraryEdit, ShapesEdit, TextureEdit, ClockEdit>;
+using EditShape =
+    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste, RightsEdit, MaterialsEdit,
+                 LibraryEdit, ShapesEdit, TextureEdit, ClockEdit, GapEdit>;
 
 struct EditDescriptor {
   EditShape shape;
@@ -220,6 +232,12 @@ inline const WorldTime* world_time_of(const EditDescriptor& edit) {
   const auto* clock = std::get_if<ClockEdit>(&edit.shape);
   return clock == nullptr ? nullptr : &clock->time;
 }
+/// Returns the descriptor of a gap.
+EditDescriptor gap_edit(const GapEdit& gap);
+/// Returns the gap of a descriptor that stands for a lost record; null for the other kinds.
+inline const GapEdit* gap_of(const EditDescriptor& edit) {
+  return std::get_if<GapEdit>(&edit.shape);
+}
 /// Returns true if the edit adds materials or gives shapes to some: it changes the material table.
 inline bool changes_materials(const EditDescriptor& edit) {
   return std::holds_alternative<MaterialsEdit>(edit.shape) ||
@@ -232,7 +250,8 @@ inline bool has_voxels(const EditDescriptor& edit) {
          !std::holds_alternative<LibraryEdit>(edit.shape) &&
          !std::holds_alternative<ShapesEdit>(edit.shape) &&
          !std::holds_alternative<TextureEdit>(edit.shape) &&
-         !std::holds_alternative<ClockEdit>(edit.shape);
+         !std::holds_alternative<ClockEdit>(edit.shape) &&
+         !std::holds_alternative<GapEdit>(edit.shape);
 }
 
 /// Returns the maximum number of bytes of a descriptor of this kind.

@@ -40,6 +40,7 @@ VoxelBox box_of_shape(const LibraryEdit&) { return {kNowhere, kNowhere}; }
 VoxelBox box_of_shape(const ShapesEdit&) { return {kNowhere, kNowhere}; }
 VoxelBox box_of_shape(const TextureEdit&) { return {kNowhere, kNowhere}; }
 VoxelBox box_of_shape(const ClockEdit&) { return {kNowhere, kNowhere}; }
+VoxelBox box_of_shape(const GapEdit&) { return {kNowhere, kNowhere}; }
 
 // Returns an upper bound for the voxels of the segment's capsule. Across the longest axis of the
 // segment, each of its n + w layers (w = 2r + 1) is a part of an ellipse of area at most sqrt(3) pi

@@ -31,6 +31,8 @@ constexpr const char* name_of(EditKind kind) {
       return "texture";
     case EditKind::clock:
       return "clock";
+    case EditKind::gap:
+      return "gap";
   }
   return "edit";
 }

@@ -19,12 +19,14 @@ Result<void> validate_fields(const EditRecord& record) {
       (record.cause == Cause::materials) != changes_materials(record.edit) ||
       (record.cause == Cause::library) != (library_change_of(record.edit) != nullptr) ||
       (record.cause == Cause::textures) != (given_texture_of(record.edit) != nullptr) ||
-      (record.cause == Cause::clock) != (world_time_of(record.edit) != nullptr))
+      (record.cause == Cause::clock) != (world_time_of(record.edit) != nullptr) ||
+      (record.cause == Cause::gap) != (gap_of(record.edit) != nullptr))
     return fail(ErrorCode::bad_value, "the cause is not that of the edit");
   return {};
 }
 
 bool corrects_time(const EditRecord& record) {
+  if (const GapEdit* gap = gap_of(record.edit)) return gap->begins_era;
   const RightsChange* change = rights_change_of(record.edit);
   return change != nullptr && std::holds_alternative<CorrectTime>(*change);
 }

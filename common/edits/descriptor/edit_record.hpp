@@ -35,7 +35,7 @@ inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 /// `materials`, a change of the library has the cause `library`, and no other edit has one of these.
 Result<void> validate_fields(const EditRecord& record);
 
-/// Returns true for a record that corrects the time of the log. Its time alone may be earlier than that
+/// Returns true for a record that corrects the time of the log, or is the gap of one. Its time alone may be earlier than that
 /// of the record before it. An *era* of the log begins at each such record; within an era times never
 /// decrease.
 bool corrects_time(const EditRecord& record);

@@ -557,7 +557,7 @@ RestorePreview any_restore_preview(SplitMix64& rng) {
 }
 
 /// Returns a record of the log at this version. It may change voxels, rights,
-/// materials, their shapes or textures, the library or the clock.
+/// materials, their shapes or textures, the library or the clock, or stand for a lost record.
 EditRecord any_record(SplitMix64& rng, Version version) {
   EditRecord record;
   record.version = version;
@@ -577,6 +577,8 @@ EditRecord any_record(SplitMix64& rng, Version version) {
     record.edit = texture_edit(any_given_texture(rng));
   } else if (record.cause == Cause::clock) {
     record.edit = clock_edit(any_world_time(rng));
+  } else if (record.cause == Cause::gap) {
+    record.edit = gap_edit({rng.below(1000), rng.below(2) == 0});
   } else {
     record.edit = any_edit(rng);
   }

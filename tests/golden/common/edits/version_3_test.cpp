@@ -93,6 +93,15 @@ TEST_CASE("the bytes of a record that sets the clock are pinned", "[edits][golde
   CHECK(static_cast<int>(Cause::clock) == 9);
 }
 
+TEST_CASE("the bytes of a record that stands for a lost one are pinned", "[edits][golden]") {
+  check_bytes_of(gap_edit({300, true}), {0x0e, 0x00, 0x00,  // no mask, no material
+                                         0x01,              // it begins an era
+                                         0xac, 0x02});      // author 300
+  check_bytes_of(gap_edit({}), {0x0e, 0x00, 0x00, 0x00, 0x00});
+  CHECK(static_cast<int>(EditKind::gap) == 14);
+  CHECK(static_cast<int>(Cause::gap) == 11);
+}
+
 TEST_CASE("the cause of changes of the library has its number", "[edits][golden]") {
   CHECK(static_cast<int>(Cause::library) == 8);
   CHECK(kind_of(library_edit(RemoveBuild{1})) == EditKind::library);

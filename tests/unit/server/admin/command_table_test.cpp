@@ -162,9 +162,9 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
 }
 
 TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
-  for (const Cause cause :
-       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import,
-        Cause::rights, Cause::materials, Cause::library, Cause::clock}) {
+  for (const Cause cause : {Cause::player, Cause::console, Cause::rollback, Cause::undo,
+                            Cause::redo, Cause::import, Cause::rights, Cause::materials,
+                            Cause::library, Cause::clock, Cause::textures, Cause::gap}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
   }
 }

@@ -74,7 +74,7 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
     REQUIRE_FALSE(store.has_value());
     CHECK(store.error().kind == StoreError::Kind::newer_version);
     CHECK(store.error().message() ==
-          file + ": is of world format 11; this program knows format 10. Nothing was changed.");
+          file + ": is of world format 12; this program knows format 11. Nothing was changed.");
   }
   CHECK(bytes_of(file) == before);
   CHECK_FALSE(std::filesystem::exists(file + "-wal"));

@@ -50,6 +50,7 @@ EditRecord random_record(SplitMix64& rng) {
                 : record.cause == Cause::library   ? library_edit(RemoveBuild{1 + rng.below(1000)})
                 : record.cause == Cause::clock     ? clock_edit({rng.below(kDayMs), rng.below(100)})
                 : record.cause == Cause::textures  ? sample_texture_edit(rng)
+                : record.cause == Cause::gap       ? gap_edit({rng.below(1000), rng.below(2) == 0})
                                                    : random_edit_anywhere(rng);
   return record;
 }
