@@ -41,7 +41,8 @@ TEST_CASE("names of hotbars are short texts, and their number is bounded", "[cli
 
 TEST_CASE("the materials that were used last come first, each once", "[client_app]") {
   RecentMaterials recent;
-  for (const Material material : {3, 4, kEmpty, 3}) recent.note(material);
+  for (const Material material : {Material{3}, Material{4}, kEmpty, Material{3}})
+    recent.note(material);
   CHECK(recent.all() == std::vector<Material>{3, 4});
   for (Material material = 10; material < 40; ++material) recent.note(material);
   CHECK(recent.all().size() == RecentMaterials::kKeptMax);
