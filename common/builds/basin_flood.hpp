@@ -1,18 +1,15 @@
 // Basin flood: the voxels that a liquid would fill from one place up to a level. It spreads through
 // empty voxels, and through materials that let it pass, by steps along the axes, and never above
-// the level. It reads runs and returns runs: the lines of a chunk are stretches of voxels, and a
-// stretch is reached as a whole. Pure. One thread.
+// the level. It reads runs and returns runs (line_flood.hpp). Pure. One thread.
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <vector>
 
 #include "common/builds/build.hpp"
+#include "common/builds/line_flood.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
@@ -40,9 +37,6 @@ enum class BasinFault : std::uint8_t {
   too_many_voxels,  // the basin has more than voxels_max, or its build takes too much memory
   full,             // no voxel of the basin is empty
 };
-
-/// Returns the chunk of a place of the grid, a cube in any axis order, or null if it is not known.
-using ChunkLookup = std::function<std::shared_ptr<const RunChunk>(ChunkCoord)>;
 
 /// Returns the basin around the start. The result does not depend on the axis orders of the chunks.
 /// Requires chunks of `edge` voxels a side that stay as they are during the call. Cost: O(stretches
