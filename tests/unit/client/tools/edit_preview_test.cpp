@@ -137,6 +137,9 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
         bench.box.drag(last);
       }
     }
+    // The second click on a corner completes a tool with any number of corners.
+    if (!tool.is_drawn() && tool.points_before_max() != tool.points_before())
+      REQUIRE(bench.box.press(bench.replica, last, button)->empty());
     finish_preview(bench, last);
     const auto edits = tool.is_drawn() ? bench.box.release(bench.replica, last)
                                        : bench.box.press(bench.replica, last, button);
