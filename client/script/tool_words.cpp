@@ -126,6 +126,15 @@ script::Step symmetry_step(ScriptWords& words) {
   return symmetry;
 }
 
+script::Step turn_step(ScriptWords& words) {
+  BuildRotation rotation;
+  rotation.axis = read_axis(words);
+  rotation.degrees = read_number<std::int32_t>(words, "DEGREES", -360, 360);
+  if (words.more())
+    rotation.percent = read_number<std::int32_t>(words, "PERCENT", kScaleMin, kScaleMax);
+  return script::RunToolCommand{ClipboardReshape{rotation}};
+}
+
 /// Returns the bytes of `text` that name a file. Behind the name of a model, which may have blanks,
 /// words of ModelChoices may stand.
 std::size_t file_name_bytes(std::string_view text) {
@@ -186,7 +195,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
     parameter.value = words.word("VALUE");
     return parameter;
   }
-  if (verb == "expression") {
+  if (verb == "text") {
     TextChange text{std::string(words.word("NAME")), {}};
     text.text = words.rest();
     return script::RunToolCommand{std::move(text)};
@@ -204,6 +213,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
     return script::RunToolCommand{
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};
   if (verb == "mirror") return script::RunToolCommand{ClipboardTurn{0, read_axis(words)}};
+  if (verb == "turn") return turn_step(words);
   if (verb == "symmetry") return symmetry_step(words);
   if (verb == "clipboard") return clipboard_step(words);
   if (verb == "preview") return script::RunToolCommand{PreviewChange{read_on_off(words)}};

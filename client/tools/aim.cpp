@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
 namespace runstone {
 
 VoxelPos voxel_on_ray(const Aim& aim, double distance) {
@@ -21,6 +23,15 @@ double distance_to(const Aim& aim, VoxelPos voxel) {
 
 std::int32_t stroke_step(VoxelPos from, VoxelPos to) {
   return std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)});
+}
+
+Result<void, std::string> check_steps(std::span<const VoxelPos> places) {
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (stroke_step(places[i - 1], places[i]) > kStrokeStepMax)
+      return failure("two places are more than " + std::to_string(kStrokeStepMax) +
+                     " voxels apart");
+  }
+  return {};
 }
 
 VoxelBox box_between(VoxelPos a, VoxelPos b) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/core/text.hpp"
 #include "common/patterns/pattern_parser.hpp"
 
 namespace runstone {
@@ -48,11 +49,17 @@ Result<void, std::string> Tool::set_text(std::string_view name, std::string text
       std::find_if(texts_.begin(), texts_.end(), [&](const ToolText& t) { return t.name == name; });
   if (it == texts_.end())
     return failure("the tool " + std::string(name_) + " has no text " + std::string(name));
+  if (text.size() > kToolTextBytesMax)
+    return failure(it->name + " has at most " + std::to_string(kToolTextBytesMax) + " bytes");
+  if (!is_printable_utf8(text))
+    return failure(it->name + " must be in UTF-8 without control characters");
   it->text = std::move(text);
   it->error.clear();
   it->chips.clear();
   if (it->text.empty()) return {};
   switch (it->kind) {
+    case ToolText::Kind::plain:
+      break;
     case ToolText::Kind::pattern:
       take_parsed(parse_pattern(it->text), *it);
       break;

@@ -30,16 +30,19 @@ struct ToolParameter {
   std::vector<std::string> choices;
 };
 
-/// A text of a tool that the player types, in the language of patterns (common/patterns). A window
-/// or a script shows and sets all texts in the same way.
+/// The bytes of a text of a tool, at most.
+inline constexpr std::size_t kToolTextBytesMax = 1024;
+
+/// A text of a tool that the player types. A window or a script shows and sets all texts in the same
+/// way. Those of all kinds but `plain` are in the language of patterns (common/patterns).
 struct ToolText {
-  enum class Kind : std::uint8_t { pattern, mix, filter };
+  enum class Kind : std::uint8_t { plain, pattern, mix, filter };
   std::string name;  // one word, lower case
   std::string hint;  // shown while the text is empty
   Kind kind = Kind::pattern;
-  std::string text = {};                // empty: not given
-  std::string error = {};               // the mistake in the text, or empty
-  std::vector<std::string> chips = {};  // the parts of the text, as the tool understands them
+  std::string text = {};                // UTF-8 without control characters; empty: not given
+  std::string error = {};               // the mistake in a pattern, or empty
+  std::vector<std::string> chips = {};  // the parts of a pattern, as the tool understands them
 };
 
 /// The content of a paste, as it lies in the world: turns and mirrors make another build.
@@ -79,14 +82,20 @@ class Tool {
   /// Sets a parameter by its name. Fails with words for the player if there is no such parameter or
   /// the value is out of its range.
   Result<void, std::string> set(std::string_view parameter, std::int32_t value);
-
   std::span<const ToolText> texts() const { return texts_; }
-  /// Sets a text by its name. A text with a mistake is kept with its error, and plan() fails. Fails
-  /// with words for the player if there is no such text.
+  /// Sets a text by its name. A pattern with a mistake is kept with its error, and plan() fails.
+  /// Fails with words for the player if there is no such text, or if it is longer than
+  /// kToolTextBytesMax or not in UTF-8 without control characters.
   Result<void, std::string> set_text(std::string_view name, std::string text);
 
-  /// Returns the number of places that are chosen before a click completes an action.
+  /// Returns the number of places that are chosen before a click completes an action, at least and
+  /// at most.
   virtual std::size_t points_before() const { return 0; }
+  virtual std::size_t points_before_max() const { return points_before(); }
+  /// Returns true if a click on `target` completes an action after these places.
+  virtual bool completes(std::span<const VoxelPos> points, VoxelPos /*target*/) const {
+    return points.size() >= points_before_max();
+  }
   /// Returns true if the places are collected while the button is held, and its release completes
   /// the action.
   virtual bool is_drawn() const { return false; }

@@ -63,6 +63,9 @@ struct Carrier {
     if (const auto done = box.rotate(c.quarters); !done || !c.mirror) return without_edits(done);
     return without_edits(box.mirror(*c.mirror));
   }
+  ToolEdits operator()(const ClipboardReshape& c) const {
+    return without_edits(box.reshape(c.rotation));
+  }
   ToolEdits operator()(const SymmetryChange& c) const {
     box.set_symmetry(c.symmetry);
     return without_edits({});

@@ -48,6 +48,10 @@ struct ClipboardTurn {
   int quarters = 0;
   std::optional<Axis> mirror;
 };
+/// Turns the clipboard by any angle and scales it.
+struct ClipboardReshape {
+  BuildRotation rotation;
+};
 struct SymmetryChange {
   Symmetry symmetry;
 };
@@ -57,7 +61,7 @@ struct PreviewChange {
 
 using ToolCommand =
     std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply, SelectionChange,
-                 SelectionCommand, ClipboardTurn, SymmetryChange, PreviewChange>;
+                 SelectionCommand, ClipboardTurn, ClipboardReshape, SymmetryChange, PreviewChange>;
 
 /// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the
 /// player, for example if there is no world yet. `held` is the material in the hand.

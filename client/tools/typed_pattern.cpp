@@ -27,6 +27,7 @@ Result<PatternParts, PatternError> parts_of(const ToolText& text) {
       return PatternParts{std::nullopt, *std::move(filter)};
     }
     case ToolText::Kind::pattern:
+    case ToolText::Kind::plain:
       break;
   }
   auto pattern = parse_pattern(text.text);

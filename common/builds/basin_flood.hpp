@@ -1,12 +1,12 @@
 // Basin flood: the voxels that a liquid would fill from one place up to a level. It spreads through
 // empty voxels, and through materials that let it pass, by steps along the axes, and never above
-// the level. It reads runs and returns runs: the lines of a chunk are stretches of voxels, and a
-// stretch is reached as a whole. Pure. One thread.
+// the level. It reads runs and returns runs (line_flood.hpp). Pure. One thread.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "common/builds/build.hpp"
+#include "common/builds/line_flood.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"

@@ -32,7 +32,9 @@ RunChunk renumbered(const RunChunk& cells, const std::vector<std::uint16_t>& num
     for (std::size_t i = 0; i < runs.size(); ++i)
       out.append_to(runs.end(i), numbers[runs.material(i)]);
   });
-  return out.finish();
+  RunChunk made = out.finish();
+  made.runs.shrink_to_fit();
+  return made;
 }
 
 }  // namespace

@@ -22,7 +22,15 @@ constexpr std::array<CharacterRange, 24> kUnseen = {
      {0xffa0, 0xffa0},   {0xfff0, 0xfffb},   {0xfffe, 0xffff},   {0x1bca0, 0x1bca3},
      {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, {0xf0000, 0xfffff}, {0x100000, 0x10ffff}}};
 
-/// Reads the character at `at` of well-formed UTF-8 and moves `at` behind it.
+bool is_unseen(std::uint32_t character) {
+  return std::any_of(std::begin(kUnseen), std::end(kUnseen),
+                     [character](const CharacterRange& range) {
+                       return character >= range.first && character <= range.last;
+                     });
+}
+
+}  // namespace
+
 std::uint32_t next_character(std::string_view text, std::size_t& at) {
   const auto lead = static_cast<unsigned char>(text[at++]);
   if (lead < 0x80) return lead;
@@ -32,15 +40,6 @@ std::uint32_t next_character(std::string_view text, std::size_t& at) {
     character = character << 6 | (static_cast<unsigned char>(text[at++]) & 0x3fU);
   return character;
 }
-
-bool is_unseen(std::uint32_t character) {
-  return std::any_of(std::begin(kUnseen), std::end(kUnseen),
-                     [character](const CharacterRange& range) {
-                       return character >= range.first && character <= range.last;
-                     });
-}
-
-}  // namespace
 
 bool is_printable_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {

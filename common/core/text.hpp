@@ -2,6 +2,7 @@
 // screens.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,10 @@ namespace runstone {
 /// (C0, DEL, C1). Such text cannot break a log line or control a terminal. Empty text passes. Cost:
 /// O(bytes).
 bool is_printable_utf8(std::string_view text);
+
+/// Returns the character at `at` and moves `at` behind it. Requires well-formed UTF-8, and `at`
+/// below its size at the first byte of a character.
+std::uint32_t next_character(std::string_view text, std::size_t& at);
 
 /// Returns true if the text may be a name that people read and type: is_printable_utf8(), not
 /// empty, without blanks at its ends, and without

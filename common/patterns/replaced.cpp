@@ -175,7 +175,7 @@ std::uint32_t next_slice(const std::vector<std::int32_t>& cuts, std::int32_t fir
 }  // namespace
 
 Result<PlacedBuild> replaced(const VoxelBox& box, BoundMix& mix, BoundFilter* filter,
-                             std::int32_t chunk_edge, const GroundColumns::ChunkSource& chunks) {
+                             std::int32_t chunk_edge, const ChunkLookup& chunks) {
   RUNSTONE_ASSERT(!box.empty());
   auto builder = BuildBuilder::of(
       {grid_cuts(box.max.x - box.min.x, kPasteBlockEdge, block_offset(box.min.x)),

@@ -25,6 +25,6 @@ inline constexpr std::uint64_t kPatternVoxelsMax = std::uint64_t{1} << 25;
 /// Requires a box that is not empty and lies in the world. Cost: O(runs + columns * chunks above
 /// each other + voxels that are decided one by one).
 Result<PlacedBuild> replaced(const VoxelBox& box, BoundMix& mix, BoundFilter* filter,
-                             std::int32_t chunk_edge, const GroundColumns::ChunkSource& chunks);
+                             std::int32_t chunk_edge, const ChunkLookup& chunks);
 
 }  // namespace runstone

@@ -78,8 +78,8 @@ TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bot
 }
 
 TEST_CASE_METHOD(ToolScript, "a script types the texts of a tool", "[bots]") {
-  run("tool mix\nexpression pattern air where below 3\nplaces 0 2 0 3 3 3\napply\n"
-      "expression pattern air, \napply\nexpression colour red");
+  run("tool mix\ntext pattern air where below 3\nplaces 0 2 0 3 3 3\napply\n"
+      "text pattern air, \napply\ntext colour red");
   REQUIRE(host.edits.size() == 1);
   const auto* paste = std::get_if<runstone::Paste>(&host.edits[0].edit.shape);
   REQUIRE(paste != nullptr);
@@ -148,6 +148,23 @@ TEST_CASE_METHOD(ToolScript, "a script gives the places of a tool by numbers", "
   CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{1, 2, 3}, {5, 6, 7}}}, {}, 2});
   CHECK(host.edits[1].edit == EditDescriptor{FillBox{{{1, 2, 3}, {2, 3, 4}}}, {}, kEmpty});
   CHECK(kind_of(host.edits[2].edit) == EditKind::paste);
+}
+
+TEST_CASE_METHOD(ToolScript, "a script sets the text of a tool to the rest of the line", "[bots]") {
+  run("tool text\ntext text Up # 2\ntext font Some/Font");
+  CHECK(runner->failures().empty());
+  CHECK(host.tools.tool().texts()[0].text == "Up # 2");
+  CHECK(host.tools.tool().texts()[1].text == "Some/Font");
+  run("text text");
+  CHECK(host.tools.tool().texts()[0].text.empty());
+}
+
+TEST_CASE_METHOD(ToolScript, "a script turns the clipboard by any angle and scales it", "[bots]") {
+  run("select 0 3 0 9 3 0\nselection copy\nturn y 45\nturn x 0 200");
+  CHECK(runner->failures().empty());
+  CHECK(host.tools.clipboard().build->sides() == VoxelPos{16, 2, 16});
+  CHECK(error_of("turn y 400").find("DEGREES") != std::string::npos);
+  CHECK(error_of("turn y 45 5").find("PERCENT") != std::string::npos);
 }
 
 TEST_CASE_METHOD(ToolScript, "the edits of a tool wait for the edit budget, and are made once",

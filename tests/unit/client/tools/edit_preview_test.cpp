@@ -116,6 +116,7 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
       REQUIRE(bench.box.set_parameter(p.name, rng.between(p.low, high)));
     }
     for (const ToolText& text : tool.texts()) {
+      if (text.kind == ToolText::Kind::plain) continue;
       const bool is_given = text.kind == ToolText::Kind::pattern || rng.below(2) == 0;
       const char* const typed = text.kind == ToolText::Kind::filter    ? "not noise 20%"
                                 : text.kind == ToolText::Kind::pattern ? "air where not noise 20%"
@@ -144,6 +145,9 @@ TEST_CASE("a preview shows exactly the voxels that the edit changes", "[tools][p
         bench.box.drag(last);
       }
     }
+    // The second click on a corner completes a tool with any number of corners.
+    if (!tool.is_drawn() && tool.points_before_max() != tool.points_before())
+      REQUIRE(bench.box.press(bench.replica, last, button)->empty());
     finish_preview(bench, last);
     const auto edits = tool.is_drawn() ? bench.box.release(bench.replica, last)
                                        : bench.box.press(bench.replica, last, button);

@@ -1,0 +1,60 @@
+// VoxelRows: a set of voxels anywhere in the world, as stretches of rows along x.
+#pragma once
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "common/builds/line_flood.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/result.hpp"
+#include "common/sculpt/column_changes.hpp"
+#include "common/sculpt/row_stretches.hpp"
+
+namespace runstone {
+
+class VoxelRows {
+ public:
+  struct Place {
+    std::int32_t z = 0, y = 0;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+
+  /// Adds voxels of the row at y and z. Requires a stretch that is not empty. Cost: O(1) amortised.
+  void add(std::int32_t y, std::int32_t z, RowStretch part);
+  /// Joins stretches. Call it after the last add() and before the functions below.
+  void join();
+
+  bool empty() const { return rows_.empty(); }
+  /// Returns the box of the voxels.
+  const VoxelBox& box() const { return box_; }
+  /// Returns the number of voxels. Cost: O(stretches).
+  std::uint64_t count() const;
+  /// Returns the stretches of a row, ascending and apart, or null if it has none.
+  const std::vector<RowStretch>* row(std::int32_t y, std::int32_t z) const;
+  /// Returns the places of the rows, ascending. Cost: O(rows log rows).
+  std::vector<Place> places() const;
+
+ private:
+  static std::uint64_t key_of(std::int32_t y, std::int32_t z) {
+    return std::uint64_t{static_cast<std::uint32_t>(y)} << 32 | static_cast<std::uint32_t>(z);
+  }
+  std::unordered_map<std::uint64_t, std::vector<RowStretch>> rows_;
+  VoxelBox box_;
+};
+
+/// Returns the voxels at most `steps` away along each axis from a voxel of the set. Cost:
+/// O(stretches * steps).
+VoxelRows grown(const VoxelRows& rows, std::int32_t steps);
+
+/// Returns the voxels around which all voxels up to `steps` away along each axis are in the set.
+/// Cost: O(stretches * steps).
+VoxelRows shrunk(const VoxelRows& rows, std::int32_t steps);
+
+/// Returns a build of the voxels of the set that are not empty in the world, with their materials;
+/// its other cells are untouched. Fails with bad_value if there is none, with not_found if a chunk
+/// is not known, and with limit_exceeded if the build takes too much memory. Requires chunks of
+/// `edge` voxels a side. Cost: O(stretches, and runs of the chunks that they meet).
+Result<PlacedBuild> build_of_voxels(const VoxelRows& rows, std::int32_t edge,
+                                    const ChunkLookup& chunk_at);
+
+}  // namespace runstone
