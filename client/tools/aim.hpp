@@ -49,6 +49,9 @@ double distance_to(const Aim& aim, VoxelPos voxel);
 /// kStrokeStepMax bounds it. Requires places inside the world.
 std::int32_t stroke_step(VoxelPos from, VoxelPos to);
 
+/// Returns the direction along x or z that is nearest to a look.
+Direction horizontal_look(const LookDirection& look);
+
 /// Fails with words for the player if consecutive places are more than kStrokeStepMax apart: places
 /// that are typed may be anywhere in the world, and a curve has points all along its way.
 Result<void, std::string> check_steps(std::span<const VoxelPos> places);

@@ -1,7 +1,6 @@
 #include "client/tools/text_tool.hpp"
 
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "client/lettering/font_file.hpp"
@@ -9,6 +8,7 @@
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
 #include "common/builds/build_transforms.hpp"
+#include "common/formats/facing_words.hpp"
 #include "common/runs/axis_order.hpp"
 
 namespace runstone {
@@ -19,29 +19,9 @@ struct TextDirections {
   Direction along = Direction::pos_x, up = Direction::pos_y, out = Direction::pos_z;
 };
 
-/// Returns the direction along x or z that is nearest to the look.
-Direction ahead_of(const LookDirection& look) {
-  if (std::abs(look.x) > std::abs(look.z)) return look.x > 0 ? Direction::pos_x : Direction::neg_x;
-  return look.z > 0 ? Direction::pos_z : Direction::neg_z;
-}
-
-/// Returns the direction to the right of a person who stands upright and looks ahead, along x or z.
-Direction right_of(Direction ahead) {
-  switch (ahead) {
-    case Direction::pos_x:
-      return Direction::pos_z;
-    case Direction::neg_x:
-      return Direction::neg_z;
-    case Direction::pos_z:
-      return Direction::neg_x;
-    default:
-      return Direction::pos_x;
-  }
-}
-
 /// Returns how a text lies that is written on this face.
 TextDirections directions_of(Direction face, const LookDirection& look, bool is_lying) {
-  const Direction ahead = ahead_of(look);
+  const Direction ahead = horizontal_look(look);
   if (is_lying) return {right_of(ahead), ahead, Direction::pos_y};
   const Direction out = axis_of(face) == Axis::y ? opposite(ahead) : face;
   return {right_of(opposite(out)), Direction::pos_y, out};

@@ -81,8 +81,9 @@ TEST_CASE_METHOD(ShapeBench, "a text lies on the ground, and is cut into it", "[
   press({0, -1, 0});
   VoxelPos sides;
   std::set<VoxelPos> expected;
+  // A player who looks straight down counts as one who looks along +z.
   for (const VoxelPos& c : cells_of_text("Fg", {9, 1}, sides))
-    expected.insert({c.x - sides.x / 2, 0, -c.y});
+    expected.insert({sides.x - 1 - c.x - sides.x / 2, 0, c.y});
   CHECK(held_voxels() == expected);
   press({0, -1, 0}, Direction::pos_y, ToolButton::clear);
   for (const VoxelPos& v : expected) CHECK(at({v.x, -1, v.z}) == kEmpty);
