@@ -211,9 +211,9 @@ struct AddBuild {
 struct ChooseTool {
   std::string name;
 };
-/// Sets a parameter of the chosen tool.
+/// Sets a parameter or a text of the chosen tool.
 struct SetParameter {
-  std::string name, value;  // the value is a number or one of the parameter's choices
+  std::string name, value;  // the value of a parameter is a number or one of its choices
 };
 /// Aims at a face of a voxel until the next AimAt.
 struct AimAt {

@@ -53,6 +53,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::ChooseTool& c) {
 
 ScriptRunner::Progress ScriptRunner::run(const script::SetParameter& c) {
   const Tool& tool = host_.tool_box().tool();
+  for (const ToolText& text : tool.texts()) {
+    if (text.name != c.name) continue;
+    const auto done = host_.tool_box().set_text(c.name, c.value);
+    return done ? Progress::done : give_up(done.error());
+  }
   for (const ToolParameter& parameter : tool.parameters()) {
     if (parameter.name != c.name) continue;
     const auto value = value_of(parameter, c.value);

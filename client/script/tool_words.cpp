@@ -126,6 +126,25 @@ script::Step symmetry_step(ScriptWords& words) {
   return symmetry;
 }
 
+/// Takes a word, or a text in quotes.
+std::string read_value(ScriptWords& words) {
+  if (!words.peek().starts_with('"')) return std::string(words.word("VALUE"));
+  const std::string_view rest = words.rest();
+  const std::size_t end = rest.find('"', 1);
+  if (end == std::string_view::npos) throw LineError{"the text has no quote at its end"};
+  ScriptWords(rest.substr(end + 1)).finish();
+  return std::string(rest.substr(1, end - 1));
+}
+
+script::Step turn_step(ScriptWords& words) {
+  BuildRotation rotation;
+  rotation.axis = read_axis(words);
+  rotation.degrees = read_number<std::int32_t>(words, "DEGREES", -360, 360);
+  if (words.more())
+    rotation.percent = read_number<std::int32_t>(words, "PERCENT", kScaleMin, kScaleMax);
+  return script::RunToolCommand{ClipboardReshape{rotation}};
+}
+
 /// Returns the bytes of `text` that name a file. Behind the name of a model, which may have blanks,
 /// words of ModelChoices may stand.
 std::size_t file_name_bytes(std::string_view text) {
@@ -172,7 +191,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
   if (verb == "tool") return script::ChooseTool{std::string(words.word("TOOL"))};
   if (verb == "param") {
     script::SetParameter parameter{std::string(words.word("NAME")), {}};
-    parameter.value = words.word("VALUE");
+    parameter.value = read_value(words);
     return parameter;
   }
   if (verb == "aim") return aim_step(words);
@@ -187,6 +206,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
     return script::RunToolCommand{
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};
   if (verb == "mirror") return script::RunToolCommand{ClipboardTurn{0, read_axis(words)}};
+  if (verb == "turn") return turn_step(words);
   if (verb == "symmetry") return symmetry_step(words);
   if (verb == "clipboard") return clipboard_step(words);
   if (verb == "preview") return script::RunToolCommand{PreviewChange{read_on_off(words)}};

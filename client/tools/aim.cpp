@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
 namespace runstone {
 
 VoxelPos voxel_on_ray(const Aim& aim, double distance) {
@@ -21,6 +23,20 @@ double distance_to(const Aim& aim, VoxelPos voxel) {
 
 std::int32_t stroke_step(VoxelPos from, VoxelPos to) {
   return std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)});
+}
+
+Direction horizontal_look(const LookDirection& look) {
+  if (std::abs(look.x) > std::abs(look.z)) return look.x < 0 ? Direction::neg_x : Direction::pos_x;
+  return look.z < 0 ? Direction::neg_z : Direction::pos_z;
+}
+
+Result<void, std::string> check_steps(std::span<const VoxelPos> places) {
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (stroke_step(places[i - 1], places[i]) > kStrokeStepMax)
+      return failure("two places are more than " + std::to_string(kStrokeStepMax) +
+                     " voxels apart");
+  }
+  return {};
 }
 
 VoxelBox box_between(VoxelPos a, VoxelPos b) {

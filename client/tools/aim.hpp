@@ -2,11 +2,14 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "client/replica/ray_pick.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
+#include "common/core/result.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -45,6 +48,13 @@ double distance_to(const Aim& aim, VoxelPos voxel);
 /// Returns how far two places lie apart along the axis on which they lie farthest apart, as
 /// kStrokeStepMax bounds it. Requires places inside the world.
 std::int32_t stroke_step(VoxelPos from, VoxelPos to);
+
+/// Returns the direction along x or z that is nearest to a look.
+Direction horizontal_look(const LookDirection& look);
+
+/// Fails with words for the player if consecutive places are more than kStrokeStepMax apart: places
+/// that are typed may be anywhere in the world, and a curve has points all along its way.
+Result<void, std::string> check_steps(std::span<const VoxelPos> places);
 
 /// Returns the box with these corners, both included.
 VoxelBox box_between(VoxelPos a, VoxelPos b);

@@ -5,13 +5,16 @@
 
 #include "client/tools/build_words.hpp"
 #include "client/tools/cell_list.hpp"
+#include "client/tools/corner_tools.hpp"
 #include "client/tools/flood_tool.hpp"
 #include "client/tools/placed_material.hpp"
 #include "client/tools/shown_voxels.hpp"
 #include "client/tools/solid_tool.hpp"
 #include "client/tools/surface_flood.hpp"
 #include "client/tools/terrain_tools.hpp"
+#include "client/tools/text_tool.hpp"
 #include "client/tools/voxel_joins.hpp"
+#include "client/tools/wand_tool.hpp"
 
 namespace runstone {
 namespace {
@@ -299,6 +302,11 @@ std::vector<std::unique_ptr<Tool>> make_tools() {
   out.push_back(make_terrain_tool());
   out.push_back(make_path_tool());
   out.push_back(make_scatter_tool());
+  out.push_back(make_text_tool());
+  out.push_back(make_polygon_tool());
+  out.push_back(make_curve_tool());
+  out.push_back(make_wand_tool());
+  out.push_back(make_array_tool());
   return out;
 }
 

@@ -20,11 +20,6 @@
 namespace runstone {
 namespace {
 
-Direction horizontal_look(const LookDirection& look) {
-  if (std::abs(look.x) > std::abs(look.z)) return look.x < 0 ? Direction::neg_x : Direction::pos_x;
-  return look.z < 0 ? Direction::neg_z : Direction::pos_z;
-}
-
 Direction nearest_look(const LookDirection& look) {
   const double level = std::max(std::abs(look.x), std::abs(look.z));
   if (std::abs(look.y) <= level) return horizontal_look(look);

@@ -150,6 +150,7 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
                                             MirroredBuilds& builds,
                                             const MaterialTable& materials) {
   ToolAction out(with_copies(std::move(action.edits), symmetry, materials));
+  out.copied = std::move(action.copied);
   out.has_followers = action.has_followers && symmetry.kind == SymmetryKind::none;
   for (const BuildPaste& paste : action.pastes) {
     out.pastes.push_back(paste);

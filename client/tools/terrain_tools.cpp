@@ -1,15 +1,12 @@
 #include "client/tools/terrain_tools.hpp"
 
 #include <algorithm>
-#include <array>
-#include <iterator>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
-#include "client/tools/turned_materials.hpp"
-#include "common/builds/build_transforms.hpp"
+#include "client/tools/clipboard_copies.hpp"
 #include "common/sculpt/path_brush.hpp"
 #include "common/sculpt/scatter.hpp"
 #include "common/sculpt/terrain_brush.hpp"
@@ -18,15 +15,10 @@ namespace runstone {
 namespace {
 
 /// Returns the places of a stroke: those over which the button was held, or the target of a click.
-/// Fails with words for the player if consecutive places are more than kStrokeStepMax apart: places
-/// that are typed may be anywhere in the world, and a curve has points all along its way.
+/// Fails as check_steps() does.
 Result<std::vector<VoxelPos>, std::string> stroke_of(const ToolInput& input) {
   if (input.points.empty()) return std::vector{input.target};
-  for (std::size_t i = 1; i < input.points.size(); ++i) {
-    if (stroke_step(input.points[i - 1], input.points[i]) > kStrokeStepMax)
-      return failure("two places are more than " + std::to_string(kStrokeStepMax) +
-                     " voxels apart");
-  }
+  if (const auto ok = check_steps(input.points); !ok) return failure(ok.error());
   return std::vector(input.points.begin(), input.points.end());
 }
 
@@ -152,37 +144,12 @@ class ScatterTool final : public GroundTool {
                     {"seed", "", 0, 9999, 1, {}},
                     mask_parameter()}) {}
   ToolEdits plan(const ToolInput& input) const override;
-
- private:
-  using Turns = std::array<BuildPtr, 4>;
-  /// Returns the clipboard by quarter turns. Without `is_turned` all are the clipboard itself.
-  static Result<Turns> turns_of(const ToolInput& input, bool is_turned);
 };
-
-Result<ScatterTool::Turns> ScatterTool::turns_of(const ToolInput& input, bool is_turned) {
-  Turns out;
-  out.fill(input.clipboard.build);
-  for (int quarters = 1; is_turned && quarters < 4; ++quarters) {
-    const Orientation orientation = Orientation{}.rotated_about_y(quarters);
-    auto made = turned(*input.clipboard.build, orientation);
-    if (!made) return failure(made.error());
-    const TurnedMaterials materials =
-        turned_materials((*made)->palette(), orientation, input.materials);
-    if (materials.is_changed) made = with_materials(**made, materials.ids);
-    if (!made) return failure(made.error());
-    out[static_cast<std::size_t>(quarters)] = *std::move(made);
-  }
-  return out;
-}
 
 ToolEdits ScatterTool::plan(const ToolInput& input) const {
   if (!input.clipboard.build) return failure("copy what to scatter first");
   if (input.button == ToolButton::clear) return failure("scatter with the right button");
-  const VoxelPos whole = input.clipboard.build->sides();
-  constexpr auto kLongest = static_cast<std::int32_t>(kSideMax);
-  if (std::max({whole.x, whole.y, whole.z}) > kLongest)
-    return failure("only a clipboard of up to " + std::to_string(kLongest) +
-                   " voxels a side can be scattered");
+  if (const auto ok = check_copied(input.clipboard); !ok) return failure(ok.error());
   Scattering scattering;
   scattering.radius = value("radius");
   scattering.spacing = value("spacing");
@@ -197,21 +164,12 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
   if (spots.size() > kScatteredMax)
     return failure("more than " + std::to_string(kScatteredMax) +
                    " copies: choose a wider spacing or a smaller radius");
-  const auto turns = turns_of(input, value("turn") == 1);
-  if (!turns) return failure("cannot turn the clipboard: " + words_of(turns.error()));
-  ToolAction out;
+  std::vector<CopySpot> copies;
   for (const ScatteredSpot& spot : spots) {
-    const BuildPtr& build = (*turns)[spot.quarters];
-    const VoxelPos sides = build->sides();
-    const VoxelPos at{spot.ground.x - sides.x / 2, spot.ground.y + 1, spot.ground.z - sides.z / 2};
-    if (!is_in_world(at, sides)) continue;
-    ToolAction copy =
-        paste_of_build({build, at, mask(), EmptyCells::skipped}, input.replica.edit_limits());
-    std::move(copy.pastes.begin(), copy.pastes.end(), std::back_inserter(out.pastes));
-    std::move(copy.edits.begin(), copy.edits.end(), std::back_inserter(out.edits));
+    const std::uint8_t quarters = value("turn") == 1 ? spot.quarters : std::uint8_t{0};
+    copies.push_back({{spot.ground.x, spot.ground.y + 1, spot.ground.z}, quarters});
   }
-  if (out.empty()) return failure("the copies reach outside the world there");
-  return out;
+  return copies_of_clipboard(input, copies, mask());
 }
 
 }  // namespace

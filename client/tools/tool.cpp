@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/assert.hpp"
+#include "common/core/text.hpp"
 
 namespace runstone {
 
@@ -19,6 +20,26 @@ Result<void, std::string> Tool::set(std::string_view parameter, std::int32_t val
   }
   it->value = value;
   return {};
+}
+
+Result<void, std::string> Tool::set_text(std::string_view name, std::string_view value) {
+  const auto it = std::find_if(texts_.begin(), texts_.end(),
+                               [&](const ToolText& text) { return text.name == name; });
+  if (it == texts_.end())
+    return failure("the tool " + std::string(name_) + " has no text " + std::string(name));
+  if (value.size() > it->bytes_max)
+    return failure(it->name + " has at most " + std::to_string(it->bytes_max) + " bytes");
+  if (!is_printable_utf8(value))
+    return failure(it->name + " must be in UTF-8 without control characters");
+  it->value = value;
+  return {};
+}
+
+const std::string& Tool::text(std::string_view name) const {
+  const auto it = std::find_if(texts_.begin(), texts_.end(),
+                               [&](const ToolText& text) { return text.name == name; });
+  RUNSTONE_ASSERT(it != texts_.end());
+  return it->value;
 }
 
 std::int32_t Tool::value(std::string_view parameter) const {

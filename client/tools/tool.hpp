@@ -30,6 +30,13 @@ struct ToolParameter {
   std::vector<std::string> choices;
 };
 
+/// A text of a tool that the player types.
+struct ToolText {
+  std::string name;  // one word, lower case
+  std::size_t bytes_max = 0;
+  std::string value;  // UTF-8 without control characters
+};
+
 /// The content of a paste, as it lies in the world: turns and mirrors make another build.
 struct ToolClipboard {
   BuildPtr build;  // null: nothing was copied
@@ -53,8 +60,9 @@ struct ToolInput {
 
 class Tool {
  public:
-  Tool(std::string_view name, std::string_view what, std::vector<ToolParameter> parameters)
-      : name_(name), what_(what), parameters_(std::move(parameters)) {}
+  Tool(std::string_view name, std::string_view what, std::vector<ToolParameter> parameters,
+       std::vector<ToolText> texts = {})
+      : name_(name), what_(what), parameters_(std::move(parameters)), texts_(std::move(texts)) {}
   virtual ~Tool() = default;
   Tool(const Tool&) = delete;
   Tool& operator=(const Tool&) = delete;
@@ -66,9 +74,19 @@ class Tool {
   /// Sets a parameter by its name. Fails with words for the player if there is no such parameter or
   /// the value is out of its range.
   Result<void, std::string> set(std::string_view parameter, std::int32_t value);
+  std::span<const ToolText> texts() const { return texts_; }
+  /// Sets a text by its name. Fails with words for the player if there is no such text, or if the
+  /// value is too long or not in UTF-8 without control characters.
+  Result<void, std::string> set_text(std::string_view name, std::string_view value);
 
-  /// Returns the number of places that are chosen before a click completes an action.
+  /// Returns the number of places that are chosen before a click completes an action, at least and
+  /// at most.
   virtual std::size_t points_before() const { return 0; }
+  virtual std::size_t points_before_max() const { return points_before(); }
+  /// Returns true if a click on `target` completes an action after these places.
+  virtual bool completes(std::span<const VoxelPos> points, VoxelPos /*target*/) const {
+    return points.size() >= points_before_max();
+  }
   /// Returns true if the places are collected while the button is held, and its release completes
   /// the action.
   virtual bool is_drawn() const { return false; }
@@ -89,6 +107,7 @@ class Tool {
  protected:
   /// Returns the value of a parameter. Requires a parameter of this tool.
   std::int32_t value(std::string_view parameter) const;
+  const std::string& text(std::string_view name) const;
   /// Returns the mask that the parameter of mask_parameter() chooses.
   Mask mask() const;
   static ToolParameter mask_parameter();
@@ -100,6 +119,7 @@ class Tool {
  private:
   const std::string_view name_, what_;
   std::vector<ToolParameter> parameters_;
+  std::vector<ToolText> texts_;
 };
 
 using ToolEdits = Result<ToolAction, std::string>;

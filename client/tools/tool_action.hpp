@@ -1,6 +1,7 @@
 // ToolAction: what a click or a command of the tools makes. All of it is one action. It is a value:
 // a preview shows it, and source_of() (action_source.hpp) makes its edits.
 #pragma once
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct ToolAction {
   ToolAction() = default;
   ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
 
+  /// The voxels that become the clipboard, and where they are in the world. No edit is made of them.
+  std::optional<BuildPaste> copied;
   std::vector<BuildPaste> pastes;
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.

@@ -144,6 +144,11 @@ Result<void, std::string> ToolBox::set_parameter(std::string_view name, std::int
   return tools_[chosen_]->set(name, value);
 }
 
+Result<void, std::string> ToolBox::set_text(std::string_view name, std::string_view value) {
+  ++revision_;
+  return tools_[chosen_]->set_text(name, value);
+}
+
 void ToolBox::change_size(std::int32_t steps) {
   if (tool().parameters().empty()) return;
   const ToolParameter first = tool().parameters().front();
@@ -187,13 +192,14 @@ ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton butt
   }
   const auto target = target_of(aim, button);
   if (!target) return failure(target.error());
-  if (tool().is_drawn() || points_.size() < tool().points_before()) {
+  if (tool().is_drawn() || !tool().completes(points_, *target)) {
     button_ = button;
     points_.push_back(*target);
     return std::vector<EditDescriptor>{};
   }
   auto edits = plan(replica, aim, button, points_, *target);
   if (tool().selects() && !points_.empty()) selection_ = box_between(points_.front(), *target);
+  hold_copied(edits);
   points_.clear();
   return edits;
 }
@@ -223,7 +229,7 @@ void ToolBox::type_places(std::optional<TypedPlaces> typed) {
 
 std::array<std::size_t, 2> ToolBox::typed_count() const {
   if (tool().is_drawn()) return {1, kStrokePointsMax};
-  return {tool().points_before() + 1, tool().points_before() + 1};
+  return {tool().points_before() + 1, tool().points_before_max() + 1};
 }
 
 ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) {
@@ -253,6 +259,7 @@ ToolEdits ToolBox::apply_typed(const Replica& replica, Material held) {
   ++revision_;
   if (edits && tool().selects())
     selection_ = box_between(typed_->places.front(), typed_->places.back());
+  hold_copied(edits);
   return edits;
 }
 
@@ -299,14 +306,26 @@ Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
   auto copied = copy_box(replica, *box);
   if (!copied) return cannot_copy(copied.error());
   if (is_solid && (*copied)->solid() == 0) return failure("the selection is empty");
+  hold_voxels(*std::move(copied), empty_cells(is_solid));
+  return {};
+}
+
+void ToolBox::hold_copied(const ToolEdits& made) {
+  if (made && made->copied) hold_voxels(made->copied->build, made->copied->empty);
+}
+
+void ToolBox::hold_voxels(BuildPtr build, EmptyCells empty) {
+  take_rows(*build);
+  hold_clipboard(std::move(build), empty);
+  ++clipboard_changes_;
+}
+
+void ToolBox::take_rows(const Build& build) {
   clipboard_rows_.clear();
-  for (const Material material : (*copied)->palette()) {
+  for (const Material material : build.palette()) {
     clipboard_rows_.push_back(materials_.knows(material) ? row_of(materials_[material])
                                                          : MaterialRow{});
   }
-  hold_clipboard(*std::move(copied), empty_cells(is_solid));
-  ++clipboard_changes_;
-  return {};
 }
 
 std::string ToolBox::set_clipboard(BuildPtr build, EmptyCells empty,
@@ -420,6 +439,26 @@ Result<void, std::string> ToolBox::turn(const Orientation& orientation) {
   return {};
 }
 
+Result<void, std::string> ToolBox::reshape(const BuildRotation& rotation) {
+  if (rotation.percent < kScaleMin || rotation.percent > kScaleMax)
+    return failure("the scale must be from " + std::to_string(kScaleMin) + " to " +
+                   std::to_string(kScaleMax) + " percent");
+  if (rotation.percent == 100 && rotation.axis == Axis::y && rotation.degrees % 90 == 0)
+    return rotate(rotation.degrees / 90);
+  turn_notice_.clear();
+  if (!clipboard_.build) return failure("nothing was copied");
+  auto made = rotated_build(*clipboard_.build, rotation);
+  if (!made) return failure("cannot turn the clipboard: " + std::string(made.error().what));
+  // Cells may have been left out, and with them the last cell of a material.
+  std::vector<MaterialRow> rows;
+  for (const Material material : (*made)->palette())
+    rows.push_back(clipboard_rows_[*clipboard_.build->number_of(material) - 1U]);
+  clipboard_rows_ = std::move(rows);
+  hold_clipboard(*std::move(made), clipboard_.empty);
+  ++clipboard_changes_;
+  return {};
+}
+
 Result<BuildPtr> ToolBox::with_turned_rows(BuildPtr build, const Orientation& orientation) {
   // The palette of a turned build has the same order, and so have the rows.
   if (materials_.size() == 1) {
@@ -446,11 +485,7 @@ Result<BuildPtr> ToolBox::with_turned_rows(BuildPtr build, const Orientation& or
     auto made = with_materials(*build, now.ids);
     if (!made) return failure(made.error());
     build = *std::move(made);
-    clipboard_rows_.clear();
-    for (const Material material : build->palette()) {
-      clipboard_rows_.push_back(materials_.knows(material) ? row_of(materials_[material])
-                                                           : MaterialRow{});
-    }
+    take_rows(*build);
   }
   turn_notice_ = stuck_text(now.stuck);
   return build;
@@ -595,6 +630,8 @@ ToolBox::ReplicaMark ToolBox::mark_of(const Replica& replica) {
 void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
   std::vector<ShownBuild> builds;
   for (const BuildPaste& paste : made.pastes) builds.push_back({paste.build, paste.at});
+  // Voxels that are only copied are shown where they are.
+  if (made.copied && made.empty()) builds.push_back({made.copied->build, made.copied->at});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {
     const auto* const fill = std::get_if<FillBox>(&edit.shape);

@@ -17,6 +17,7 @@
 #include "client/tools/edit_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
+#include "common/builds/rotated_build.hpp"
 #include "common/materials/material_table.hpp"
 
 namespace runstone {
@@ -32,6 +33,8 @@ class ToolBox {
   Result<void, std::string> choose(std::string_view name);
   /// Sets a parameter of the chosen tool. Fails as Tool::set() does.
   Result<void, std::string> set_parameter(std::string_view name, std::int32_t value);
+  /// Sets a text of the chosen tool. Fails as Tool::set_text() does.
+  Result<void, std::string> set_text(std::string_view name, std::string_view value);
   /// Changes the first parameter of the chosen tool by `steps`, within its range.
   void change_size(std::int32_t steps);
 
@@ -100,6 +103,9 @@ class ToolBox {
   Result<void, std::string> rotate(int quarters);
   /// Mirrors the clipboard along an axis of the world, with its materials.
   Result<void, std::string> mirror(Axis axis);
+  /// Turns the clipboard about an axis by any angle and scales it, by the nearest voxel
+  /// (common/builds/rotated_build.hpp). Its materials turn only with quarter turns about y.
+  Result<void, std::string> reshape(const BuildRotation& rotation);
   /// Returns what the last rotate() or mirror() could not do, as a sentence for the player, or an
   /// empty text.
   const std::string& turn_notice() const { return turn_notice_; }
@@ -143,6 +149,12 @@ class ToolBox {
   Result<VoxelBox, std::string> selected() const;
   ToolEdits filled(const Replica& replica, const Mask& mask, Material material) const;
   Result<void, std::string> turn(const Orientation& orientation);
+  /// Makes the voxels that an action copies the clipboard.
+  void hold_copied(const ToolEdits& made);
+  /// Sets clipboard_rows_ to the rows that the materials of a build have in this world.
+  void take_rows(const Build& build);
+  /// Sets the clipboard to voxels of this world.
+  void hold_voxels(BuildPtr build, EmptyCells empty);
   /// Sets the clipboard, whose rows are set already.
   void hold_clipboard(BuildPtr build, EmptyCells empty);
   /// Gives a build that was turned its materials, and sets clipboard_rows_ and turn_notice_.

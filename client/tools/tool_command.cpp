@@ -19,6 +19,9 @@ struct Carrier {
   ToolEdits operator()(const ParameterChange& c) const {
     return without_edits(box.set_parameter(c.name, c.value));
   }
+  ToolEdits operator()(const TextChange& c) const {
+    return without_edits(box.set_text(c.name, c.value));
+  }
   ToolEdits operator()(const PlacesChange& c) const {
     box.type_places(c.typed);
     return without_edits({});
@@ -59,6 +62,9 @@ struct Carrier {
   ToolEdits operator()(const ClipboardTurn& c) const {
     if (const auto done = box.rotate(c.quarters); !done || !c.mirror) return without_edits(done);
     return without_edits(box.mirror(*c.mirror));
+  }
+  ToolEdits operator()(const ClipboardReshape& c) const {
+    return without_edits(box.reshape(c.rotation));
   }
   ToolEdits operator()(const SymmetryChange& c) const {
     box.set_symmetry(c.symmetry);

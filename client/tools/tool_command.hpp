@@ -18,6 +18,10 @@ struct ParameterChange {
   std::string name;
   std::int32_t value = 0;
 };
+/// Sets a text of the chosen tool.
+struct TextChange {
+  std::string name, value;
+};
 /// Sets the places of the chosen tool by their coordinates. With nullopt, clicks choose places
 /// again.
 struct PlacesChange {
@@ -44,6 +48,10 @@ struct ClipboardTurn {
   int quarters = 0;
   std::optional<Axis> mirror;
 };
+/// Turns the clipboard by any angle and scales it.
+struct ClipboardReshape {
+  BuildRotation rotation;
+};
 struct SymmetryChange {
   Symmetry symmetry;
 };
@@ -52,8 +60,8 @@ struct PreviewChange {
 };
 
 using ToolCommand =
-    std::variant<ToolChoice, ParameterChange, PlacesChange, TypedApply, SelectionChange,
-                 SelectionCommand, ClipboardTurn, SymmetryChange, PreviewChange>;
+    std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply, SelectionChange,
+                 SelectionCommand, ClipboardTurn, ClipboardReshape, SymmetryChange, PreviewChange>;
 
 /// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the
 /// player, for example if there is no world yet. `held` is the material in the hand.

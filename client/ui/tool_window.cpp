@@ -12,6 +12,7 @@
 #include "client/tools/build_words.hpp"
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
+#include "common/core/text.hpp"
 #include "common/materials/readable_name.hpp"
 
 namespace runstone {
@@ -50,6 +51,11 @@ bool choice(const char* label, int& value, const std::array<const char*, kCount>
 }
 
 void build_parameters(const Tool& tool, std::vector<ToolCommand>& out) {
+  for (const ToolText& text : tool.texts()) {
+    std::string value = text.value;
+    if (ImGui::InputText(text.name.c_str(), &value))
+      out.emplace_back(TextChange{text.name, std::string(cut_utf8(value, text.bytes_max))});
+  }
   for (const ToolParameter& parameter : tool.parameters()) {
     int value = parameter.value;
     bool is_changed = false;
@@ -191,17 +197,18 @@ void ToolWindow::build_places(const HudState& state, std::vector<ToolCommand>& o
     return;
   }
   const auto [least, most] = box.typed_count();
-  const std::size_t shown = std::max(tool.is_drawn() ? std::size_t{2} : least, least);
+  const bool is_open_ended = least != most;
+  const std::size_t shown = std::max(is_open_ended ? std::size_t{2} : least, least);
   const Numbers first = state.sight ? numbers_of(*state.sight) : Numbers{};
   if (places_.size() < shown) places_.resize(shown, places_.empty() ? first : places_.back());
-  if (!tool.is_drawn()) places_.resize(shown);
+  if (!is_open_ended) places_.resize(shown);
   for (std::size_t i = 0; i < places_.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     place_fields(std::string(tool.place_name(i)).c_str(), places_[i]);
     if (const auto seen = sight_button(state)) places_[i] = numbers_of(*seen);
     ImGui::PopID();
   }
-  if (tool.is_drawn()) {
+  if (is_open_ended) {
     ImGui::BeginDisabled(places_.size() >= most);
     if (button_beside("one more place", true)) places_.push_back(places_.back());
     ImGui::EndDisabled();
@@ -333,6 +340,22 @@ void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
   }
 }
 
+void ToolWindow::build_reshape(std::vector<ToolCommand>& out) {
+  constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 6);
+  choice("##turn axis", turn_axis_, kAxisNames);
+  ImGui::SameLine();
+  ImGui::InputInt("degrees", &turn_degrees_);
+  ImGui::SameLine();
+  ImGui::InputInt("percent", &turn_percent_, 10);
+  ImGui::PopItemWidth();
+  turn_degrees_ = std::clamp(turn_degrees_, -360, 360);
+  turn_percent_ = std::clamp(turn_percent_, kScaleMin, kScaleMax);
+  if (button_beside("Turn and scale", true))
+    out.emplace_back(
+        ClipboardReshape{{static_cast<Axis>(turn_axis_), turn_degrees_, turn_percent_}});
+}
+
 void ToolWindow::build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out) {
   const ToolClipboard& clipboard = box.clipboard();
   if (!clipboard.build) return ImGui::TextDisabled("nothing was copied");
@@ -344,6 +367,7 @@ void ToolWindow::build_clipboard(const ToolBox& box, std::vector<ToolCommand>& o
   for (const auto& [label, axis] : kAxes) {
     if (button_beside(label)) out.emplace_back(ClipboardTurn{0, axis});
   }
+  build_reshape(out);
   if (button_beside("Paste", true)) out.emplace_back(ToolChoice{"paste"});
 }
 

@@ -47,6 +47,7 @@ class ToolWindow {
   void build_selection(const HudState& state, double scale, std::vector<ToolCommand>& out);
   void build_steps(std::vector<ToolCommand>& out);
   void build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out);
+  void build_reshape(std::vector<ToolCommand>& out);
   TypedPlaces typed_places() const;
 
   using Numbers = std::array<int, 3>;  // x, y, z
@@ -60,6 +61,7 @@ class ToolWindow {
   int face_ = 3, direction_ = 3;  // of Direction; 3 is upward
   int count_ = 1;
   bool keeps_air_ = false;
+  int turn_axis_ = 1, turn_degrees_ = 45, turn_percent_ = 100;  // of the clipboard
   std::string replaced_;  // the name of the material to be replaced, as typed
   FilePanel file_;
   std::optional<SetTime> time_;

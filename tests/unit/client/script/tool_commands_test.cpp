@@ -126,6 +126,26 @@ TEST_CASE_METHOD(ToolScript, "a script gives the places of a tool by numbers", "
   CHECK(kind_of(host.edits[2].edit) == EditKind::paste);
 }
 
+TEST_CASE_METHOD(ToolScript, "a script sets the text of a tool, in quotes if it has blanks",
+                 "[bots]") {
+  run("tool text\nparam text \"Up # 2\"  # a sign\nparam font Some/Font\nparam text \"\"");
+  CHECK(runner->failures().empty());
+  CHECK(host.tools.tool().texts()[0].value.empty());
+  CHECK(host.tools.tool().texts()[1].value == "Some/Font");
+  run("tool text\nparam text \"Up # 2\"  # a sign");
+  CHECK(host.tools.tool().texts()[0].value == "Up # 2");
+  CHECK(error_of("param text \"Up 2").find("no quote at its end") != std::string::npos);
+  CHECK(error_of("param text \"Up\" 2").find("unexpected \"2\"") != std::string::npos);
+}
+
+TEST_CASE_METHOD(ToolScript, "a script turns the clipboard by any angle and scales it", "[bots]") {
+  run("select 0 3 0 9 3 0\nselection copy\nturn y 45\nturn x 0 200");
+  CHECK(runner->failures().empty());
+  CHECK(host.tools.clipboard().build->sides() == VoxelPos{16, 2, 16});
+  CHECK(error_of("turn y 400").find("DEGREES") != std::string::npos);
+  CHECK(error_of("turn y 45 5").find("PERCENT") != std::string::npos);
+}
+
 TEST_CASE_METHOD(ToolScript, "the edits of a tool wait for the edit budget, and are made once",
                  "[bots]") {
   host.budget_from_us = 1'500'000;

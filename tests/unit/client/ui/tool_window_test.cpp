@@ -106,14 +106,14 @@ TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click 
     y = found_y + 5;
   }
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == box.tools()[i]->name());
-  CHECK(box.tool().name() == "scatter");
+  CHECK(box.tool().name() == "array");
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within its range",
                  "[client_ui]") {
   REQUIRE(box.choose("sphere").has_value());
   frames();
-  const auto changed = find<ParameterChange>(x(kSliderMiddle), 335);
+  const auto changed = find<ParameterChange>(x(kSliderMiddle), 437);
   REQUIRE(changed);
   CHECK(changed->name == "radius");
   CHECK(changed->value > 20);
@@ -129,7 +129,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 390));
+  REQUIRE(find<PlacesChange>(x(kRow), 492));
   const double header_y = found_y;
   REQUIRE(box.typed_places());
   CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
@@ -176,7 +176,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 390));
+  REQUIRE(find<PlacesChange>(x(kRow), 492));
   REQUIRE(box.typed_places());
   SECTION("the window is closed") { hud.act(Action::release); }
   SECTION("the mouse is captured") { state.is_captured = true; }
