@@ -70,8 +70,8 @@ std::vector<Material> read_all(const ToolBench& bench) {
   return out;
 }
 
-/// Makes the preview of the next click, some chunks at a time. That of a costly tool begins when the
-/// aim has rested.
+/// Makes the preview of the next click, some chunks at a time. That of a costly tool begins when
+/// the aim has rested.
 void finish_preview(ToolBench& bench, const Aim& aim) {
   const unsigned rest = bench.box.tool().is_costly() ? ToolBox::kRestCalls : 0;
   for (unsigned turn = 0; turn < 1000; ++turn) {
