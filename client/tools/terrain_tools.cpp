@@ -68,9 +68,9 @@ class GroundTool : public Tool {
   Material ground_material(const ToolInput& input) const {
     return text("material").text.empty() ? input.aim.held : kMixedMaterial;
   }
-  /// Returns the changes as an action: those that the typed filter lets through, with the materials of
-  /// the typed mix. Distances are measured from the first place. Fails with words for the player if
-  /// there are none.
+  /// Returns the changes as an action: those that the typed filter lets through, with the materials
+  /// of the typed mix. Distances are measured from the first place. Fails with words for the player
+  /// if there are none.
   ToolEdits action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
                       std::uint64_t seed, const ToolInput& input) const;
 };

@@ -41,8 +41,8 @@ std::optional<PatternError> BoundFilter::bind(const VoxelFilter& filter, const M
   for (const VoxelFilter& part : filter.parts) {
     if (auto error = parts_.emplace_back().bind(part, table, seed, count)) return error;
   }
-  // The order of the parts of `all` and `any` changes no answer. Those that work on runs come first,
-  // so that `noise` takes fewer voxels.
+  // The order of the parts of `all` and `any` changes no answer. Those that work on runs come
+  // first, so that `noise` takes fewer voxels.
   std::partition(parts_.begin(), parts_.end(),
                  [](const BoundFilter& part) { return part.kind_ != FilterKind::noise; });
   return std::nullopt;

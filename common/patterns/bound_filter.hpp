@@ -1,5 +1,5 @@
-// BoundFilter: a filter with the materials of a world. It works on the runs of a column and its four
-// neighbours; only `noise` takes the voxels one by one. One thread.
+// BoundFilter: a filter with the materials of a world. It works on the runs of a column and its
+// four neighbours; only `noise` takes the voxels one by one. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -27,8 +27,8 @@ class BoundFilter {
   bool reads_neighbours() const;
   /// Returns the voxels of a column in `range` for which the filter holds. A neighbour outside the
   /// box of the columns, or in a column that was not read, matches nothing. Requires a column that
-  /// was read, and a range inside the box. Cost: O(conditions * runs of five columns), and O(voxels)
-  /// for `noise`.
+  /// was read, and a range inside the box. Cost: O(conditions * runs of five columns), and
+  /// O(voxels) for `noise`.
   HeightRanges passing(const GroundColumns& columns, std::int32_t x, std::int32_t z,
                        HeightRange range);
   /// Returns the number of voxels that `noise` has taken one by one.

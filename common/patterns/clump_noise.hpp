@@ -1,8 +1,8 @@
 // ClumpNoise: a random number for each voxel, with the same bits on every machine. Neighbours tend
-// to have the same number, in clumps about `size` voxels across. Each cell of a lattice of that size
-// has a point and a number of its own, and a voxel has the number of the nearest of eight points
-// around it. So every number is as frequent as in a table without clumps. Source: cellular noise
-// (Worley 1996), with the points in the middle half of their cells.
+// to have the same number, in clumps about `size` voxels across. Each cell of a lattice of that
+// size has a point and a number of its own, and a voxel has the number of the nearest of eight
+// points around it. So every number is as frequent as in a table without clumps. Source: cellular
+// noise (Worley 1996), with the points in the middle half of their cells.
 #pragma once
 #include <array>
 #include <cstdint>

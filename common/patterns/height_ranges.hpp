@@ -15,8 +15,8 @@ struct HeightRange {
 /// Ranges that ascend and do not touch.
 using HeightRanges = std::vector<HeightRange>;
 
-/// Appends a range, which may touch the last one. Does nothing if it is empty. Requires that it lies
-/// above those before.
+/// Appends a range, which may touch the last one. Does nothing if it is empty. Requires that it
+/// lies above those before.
 inline void append_range(HeightRanges& to, std::int32_t low, std::int32_t high) {
   if (low >= high) return;
   if (!to.empty() && to.back().high == low) {

@@ -21,7 +21,8 @@ inline constexpr std::int32_t kMixWeightMax = 10'000;
 /// The voxels across a clump.
 inline constexpr std::int32_t kClumpSizeMax = 256;
 
-/// A name of a material, and where it stands in the text. Equal names are equal wherever they stand.
+/// A name of a material, and where it stands in the text. Equal names are equal wherever they
+/// stand.
 struct NamedMaterial {
   std::string name;
   std::uint32_t column = 0;

@@ -70,13 +70,13 @@ std::vector<Material> read_all(const ToolBench& bench) {
   return out;
 }
 
-/// Makes the preview of the next click, some chunks at a time.
+/// Makes the preview of the next click, some chunks at a time. That of a costly tool begins when
+/// the aim has rested.
 void finish_preview(ToolBench& bench, const Aim& aim) {
-  // The preview of a costly tool begins when the aim rests.
-  const int first = bench.box.tool().is_costly() ? int{ToolBox::kRestCalls} : 0;
-  for (int turn = 0; turn < 1000; ++turn) {
+  const unsigned rest = bench.box.tool().is_costly() ? ToolBox::kRestCalls : 0;
+  for (unsigned turn = 0; turn < 1000; ++turn) {
     bench.box.step_preview(bench.replica, aim, 3);
-    if (turn >= first && bench.box.preview().is_complete()) return;
+    if (turn >= rest && bench.box.preview().is_complete()) return;
   }
   FAIL("the preview does not end");
 }

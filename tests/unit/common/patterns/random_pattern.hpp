@@ -1,5 +1,5 @@
-// Random texts of patterns, with and without needless blanks, quotes and parentheses. The mixes name
-// air, stone, oak planks and moss, and the filters lamps as well.
+// Random texts of patterns, with and without needless blanks, quotes and parentheses. The mixes
+// name air, stone, oak planks and moss, and the filters lamps as well.
 #pragma once
 #include <array>
 #include <string>
