@@ -364,6 +364,8 @@ void Play::fill(HudState& state, const ShownPanels& shown) const {
   state.recent = recent_.all();
   for (const auto& [name, materials] : hotbars_.lists()) state.hotbars.push_back(name);
   state.is_captured = input_.is_captured();
+  if (session_.clock().known())
+    state.ping_ms = static_cast<double>(session_.clock().round_trip_us()) / 1e3;
   if (const auto sight = tool_.pick()) {
     state.aimed_at = sight->material;
     state.sight = sight->voxel;

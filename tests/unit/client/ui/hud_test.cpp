@@ -414,6 +414,24 @@ TEST_CASE("notices are drawn after all windows, wrapped, and inside the frame", 
   }
 }
 
+TEST_CASE("the quality of the connection has a form: bars that are full, and a slow ping in words",
+          "[client_ui]") {
+  Hud hud{KeyMap{}};
+  HudState state = some_state();
+  hud.make_frame(state, kHudSize, 0);
+  const auto vertices = [&](std::optional<double> ping_ms) {
+    state.ping_ms = ping_ms;
+    return hud.make_frame(state, kHudSize, 10)->vertices.size();
+  };
+  const std::size_t without = vertices(std::nullopt), fast = vertices(20);
+  CHECK(fast > without);
+  CHECK(vertices(100) != fast);
+  CHECK(vertices(500) > vertices(100));
+  state.is_connected = false;
+  const std::size_t lost = vertices(std::nullopt);
+  CHECK(vertices(20) == lost);
+}
+
 TEST_CASE("the author of the voxel in sight is a line of the display", "[client_ui]") {
   Hud hud{KeyMap{}};
   HudState state = some_state();
