@@ -8,9 +8,9 @@ namespace runstone {
 /// bright in spots of 16 to 128 voxels. Requires `look`, `voxel` and NoiseTexture::bind(). `scale`
 /// is the side of a voxel: in tiles the spots are where they are in chunks.
 ///
-/// Natural is a material whose grain is above 12 %, without light of its own, and without a pattern or
-/// with that of a plant: grass, leaves, moss, earth and gravel fully, stone and sand a little. Built materials have
-/// patterns, or less grain, and keep their colour.
+/// Natural is a material whose grain is above 12 %, without light of its own, and without a pattern
+/// or with that of a plant: grass, leaves, moss, earth and gravel fully, stone and sand a little.
+/// Built materials have patterns, or less grain, and keep their colour.
 ///
 /// Near ground needs no mipmaps, which cost time where the processor draws. The noise repeats after
 /// 2,048 voxels, which divides the 8,192 after which `voxel` does.

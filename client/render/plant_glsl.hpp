@@ -1,6 +1,6 @@
-// The silhouettes of plants in GLSL: what the patterns `blades`, `flower` and `foliage` leave of the
-// crossed planes of a plant. They are drawn, and cast shadows, if RUNSTONE_HOLES is defined. A silhouette has 16 x 16
-// cells, and differs from column to column of the world.
+// The silhouettes of plants in GLSL: what the patterns `blades`, `flower` and `foliage` leave of
+// the crossed planes of a plant. They are drawn, and cast shadows, if RUNSTONE_HOLES is defined. A
+// silhouette has 16 x 16 cells, and differs from column to column of the world.
 #pragma once
 
 namespace runstone {
@@ -29,7 +29,7 @@ namespace runstone {
   "bool is_blade(ivec2 q, ivec2 at) {\n"                                              \
   "  int lean = (q.y * q.y) >> 6;\n"                                                  \
   "  int blade = q.x + (hash(ivec3(q.x >> 2, at)) > 0.0 ? lean : -lean);\n"           \
-  "  return float(q.y) < 9.5 + 13.0 * hash(ivec3(blade, at.yx));\n"                   \
+  "  return float(q.y) < 6.5 + 17.0 * hash(ivec3(blade, at.yx));\n"                   \
   "}\n"                                                                               \
   "bool is_foliage(ivec2 q, ivec2 at) {\n"                                            \
   "  vec2 d = (vec2(q) - 7.5) / 16.0;\n"                                              \

@@ -14,9 +14,9 @@ namespace runstone {
 /// the corner, in voxels, in which the quad's voxel lies. The planes of plants are lit from above,
 /// and lie in their voxel with depth 0. Otherwise the lower edge of a plane would be taken for the
 /// voxel below. `side` is the direction. `across` is the corner, but on such a plane its z goes
-/// from one side of the voxel to the other, and `plane` is the corner on it, 0 .. 1. `top` is 1 at the upper corners of upper and lateral
-/// faces of cubes, and 0 elsewhere. A step of a liquid (kLiquidStepFace) is the upper part of a
-/// lateral face.
+/// from one side of the voxel to the other, and `plane` is the corner on it, 0 .. 1. `top` is 1 at
+/// the upper corners of upper and lateral faces of cubes, and 0 elsewhere. A step of a liquid
+/// (kLiquidStepFace) is the upper part of a lateral face.
 #define RUNSTONE_QUAD_GLSL                                                             \
   RUNSTONE_TEXEL_GLSL                                                                  \
   "uniform usampler2D quads, shapes;\n"                                                \

@@ -38,8 +38,8 @@ struct RenderStats {
   std::uint64_t quads_drawn = 0;
   std::uint64_t quad_bytes = 0;  // on the GPU, of all chunks
   std::uint64_t gpu_bytes = 0;   // those, the light field, the shadow maps and the textures
-  /// True if the frame shows transparent faces or ghosts, which move with FrameLook::seconds. Clouds
-  /// move with it, too, but so slowly that a still frame may show them.
+  /// True if the frame shows transparent faces or ghosts, which move with FrameLook::seconds.
+  /// Clouds move with it, too, but so slowly that a still frame may show them.
   bool is_animated = false;
   bool lacks_msaa = false;              // FXAA replaced the MSAA that was wanted
   std::uint32_t tile_parts_drawn = 0;   // tiles that are drawn whole, and octants of the others

@@ -18,12 +18,12 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kFileBytesMax = 1 << 18;
-constexpr std::size_t kTextBytesMax = 256;  // of a name
+constexpr std::size_t kHotbarsBytesMax = 256;  // of a name
 constexpr std::size_t kHotbarsMax = 32, kSlotsMax = 9;
 
 std::optional<std::string> text_of(const toml::node* node) {
   auto text = node == nullptr ? std::nullopt : node->value<std::string>();
-  if (!text || text->size() > kTextBytesMax || !is_printable_utf8(*text)) return std::nullopt;
+  if (!text || text->size() > kHotbarsBytesMax || !is_printable_utf8(*text)) return std::nullopt;
   return text;
 }
 

@@ -29,8 +29,8 @@ class UnsavedKits {
  public:
   /// Adds the line of a world, and replaces an earlier one of that world.
   void add(std::string world, std::string line);
-  /// Writes all lines with save_kit(). Lines that cannot be written stay for the next call. Fails as
-  /// save_kit() does.
+  /// Writes all lines with save_kit(). Lines that cannot be written stay for the next call. Fails
+  /// as save_kit() does.
   Result<void, std::string> save(const std::string& file);
   bool empty() const { return lines_.empty(); }
 

@@ -81,8 +81,8 @@ class Tool {
   virtual bool spans_box() const { return false; }
   /// Returns what the place with this number, from 0, is called for the player.
   virtual std::string_view place_name(std::size_t) const { return "voxel"; }
-  /// Returns true if plan() may take longer than a frame with the present parameters. A preview then
-  /// waits until the aim rests.
+  /// Returns true if plan() may take longer than a frame with the present parameters. A preview
+  /// then waits until the aim rests.
   virtual bool is_costly() const { return false; }
   /// Returns what the click makes that completes an action. Fails with words for the player. The
   /// edits are valid, but the world's limits are not checked.

@@ -108,8 +108,8 @@ SideMaterials materials_beside(VoxelPos at, const VoxelReader& voxels) {
 }
 
 /// Returns the member that a voxel becomes after voxels beside it were set. `set_to` has the new
-/// materials of its neighbours, or nullopt if a neighbour was not set; then the join towards it does
-/// not change.
+/// materials of its neighbours, or nullopt if a neighbour was not set; then the join towards it
+/// does not change.
 Material rejoined(Material material, const MaterialTable& table, const SideMaterials& set_to) {
   const JoinKind kind = join_kind_of(material, table);
   if (kind == JoinKind::none) return material;

@@ -44,8 +44,8 @@ inline constexpr std::uint64_t kJoinedBoxVoxelsMax = 4'096;
 /// Returns what fills a box that is one voxel thick along x or z: the edit, in which each voxel is
 /// the member that joins its neighbours, and behind it the edits of neighbours that join and change
 /// (ToolAction::has_followers), as those of joined_edits(). Voxels that the edit's mask does not
-/// admit are neighbours, too. Returns the edit alone if it fills another box, one with a side of more
-/// than kSideMax, or one with more than kJoinedBoxVoxelsMax voxels. Requires a FillBox. Cost:
+/// admit are neighbours, too. Returns the edit alone if it fills another box, one with a side of
+/// more than kSideMax, or one with more than kJoinedBoxVoxelsMax voxels. Requires a FillBox. Cost:
 /// O(voxels), and that of joined_material() for each combination of neighbours.
 ToolAction joined_box(const EditDescriptor& fill, const MaterialTable& table,
                       const VoxelReader& voxels);

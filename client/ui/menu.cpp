@@ -164,7 +164,7 @@ void Menu::build_failure(const ShownFailure& failure) {
 void Menu::build_worlds(const TitleState& state) {
   headline("On this computer", 1.3);
   if (state.worlds.empty()) {
-    wrapped("One click makes a world of hills and sea, for you alone.", kQuiet);
+    wrapped("One click makes a world with mountains, rivers and forests, for you alone.", kQuiet);
     if (first_button("Build here"))
       actions_.emplace_back(MakeLocalWorld{state.first_world, name_, kGenerators[0], {}});
   }
@@ -178,7 +178,8 @@ void Menu::build_worlds(const TitleState& state) {
   ImGui::TextUnformatted("A new world");
   text_field("its name", "castle", world_);
   ImGui::Combo("ground", &generator_, kGeneratorTexts.data(), kGeneratorTexts.size());
-  if (generator_ == 0) text_field("seed", "random", seed_, ImGuiInputTextFlags_CharsDecimal);
+  // The landscape and the terrain depend on a seed.
+  if (generator_ <= 1) text_field("seed", "random", seed_, ImGuiInputTextFlags_CharsDecimal);
   if (ImGui::Button("Make it")) {
     actions_.emplace_back(MakeLocalWorld{
         world_, name_, kGenerators.at(static_cast<std::size_t>(generator_)), number_in(seed_)});

@@ -1,6 +1,6 @@
 // MapCaches: what the map keeps in memory. Each entry is found by its place and its version, so an
-// entry goes stale only if materials get shapes, which empties the caches. The present and the past
-// share what is equal in both.
+// entry is outdated only if materials get shapes, which empties the caches. The present and the
+// past share what is equal in both.
 #pragma once
 #include <cstddef>
 #include <string>

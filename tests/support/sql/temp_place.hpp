@@ -81,4 +81,10 @@ inline std::string file_of(const std::string& place) {
   return sql::is_postgres_url(place) ? sql::without_password(place) : place + "/world.sqlite";
 }
 
+/// Returns the format of the world of a place. The world may not be open.
+inline std::string stored_format(const std::string& place) {
+  if (sql::is_postgres_url(place)) return raw_sql(place, "SELECT format FROM runstone_world");
+  return raw_sql(place + "/world.sqlite", "PRAGMA user_version");
+}
+
 }  // namespace runstone::test

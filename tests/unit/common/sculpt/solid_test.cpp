@@ -52,7 +52,7 @@ TEST_CASE("solids equal the rule for each voxel", "[sculpt]") {
   const auto kind = static_cast<SolidKind>(GENERATE(range(0, kSolidKindCount)));
   const auto fill = static_cast<SolidFill>(GENERATE(range(0, kSolidFillCount)));
   const auto axis = static_cast<Axis>(GENERATE(0, 1, 2));
-  const VoxelPos sides = GENERATE(VoxelPos{9, 7, 12}, VoxelPos{70, 20, 66}, VoxelPos{3, 3, 3});
+  const VoxelPos sides = GENERATE(VoxelPos{9, 7, 12}, VoxelPos{70, 7, 66}, VoxelPos{3, 3, 3});
   const std::int32_t wall = GENERATE(1, 3);
   CAPTURE(static_cast<int>(kind), static_cast<int>(fill), static_cast<int>(axis), sides.x, wall);
   const Solid solid{kind, fill, wall, axis};

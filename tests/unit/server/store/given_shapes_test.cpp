@@ -41,11 +41,6 @@ void make_shaped_world(const std::string& place) {
               .has_value());
 }
 
-std::string format_of(const TempPlace& place, const std::string& world) {
-  if (place.is_postgres()) return std::to_string(kWorldFormatOfShapes);
-  return raw_sql(world + "/world.sqlite", "PRAGMA user_version");
-}
-
 }  // namespace
 
 TEST_CASE("materials have the shapes of the log, from sequence to sequence",
@@ -138,7 +133,7 @@ TEST_CASE("shapes end the stored tiles unless their materials are new",
   REQUIRE(store->save_tiles(tiles, with_plant).has_value());
   CHECK(reader->load_tile(key, with_plant)->has_value());
 
-  // They stay over a start and a compaction.
+  // The tiles are kept over a restart.
   store.reset();
   store = *open_world(place / "w", StoreAccess::read_write);
   CHECK(rules() == with_plant);
@@ -175,12 +170,12 @@ TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
   TempPlace place;
   const std::string shaped = place / "shaped", plain = place / "plain", copy = place / "copy";
   make_shaped_world(shaped);
-  CHECK(format_of(place, shaped) == std::to_string(kWorldFormatOfShapes));
+  CHECK(stored_format(shaped) == std::to_string(kWorldFormatOfShapes));
   {
     auto store = *create_world(plain, sample_meta());
     REQUIRE(store->raise_epoch().has_value());
   }
-  if (!place.is_postgres()) CHECK(format_of(place, plain) == std::to_string(kWorldFormat));
+  CHECK(stored_format(plain) == std::to_string(kWorldFormat));
   REQUIRE(copy_stored_world(shaped, copy).has_value());
   {
     auto store = *open_world(copy, StoreAccess::read_write);
@@ -188,7 +183,7 @@ TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
     CHECK(store->library_rows()->empty());
     CHECK(store->check().has_value());
   }
-  CHECK(format_of(place, copy) == std::to_string(kWorldFormatOfShapes));
+  CHECK(stored_format(copy) == std::to_string(kWorldFormatOfShapes));
 }
 
 TEST_CASE("a world that is created with shapes is of format 8", "[store][materials][shapes]") {
@@ -205,7 +200,7 @@ TEST_CASE("a world that is created with shapes is of format 8", "[store][materia
     CHECK(*store->materials() == meta.materials);
     CHECK(store->check().has_value());
   }
-  CHECK(format_of(place, place / "w") == std::to_string(kWorldFormatOfShapes));
+  CHECK(stored_format(place / "w") == std::to_string(kWorldFormatOfShapes));
 }
 
 }  // namespace runstone::test

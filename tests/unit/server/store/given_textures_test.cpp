@@ -50,11 +50,6 @@ std::vector<GivenTexture> textures_in(LogReader& reader) {
 
 const std::vector<GivenTexture> kTextures = {kFirst, kSecond};
 
-std::string textured_format(const TempPlace& place, const std::string& world) {
-  if (place.is_postgres()) return std::to_string(kWorldFormatOfTextures);
-  return raw_sql(world + "/world.sqlite", "PRAGMA user_version");
-}
-
 }  // namespace
 
 TEST_CASE("textures are read, and kept when the log is compacted", "[store][textures]") {
@@ -82,14 +77,14 @@ TEST_CASE("a world is of format 9 from its first texture on, and so is a copy",
           "[store][textures]") {
   TempPlace place;
   make_textured_world(place / "w");
-  CHECK(textured_format(place, place / "w") == std::to_string(kWorldFormatOfTextures));
+  CHECK(stored_format(place / "w") == std::to_string(kWorldFormatOfTextures));
   REQUIRE(copy_stored_world(place / "w", place / "copy").has_value());
   {
     auto store = *open_world(place / "copy", StoreAccess::read_write);
     CHECK(textures_in(*store) == kTextures);
     CHECK(store->check().has_value());
   }
-  CHECK(textured_format(place, place / "copy") == std::to_string(kWorldFormatOfTextures));
+  CHECK(stored_format(place / "copy") == std::to_string(kWorldFormatOfTextures));
 }
 
 }  // namespace runstone::test

@@ -141,22 +141,19 @@ TEST_CASE("a compaction behind the last correction leaves no eras", "[store][clo
   CHECK(found_between(*store, minute(3), std::numeric_limits<TimeUs>::max()) == sequences(33, 40));
   CHECK(store->check().has_value());
   // Older programs cannot read the correction among the changes of rights.
-  if (!place.is_postgres()) CHECK(raw_sql(place / "w/world.sqlite", "PRAGMA user_version") == "6");
+  store.reset();
+  CHECK(stored_format(place / "w") == "6");
 }
 
 TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]") {
   TempPlace place;
   auto records = corrected_records();
   make_corrected_world(place / "w", records);
-  const auto format = [&](const std::string& file) {
-    return raw_sql(
-        file, place.is_postgres() ? "SELECT format FROM runstone_world" : "PRAGMA user_version");
-  };
-  CHECK(format(place / "w/world.sqlite") == "6");
+  CHECK(stored_format(place / "w") == "6");
   const std::string copy = place / "copy";
   const auto copied = copy_stored_world(place / "w", copy, {});
   if (!copied) FAIL(copied.error().message());
-  CHECK(format(place / "copy/world.sqlite") == "6");
+  CHECK(stored_format(place / "copy") == "6");
   auto store = *open_world(copy, StoreAccess::read_only);
   for (const EditRecord& record : records)
     CHECK(*store->sequence_at(record.time_us) == newest_at(records, record.time_us));
@@ -166,7 +163,7 @@ TEST_CASE("a corrected world is of format 6, and so is a copy", "[store][clock]"
   REQUIRE((*other)->raise_epoch().has_value());
   REQUIRE((*other)->append({}, records).has_value());
   other->reset();
-  CHECK(format(place / "plain/world.sqlite") == "5");
+  CHECK(stored_format(place / "plain") == "5");
 }
 
 TEST_CASE("the main file of a corrected world has the format although no program has closed it",

@@ -1,5 +1,5 @@
-// What a world keeps besides its log: the places of players and the clock. And the format of a
-// world whose clock was set.
+// Tests the state that a world stores besides its log (the places of players and the clock), and
+// the format of a world whose clock was set.
 #include <catch2/catch.hpp>
 
 #include "server/store/copy_stored_world.hpp"
@@ -83,18 +83,14 @@ TEST_CASE("a world is of format 10 from the first clock on, and so is a copy",
           "[store][saved_state]") {
   TempPlace place;
   const std::string world = place / "w", copy = place / "copy";
-  const auto format_of_clock = [&](const std::string& path) {
-    if (place.is_postgres()) return std::to_string(kWorldFormatOfClock);
-    return raw_sql(path + "/world.sqlite", "PRAGMA user_version");
-  };
   {
     auto store = *create_world(world, sample_meta());
     REQUIRE(store->raise_epoch().has_value());
     REQUIRE(store->save_state({{place_of(1, 7.5)}, std::nullopt}).has_value());
-    if (!place.is_postgres()) CHECK(format_of_clock(world) == std::to_string(kWorldFormat));
+    CHECK(stored_format(world) == std::to_string(kWorldFormat));
     REQUIRE(store->append({}, std::vector{record_of_clock(1, kEvening)}).has_value());
   }
-  CHECK(format_of_clock(world) == std::to_string(kWorldFormatOfClock));
+  CHECK(stored_format(world) == std::to_string(kWorldFormatOfClock));
   REQUIRE(copy_stored_world(world, copy).has_value());
   {
     auto store = *open_world(copy, StoreAccess::read_write);
@@ -102,7 +98,7 @@ TEST_CASE("a world is of format 10 from the first clock on, and so is a copy",
     CHECK(*store->saved_clock() == SavedClock{1, kEvening});
     CHECK(store->check().has_value());
   }
-  CHECK(format_of_clock(copy) == std::to_string(kWorldFormatOfClock));
+  CHECK(stored_format(copy) == std::to_string(kWorldFormatOfClock));
 }
 
 TEST_CASE("damaged places and a damaged clock end neither the opening nor the writing",

@@ -111,6 +111,28 @@ TEST_CASE("sides that have a picture keep it, and one file is a folder of one", 
   CHECK_FALSE(import_textures(folder / "none", materials, {}).has_value());
 }
 
+TEST_CASE("pictures beyond the limit of a world are left out, and the limit is named",
+          "[textures]") {
+  const TempFolder folder;
+  MaterialTable materials;
+  for (std::size_t i = 0; i <= kTextureCountMax; ++i) {
+    MaterialInfo info;
+    info.name = "m" + std::to_string(i);
+    info.visibility = Visibility::opaque;
+    REQUIRE(materials.add(info).has_value());
+    const std::array<std::uint8_t, 4> rgba{static_cast<std::uint8_t>(i),
+                                           static_cast<std::uint8_t>(i >> 8), 0, 255};
+    write_file(folder / (info.name + ".png"), plain_png(16, 16, rgba));
+  }
+  const TextureImport found = found_in(folder.path(), materials);
+  CHECK(found.pictures == kTextureCountMax);
+  CHECK(found.materials == kTextureCountMax);
+  CHECK(found.textures.size() == kTextureCountMax);
+  CHECK(found.faults == 1);
+  CHECK(textures_text(found).find("the world has 4,096 pictures, which is the most") !=
+        std::string::npos);
+}
+
 TEST_CASE("pictures of other sizes are cut and scaled, and hostile ones are named", "[textures]") {
   const TempFolder folder;
   write_file(folder / "strip.png", picture(1, 16, 64));
@@ -216,7 +238,7 @@ TEST_CASE("a resource pack of Minecraft says its textures by models", "[textures
   CHECK(shown(1, pos_y) == 1);
   CHECK(shown(2, neg_z) == 2);
   CHECK(shown(2, pos_x) == 3);
-  // Grey that is tinted has the colour of the material.
+  // A grey picture that is tinted gets the colour of the material.
   CHECK(shown(3, pos_y) == 40);
   CHECK(found.without == 3);
 }

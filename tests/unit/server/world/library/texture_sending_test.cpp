@@ -65,6 +65,40 @@ TEST_CASE("a picture is sent a few times to a session", "[world][textures]") {
   CHECK(bench.environment.closed.empty());
 }
 
+TEST_CASE("a session with too many unanswered hashes is closed, and others are answered in order",
+          "[world][textures]") {
+  SendingBench bench;
+  bench.join_with(2, 2, kFeatureMaterials | kFeatureTextures);
+  bench.environment.full = {1, 2};
+  std::vector<TextureHash> all;
+  for (std::uint8_t i = 0; i < kTexturesUnansweredMax; ++i) {
+    TextureHash hash{};
+    hash[0] = i;
+    all.push_back(i % 64 == 5 ? bench.hashes[i / 64] : hash);
+  }
+  const std::vector<TextureHash> first(all.begin(), all.begin() + kTexturesWantedMax),
+      second(all.begin() + kTexturesWantedMax, all.end());
+  for (const SessionId session : {1U, 2U}) {
+    bench.server.received(session, TexturesWanted{first}, bench.now());
+    bench.server.received(session, TexturesWanted{second}, bench.now());
+  }
+  CHECK(bench.environment.closed.empty());
+  bench.server.received(2, TexturesWanted{{TextureHash{255}}}, bench.now());
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 2);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::flooding);
+  CHECK(bench.parts_of(1).empty());
+  bench.environment.full.clear();
+  bench.tick();
+  const auto parts = bench.parts_of(1);
+  REQUIRE(parts.size() == all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(parts[i].hash == all[i]);
+    CHECK(parts[i].png.empty() == (i % 64 != 5));
+  }
+  CHECK(bench.environment.closed.size() == 1);
+}
+
 TEST_CASE("a message that finds the queue full is kept and sent once", "[world][textures]") {
   SendingBench bench;
   bench.environment.full.insert(1);

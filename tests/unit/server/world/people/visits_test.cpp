@@ -66,11 +66,11 @@ TEST_CASE("a crowd that comes at once makes few lines", "[world][visits]") {
   VisitBench bench;
   bench.join_with(1, 1, kReads);
   for (std::uint8_t who = 2; who < 40; ++who) bench.join_with(who, who, kReads);
-  // The first line was spent on the first player, whom nobody saw.
+  // The line about the first player counts, although nobody else was there to get it.
   CHECK(bench.visits(1).size() == kVisitLineBurst - 1);
 }
 
-TEST_CASE("players who change the server have neither joined nor left", "[world][visits]") {
+TEST_CASE("after a takeover the players who are here count as joined", "[world][visits]") {
   VisitBench bench;
   bench.join_with(1, 1, kReads);
   bench.tick();
