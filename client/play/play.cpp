@@ -20,6 +20,8 @@ constexpr double kSecondsMax = 0.1;
 /// The sun moves in steps of this share of a day, a tenth of a degree: each step draws a frame and
 /// all shadows again.
 constexpr double kTimeStep = 1.0 / 3600;
+/// The voxel at the crosshair is looked up this often for its author.
+constexpr TimeUs kAuthorEveryUs = 50'000;
 
 }  // namespace
 
@@ -323,6 +325,8 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
 }
 
 void Play::step_author(const PlaySettings& settings, TimeUs now_us) {
+  if (now_us < author_due_us_) return;
+  author_due_us_ = now_us + kAuthorEveryUs;
   const auto hit = settings.shows_authors ? tool_.pick() : std::nullopt;
   session_.step_voxel_author(hit ? std::optional(hit->voxel) : std::nullopt, now_us);
   const VoxelAuthor::Found* const found = session_.voxel_author().found();
