@@ -165,7 +165,7 @@ TEST_CASE_METHOD(HudBench, "the palette offers what was used lately, and keeps h
   state.recent = {5, 6};
   state.hotbars = {"roofs"};
   frame();
-  CHECK(frame() > without);
+  CHECK(frame() != without);
   click(150, 150);  // the first icon, below the orders
   CHECK(take<HoldMaterial>().material == 5);
   press(Key::e);
