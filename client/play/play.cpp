@@ -20,6 +20,8 @@ constexpr double kSecondsMax = 0.1;
 /// The sun moves in steps of this share of a day, a tenth of a degree: each step draws a frame and
 /// all shadows again.
 constexpr double kTimeStep = 1.0 / 3600;
+/// The voxel at the crosshair is looked up this often for its author.
+constexpr TimeUs kAuthorEveryUs = 50'000;
 
 }  // namespace
 
@@ -323,6 +325,8 @@ void Play::step_textures(const PlaySettings& settings, TimeUs now_us) {
 }
 
 void Play::step_author(const PlaySettings& settings, TimeUs now_us) {
+  if (now_us < author_due_us_) return;
+  author_due_us_ = now_us + kAuthorEveryUs;
   const auto hit = settings.shows_authors ? tool_.pick() : std::nullopt;
   session_.step_voxel_author(hit ? std::optional(hit->voxel) : std::nullopt, now_us);
   const VoxelAuthor::Found* const found = session_.voxel_author().found();
@@ -364,6 +368,8 @@ void Play::fill(HudState& state, const ShownPanels& shown) const {
   state.recent = recent_.all();
   for (const auto& [name, materials] : hotbars_.lists()) state.hotbars.push_back(name);
   state.is_captured = input_.is_captured();
+  if (session_.clock().known())
+    state.ping_ms = static_cast<double>(session_.clock().round_trip_us()) / 1e3;
   if (const auto sight = tool_.pick()) {
     state.aimed_at = sight->material;
     state.sight = sight->voxel;

@@ -231,6 +231,7 @@ class Play {
   ServerNotices server_notices_;
   std::vector<PlayerNotice> notices_;
   std::string author_text_;          // who set the voxel at the crosshair, or empty
+  TimeUs author_due_us_ = 0;         // when it is looked up next
   std::optional<WorldId> world_;     // whose materials the hotbar has
   std::uint64_t shapes_number_ = 0;  // ClientSession::shapes_number() of the materials in use
   std::optional<TimeUs> opened_us_;  // when the first world opened

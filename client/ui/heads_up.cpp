@@ -1,6 +1,8 @@
 #include "client/ui/heads_up.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 #include "client/ui/block_icon.hpp"
 #include "client/ui/ui_draw.hpp"
@@ -71,10 +73,35 @@ void name_plates(ImDrawList& list, const HudState& state, float scale) {
   }
 }
 
+/// Draws four bars, of which as many are full as the connection is good. Behind the bars of a slow
+/// one stands the ping.
+void connection_bars(ImDrawList& list, ImVec2 at, double ping_ms, float scale) {
+  constexpr std::array<double, 3> kMsMax = {80, 160, 320};  // of 4, 3 and 2 bars
+  const auto slower =
+      std::count_if(kMsMax.begin(), kMsMax.end(), [&](double most) { return ping_ms > most; });
+  const auto full = static_cast<int>(kMsMax.size()) + 1 - static_cast<int>(slower);
+  const float height = ImGui::GetTextLineHeight(), width = 3 * scale, step = 5 * scale;
+  for (int i = 0; i < 4; ++i) {
+    const float left = at.x + static_cast<float>(i) * step;
+    const float top = at.y + height * static_cast<float>(3 - i) * 0.2F;
+    const ImVec2 from{left, top}, to{left + width, at.y + height - 2 * scale};
+    if (i < full) {
+      list.AddRectFilled(from, to, kDim);
+    } else {
+      list.AddRect(from, to, IM_COL32(200, 208, 216, 120));
+    }
+  }
+  if (full <= 2)
+    shadowed_text(list, {at.x + 4 * step + 2 * scale, at.y}, kDim,
+                  std::to_string(static_cast<int>(ping_ms)) + " ms");
+}
+
 void corner_lines(ImDrawList& list, const HudState& state, float scale) {
   const float x = 10 * scale, line = ImGui::GetTextLineHeightWithSpacing();
   float y = 8 * scale;
   shadowed_text(list, {x, y}, kDim, state.place);
+  if (state.ping_ms && state.is_connected)
+    connection_bars(list, {x + width_of(state.place) + 12 * scale, y}, *state.ping_ms, scale);
   if (state.aimed_at && state.materials->knows(*state.aimed_at)) {
     y += line;
     shadowed_text(list, {x, y}, kDim,

@@ -71,6 +71,7 @@ struct HudState {
   std::vector<std::string> hotbars;  // names of those that the player has kept, ascending
   bool is_captured = false;          // the mouse moves the player
   bool is_connected = false;
+  std::optional<double> ping_ms;     // the shortest of the last ones; nullopt: not known
   std::string place;                 // position, and how the player moves
   std::optional<Material> aimed_at;  // the voxel in sight
   std::string state;                 // for example that the past is shown; empty: nothing special

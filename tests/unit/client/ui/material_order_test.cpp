@@ -13,7 +13,7 @@ TEST_CASE("materials are sorted by name, and by colour from greys over the circl
     return *id;
   };
   const Material pink = add("pink", {220, 60, 120, 255});
-  const Material dark_blue = add("zinc_blue", {10, 20, 120, 255});
+  const Material dark_blue = add("zinc", {10, 20, 120, 255});
   const Material blue = add("blue", {20, 40, 240, 255});
   const Material white = add("white", {250, 250, 245, 255});
   const Material green = add("green", {30, 200, 30, 255});
