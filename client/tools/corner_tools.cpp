@@ -46,7 +46,7 @@ class CornerTool : public Tool {
 class PolygonTool final : public CornerTool {
  public:
   PolygonTool()
-      : CornerTool("polygon", "corners by clicks; the first or last one again closes it",
+      : CornerTool("polygon", "a prism over corners; a corner again ends it",
                    {{"height", "voxels", 1, 256, 4, {}},
                     {"fill", "", 0, kSolidFillCount - 1, 0, {"solid", "hollow", "walls"}},
                     {"wall", "voxels", 1, 16, 1, {}},
@@ -71,7 +71,7 @@ constexpr std::int32_t kCheapThicknessMax = 8;
 class CurveTool final : public CornerTool {
  public:
   CurveTool()
-      : CornerTool("curve", "a bar through clicked places; the last one again ends it",
+      : CornerTool("curve", "a bar through places; the last again ends it",
                    {{"thickness", "voxels", 1, kTubeThicknessMax, 1, {}},
                     {"bend", "", 0, 1, 0, {"curve", "straight"}},
                     mask_parameter()}) {}
@@ -89,7 +89,7 @@ ToolEdits CurveTool::plan(const ToolInput& input) const {
 class ArrayTool final : public CornerTool {
  public:
   ArrayTool()
-      : CornerTool("array", "copies of the clipboard along a curve of clicked places",
+      : CornerTool("array", "copies of the clipboard along a curve",
                    {{"spacing", "voxels", 1, 256, 8, {}},
                     {"turn", "", 0, 1, 0, {"none", "along"}},
                     mask_parameter()}) {}

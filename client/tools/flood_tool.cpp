@@ -16,7 +16,7 @@ namespace {
 class FloodTool final : public Tool {
  public:
   FloodTool()
-      : Tool("flood", "fills a hollow up to a level; with depth 0 a second click gives the level",
+      : Tool("flood", "fills a hollow up to a level",
              {{"depth", "voxels", 0, 64, 4, {}},
               {"voxels", "voxels", 1, 4'000'000, 1'000'000, {}}}) {}
   std::size_t points_before() const override { return value("depth") == 0 ? 1 : 0; }

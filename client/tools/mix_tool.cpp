@@ -11,7 +11,7 @@ namespace {
 class MixTool final : public Tool {
  public:
   MixTool()
-      : Tool("mix", "a box by a pattern, such as 70% stone, 30% moss",
+      : Tool("mix", "a box by a typed pattern of materials",
              {{"seed", "", 0, 9999, 1, {}}, {"region", "", 0, 1, 0, {"clicks", "selection"}}},
              {{"pattern", "70% stone, 30% moss where is dirt and exposed",
                ToolText::Kind::pattern}}) {}

@@ -96,6 +96,8 @@ void build_chips(const std::vector<std::string>& chips) {
 void build_texts(const Tool& tool, std::vector<ToolCommand>& out) {
   for (const ToolText& text : tool.texts()) {
     std::string typed = text.text;
+    const float name_width = ImGui::CalcTextSize(text.name.c_str()).x;
+    ImGui::SetNextItemWidth(-name_width - ImGui::GetStyle().ItemInnerSpacing.x);
     if (ImGui::InputTextWithHint(text.name.c_str(), text.hint.c_str(), &typed))
       out.emplace_back(TextChange{text.name, std::string(cut_utf8(typed, kToolTextBytesMax))});
     if (!text.error.empty()) {
