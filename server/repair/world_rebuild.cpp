@@ -322,7 +322,8 @@ StoreResult<void> WorldRebuild::complete_tables() {
       "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
   if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
   for (const FoundTable table : kFolded) {
-    if (table == FoundTable::snapshot) continue;
+    // Snapshots are made anew, and the log gives watermarks first.
+    if (table == FoundTable::snapshot || table == FoundTable::player_instance) continue;
     if (auto completed = complete(table); !completed) return completed;
   }
   return complete_names();
@@ -384,6 +385,8 @@ StoreResult<void> WorldRebuild::follow_log() {
   if (!read) return read;
   if (auto flushed = segments->flush(); !flushed) return flushed;
   segments_ = segments->take_added();
+  own_mark_ = marks[{0, instance()}];
+  marks.erase({0, instance()});
   auto players = PlayerTable::open(*database_);
   if (!players) return failed(players.error());
   RowFold unused;
@@ -391,6 +394,14 @@ StoreResult<void> WorldRebuild::follow_log() {
     if (auto raised = players->raise(mark, unused); !raised) return raised;
   }
   return {};
+}
+
+StoreResult<void> WorldRebuild::raise_own_mark() {
+  if (own_mark_.resolved == 0) return {};
+  auto players = PlayerTable::open(*database_);
+  if (!players) return failed(players.error());
+  RowFold unused;
+  return players->raise(own_mark_, unused);
 }
 
 StoreResult<void> WorldRebuild::write_meta() {
@@ -439,6 +450,8 @@ StoreResult<void> WorldRebuild::fill(
   if (auto rebuilt = rebuild_log(); !rebuilt) return rebuilt;
   if (auto completed = complete_tables(); !completed) return completed;
   if (auto followed = follow_log(); !followed) return followed;
+  if (auto completed = complete(FoundTable::player_instance); !completed) return completed;
+  if (auto raised = raise_own_mark(); !raised) return raised;
   if (auto completed = complete_library(); !completed) return completed;
   return write_meta();
 }

@@ -17,6 +17,7 @@
 #include "server/repair/repair_report.hpp"
 #include "server/store/durable_state.hpp"
 #include "server/store/meta_table.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 
@@ -55,6 +56,8 @@ class WorldRebuild {
   StoreResult<void> complete_library();
   /// Reads the log once and makes what follows from it: segments, watermarks, eras, marks of kinds.
   StoreResult<void> follow_log();
+  /// Writes the watermark of the records that stand for lost ones.
+  StoreResult<void> raise_own_mark();
   StoreResult<void> write_meta();
 
   const std::string folder_;
@@ -69,6 +72,7 @@ class WorldRebuild {
   DurableState state_;  // of the world, as far as it is known
   std::vector<LogEra> eras_;
   std::uint64_t segments_ = 0;
+  HighWater own_mark_;
   ClientSequence operations_ = 0;
 };
 
