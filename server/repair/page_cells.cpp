@@ -7,7 +7,6 @@ namespace {
 
 constexpr std::uint8_t kInteriorIndex = 2, kInteriorTable = 5, kLeafIndex = 10, kLeafTable = 13;
 constexpr std::size_t kLeafHeaderBytes = 8, kChildBytes = 4;
-constexpr std::uint64_t kRecordBytesMax = std::uint64_t{1} << 31;
 
 std::size_t u16_at(ByteView page, std::size_t at) {
   return static_cast<std::size_t>(page[at]) << 8 | page[at + 1];
@@ -28,7 +27,7 @@ std::optional<PageCell> cell_at(ByteView page, std::size_t at, std::size_t usabl
   if (type == kInteriorIndex) at += kChildBytes;
   PageCell cell;
   const auto bytes = read_sqlite_varint(used, at);
-  if (!bytes || *bytes > kRecordBytesMax) return std::nullopt;
+  if (!bytes) return std::nullopt;
   cell.record_bytes = *bytes;
   if (type == kLeafTable) {
     const auto row_id = read_sqlite_varint(used, at);
@@ -63,7 +62,8 @@ std::optional<PageCells> cells_of(ByteView page, std::size_t header_bytes, std::
   if (pointers + 2 * count > usable) return std::nullopt;
   PageCells out;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = u16_at(page, pointers + 2 * i);
+    // SQLite ignores the bits of a pointer that no place in the page has.
+    const std::size_t at = u16_at(page, pointers + 2 * i) & (page.size() - 1);
     const auto cell = at < pointers ? std::nullopt : cell_at(page, at, usable, type);
     if (cell) {
       out.cells.push_back(*cell);

@@ -59,7 +59,6 @@ std::optional<StoredRow> decode_stored_row(ByteView record) {
       row.emplace_back(std::string(value.begin(), value.end()));
     }
   }
-  if (!body.empty()) return std::nullopt;
   return row;
 }
 

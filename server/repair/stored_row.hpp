@@ -20,8 +20,8 @@ using StoredRow = std::vector<StoredValue>;
 /// bytes end before.
 std::optional<std::uint64_t> read_sqlite_varint(ByteView in, std::size_t& at);
 
-/// Returns the columns of a record. Returns nullopt if the bytes are no record of a world: they are
-/// too few or too many, or a column is a floating-point number.
+/// Returns the columns of a record. As in SQLite, bytes behind them are ignored. Returns nullopt if
+/// the bytes are no record of a world: they are too few, or a column is a floating-point number.
 std::optional<StoredRow> decode_stored_row(ByteView record);
 
 }  // namespace runstone

@@ -1,6 +1,7 @@
 #include "server/repair/world_rebuild.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -32,6 +33,47 @@ std::optional<RowFold> fold_in(const MetaRows& rows, const std::string& key) {
   const std::uint64_t count = reader.u64();
   return RowFold{count, reader.u64()};
 }
+
+template <class Table, class Rows>
+StoreResult<RowFold> fold_of_rows(sql::Database& database, Rows rows) {
+  auto table = Table::open(database);
+  if (!table) return failed(table.error());
+  const auto found = rows(*table);
+  if (!found) return failed(found.error());
+  return found->fold;
+}
+
+StoreResult<RowFold> fold_of_chunks(sql::Database& database, ChunkTable::Kind kind) {
+  auto table = ChunkTable::open(database, kind);
+  if (!table) return failed(table.error());
+  return table->fold();
+}
+
+/// The tables that have a fold in `meta`, but for those of the library.
+constexpr std::array kFolded = {
+    FoundTable::base,       FoundTable::rights_record,   FoundTable::player,
+    FoundTable::name_claim, FoundTable::player_instance, FoundTable::snapshot};
+
+/// Returns the fold of a table of kFolded.
+StoreResult<RowFold> fold_of(sql::Database& database, FoundTable table) {
+  switch (table) {
+    case FoundTable::base:
+      return fold_of_chunks(database, ChunkTable::Kind::base);
+    case FoundTable::rights_record:
+      return fold_of_rows<KeptRecords>(database, [](KeptRecords& rows) { return rows.records(); });
+    case FoundTable::player:
+      return fold_of_rows<PlayerTable>(database, [](PlayerTable& rows) { return rows.players(); });
+    case FoundTable::name_claim:
+      return fold_of_rows<ClaimTable>(database, [](ClaimTable& rows) { return rows.claims(); });
+    case FoundTable::player_instance:
+      return fold_of_rows<PlayerTable>(database,
+                                       [](PlayerTable& rows) { return rows.high_waters(); });
+    default:
+      return fold_of_chunks(database, ChunkTable::Kind::snapshot);
+  }
+}
+
+std::string fold_key_of(FoundTable table) { return std::string(columns_of(table).name) + "_fold"; }
 
 }  // namespace
 
@@ -201,94 +243,90 @@ StoreResult<void> WorldRebuild::rebuild_log() {
   return {};
 }
 
-StoreResult<void> WorldRebuild::complete(
-    const std::string& table, const std::string& fold_key,
-    const std::function<StoreResult<RowFold>()>& fold,
-    const std::function<StoreResult<std::uint64_t>()>& fill_from_backup) {
-  const auto expected = fold_in(found_->meta(), fold_key);
-  auto found = fold();
+StoreResult<std::uint64_t> WorldRebuild::fill_from_backup(FoundTable table) {
+  sql::Database& database = *database_;
+  switch (table) {
+    case FoundTable::base:
+      return backup_->fill_base(database, head_);
+    case FoundTable::rights_record:
+      return backup_->fill_kept_records(database, head_);
+    case FoundTable::player:
+      return backup_->fill_players(database);
+    case FoundTable::name_claim:
+      return backup_->fill_claims(database);
+    case FoundTable::player_instance:
+      return backup_->fill_watermarks(database);
+    default:
+      return std::uint64_t{0};  // snapshots are made anew
+  }
+}
+
+StoreResult<void> WorldRebuild::complete(FoundTable table) {
+  const std::string name = columns_of(table).name;
+  const auto expected = fold_in(found_->meta(), fold_key_of(table));
+  auto found = fold_of(*database_, table);
   if (!found) return failed(found.error());
   if (expected == *found) return {};
-  if (backup_ != nullptr && fill_from_backup) {
-    const auto taken = fill_from_backup();
+  if (backup_ != nullptr) {
+    const auto taken = fill_from_backup(table);
     if (!taken) return failed(taken.error());
     if (*taken != 0)
-      report_.taken.push_back(std::to_string(*taken) + " rows of " + table + " from the backup");
-    found = fold();
+      report_.taken.push_back(std::to_string(*taken) + " rows of " + name + " from the backup");
+    found = fold_of(*database_, table);
     if (!found) return failed(found.error());
   }
   // Rows of torn frames are newer than the fold.
   const bool is_newer = pages_.has_torn_pages() && expected && found->count >= expected->count;
   if (expected == *found || is_newer) return {};
-  report_.losses.push_back(
-      table + ": " +
-      (expected ? std::to_string(found->count) + " rows of " + std::to_string(expected->count) +
-                      " that meta counts"
-                : "it is not known whether rows are missing, because meta key=" + fold_key +
-                      " is lost"));
+  report_.losses.push_back(name + ": " +
+                           (expected
+                                ? std::to_string(found->count) + " rows of " +
+                                      std::to_string(expected->count) + " that meta counts"
+                                : "it is not known whether rows are missing, because meta key=" +
+                                      fold_key_of(table) + " is lost"));
+  return {};
+}
+
+StoreResult<void> WorldRebuild::complete_names() {
+  // The row `row_counts` of `meta` has epoch, head and then the number of names.
+  const auto row = found_->meta().find("row_counts");
+  const auto* bytes = row == found_->meta().end() ? nullptr : std::get_if<Bytes>(&row->second);
+  std::uint64_t expected = 0;
+  if (bytes != nullptr && bytes->size() >= 20) {
+    ByteReader reader(*bytes);
+    reader.u32();
+    reader.u64();
+    expected = reader.u64();
+  }
+  const auto count = [&] { return database_->integer("SELECT count(*) FROM player_name"); };
+  auto found = count();
+  if (!found) return failed(found.error());
+  if (static_cast<std::uint64_t>(*found) >= expected) return {};
+  if (backup_ != nullptr) {
+    const auto taken = backup_->fill_names(*database_);
+    if (!taken) return failed(taken.error());
+    report_.taken.push_back(std::to_string(*taken) + " rows of player_name from the backup");
+    found = count();
+    if (!found) return failed(found.error());
+  }
+  if (static_cast<std::uint64_t>(*found) < expected) {
+    report_.losses.push_back("player_name: " + std::to_string(*found) + " rows of " +
+                             std::to_string(expected) + " that meta counts");
+  }
   return {};
 }
 
 StoreResult<void> WorldRebuild::complete_tables() {
-  sql::Database& database = *database_;
   // Chunks of other levels and versions that the log never had are no chunks of this world.
   const std::string foreign =
-      std::string("DELETE FROM snapshot WHERE lod <> 0 OR seq > ") + std::to_string(state_.seq);
-  if (const auto gone = database.run(foreign.c_str()); !gone) return failed(gone.error());
-  const auto chunks_fold = [&]() -> StoreResult<RowFold> {
-    auto table = ChunkTable::open(database, ChunkTable::Kind::base);
-    if (!table) return failed(table.error());
-    return table->fold();
-  };
-  auto done = complete("base", "base_fold", chunks_fold,
-                       [&] { return backup_->fill_base(database, head_); });
-  if (!done) return done;
-  done = complete(
-      "rights_record", "rights_record_fold",
-      [&]() -> StoreResult<RowFold> {
-        auto table = KeptRecords::open(database);
-        if (!table) return failed(table.error());
-        const auto rows = table->records();
-        if (!rows) return failed(rows.error());
-        return rows->fold;
-      },
-      [&] { return backup_->fill_kept_records(database, head_); });
-  if (!done) return done;
-  done = complete(
-      "player", "player_fold",
-      [&]() -> StoreResult<RowFold> {
-        auto table = PlayerTable::open(database);
-        if (!table) return failed(table.error());
-        const auto rows = table->players();
-        if (!rows) return failed(rows.error());
-        return rows->fold;
-      },
-      [&]() -> StoreResult<std::uint64_t> {
-        if (const auto names = backup_->fill_names(database); !names) return names;
-        return backup_->fill_players(database);
-      });
-  if (!done) return done;
-  done = complete(
-      "name_claim", "name_claim_fold",
-      [&]() -> StoreResult<RowFold> {
-        auto table = ClaimTable::open(database);
-        if (!table) return failed(table.error());
-        const auto rows = table->claims();
-        if (!rows) return failed(rows.error());
-        return rows->fold;
-      },
-      [&] { return backup_->fill_claims(database); });
-  if (!done) return done;
-  return complete(
-      "player_instance", "player_instance_fold",
-      [&]() -> StoreResult<RowFold> {
-        auto table = PlayerTable::open(database);
-        if (!table) return failed(table.error());
-        const auto rows = table->high_waters();
-        if (!rows) return failed(rows.error());
-        return rows->fold;
-      },
-      [&] { return backup_->fill_watermarks(database); });
+      "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
+  if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
+  for (const FoundTable table : kFolded) {
+    // Snapshots are made anew, and the log gives watermarks first.
+    if (table == FoundTable::snapshot || table == FoundTable::player_instance) continue;
+    if (auto completed = complete(table); !completed) return completed;
+  }
+  return complete_names();
 }
 
 StoreResult<void> WorldRebuild::complete_library() {
@@ -347,6 +385,8 @@ StoreResult<void> WorldRebuild::follow_log() {
   if (!read) return read;
   if (auto flushed = segments->flush(); !flushed) return flushed;
   segments_ = segments->take_added();
+  own_mark_ = marks[{0, instance()}];
+  marks.erase({0, instance()});
   auto players = PlayerTable::open(*database_);
   if (!players) return failed(players.error());
   RowFold unused;
@@ -354,6 +394,14 @@ StoreResult<void> WorldRebuild::follow_log() {
     if (auto raised = players->raise(mark, unused); !raised) return raised;
   }
   return {};
+}
+
+StoreResult<void> WorldRebuild::raise_own_mark() {
+  if (own_mark_.resolved == 0) return {};
+  auto players = PlayerTable::open(*database_);
+  if (!players) return failed(players.error());
+  RowFold unused;
+  return players->raise(own_mark_, unused);
 }
 
 StoreResult<void> WorldRebuild::write_meta() {
@@ -375,31 +423,11 @@ StoreResult<void> WorldRebuild::write_meta() {
   if (!eras_.empty()) {
     if (auto put = meta->put_log_eras(eras_); !put) return put;
   }
-  for (const ChunkTable::Kind kind : {ChunkTable::Kind::base, ChunkTable::Kind::snapshot}) {
-    auto table = ChunkTable::open(*database_, kind);
-    if (!table) return failed(table.error());
-    const auto fold = table->fold();
+  for (const FoundTable table : kFolded) {
+    const auto fold = fold_of(*database_, table);
     if (!fold) return failed(fold.error());
-    if (auto put = meta->put_fold(table->fold_key(), *fold); !put) return put;
+    if (auto put = meta->put_fold(fold_key_of(table), *fold); !put) return put;
   }
-  auto players = PlayerTable::open(*database_);
-  if (!players) return failed(players.error());
-  const auto rows = players->players();
-  if (!rows) return failed(rows.error());
-  if (auto put = meta->put_fold("player_fold", rows->fold); !put) return put;
-  const auto marks = players->high_waters();
-  if (!marks) return failed(marks.error());
-  if (auto put = meta->put_fold("player_instance_fold", marks->fold); !put) return put;
-  auto claims = ClaimTable::open(*database_);
-  if (!claims) return failed(claims.error());
-  const auto claimed = claims->claims();
-  if (!claimed) return failed(claimed.error());
-  if (auto put = meta->put_fold("name_claim_fold", claimed->fold); !put) return put;
-  auto rights = KeptRecords::open(*database_);
-  if (!rights) return failed(rights.error());
-  const auto records = rights->records();
-  if (!records) return failed(records.error());
-  if (auto put = meta->put_fold("rights_record_fold", records->fold); !put) return put;
   RowCounts counts;
   counts.epoch = state_.epoch;
   counts.head = head_.version.seq;
@@ -422,6 +450,8 @@ StoreResult<void> WorldRebuild::fill(
   if (auto rebuilt = rebuild_log(); !rebuilt) return rebuilt;
   if (auto completed = complete_tables(); !completed) return completed;
   if (auto followed = follow_log(); !followed) return followed;
+  if (auto completed = complete(FoundTable::player_instance); !completed) return completed;
+  if (auto raised = raise_own_mark(); !raised) return raised;
   if (auto completed = complete_library(); !completed) return completed;
   return write_meta();
 }

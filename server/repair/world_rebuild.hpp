@@ -17,6 +17,7 @@
 #include "server/repair/repair_report.hpp"
 #include "server/store/durable_state.hpp"
 #include "server/store/meta_table.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 
@@ -46,15 +47,17 @@ class WorldRebuild {
   StoreResult<void> rebuild_log();
   StoreResult<void> report_lost(const std::vector<Sequence>& lost,
                                 const std::map<Sequence, LostRecord>& known);
-  /// Fills a table from the backup if rows of it are missing, and reports what stays lost. `fold`
-  /// returns the fold of the table's rows.
-  StoreResult<void> complete(const std::string& table, const std::string& fold_key,
-                             const std::function<StoreResult<RowFold>()>& fold,
-                             const std::function<StoreResult<std::uint64_t>()>& fill_from_backup);
+  /// Returns how many rows of the table the backup gave.
+  StoreResult<std::uint64_t> fill_from_backup(FoundTable table);
+  /// Fills a table from the backup if rows of it are missing, and reports what stays lost.
+  StoreResult<void> complete(FoundTable table);
+  StoreResult<void> complete_names();
   StoreResult<void> complete_tables();
   StoreResult<void> complete_library();
   /// Reads the log once and makes what follows from it: segments, watermarks, eras, marks of kinds.
   StoreResult<void> follow_log();
+  /// Writes the watermark of the records that stand for lost ones.
+  StoreResult<void> raise_own_mark();
   StoreResult<void> write_meta();
 
   const std::string folder_;
@@ -69,6 +72,7 @@ class WorldRebuild {
   DurableState state_;  // of the world, as far as it is known
   std::vector<LogEra> eras_;
   std::uint64_t segments_ = 0;
+  HighWater own_mark_;
   ClientSequence operations_ = 0;
 };
 

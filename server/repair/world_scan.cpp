@@ -12,7 +12,8 @@ constexpr std::uint64_t kProgressPages = 256;
 /// Returns the row of a cell, with its row id in place of the key that stands for it.
 std::optional<StoredRow> row_of(PageFile& pages, const PageCell& cell, PageFile::Age age) {
   const auto record = pages.record_of(cell, age);
-  auto row = record ? decode_stored_row(*record) : std::nullopt;
+  // A damaged length may name overflow pages that a short row does not need.
+  auto row = decode_stored_row(record ? ByteView(*record) : cell.local);
   if (row && !row->empty() && cell.row_id && std::holds_alternative<std::monostate>(row->front()))
     row->front() = *cell.row_id;
   return row;

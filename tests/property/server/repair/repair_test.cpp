@@ -96,6 +96,7 @@ bool repair_of_damage(std::uint64_t seed) {
   CHECK(store->check().has_value());
   const auto repaired = RepairBench::records_of(*store);
   for (const auto& [seq, record] : readable) {
+    CAPTURE(seq);
     const auto found = repaired.find(seq);
     CHECK((found != repaired.end() && found->second == record));
   }

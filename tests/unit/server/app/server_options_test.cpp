@@ -93,7 +93,7 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
   CHECK(parsed.exit_code == 2);
   CHECK(
       text.str() ==
-      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, restore, control) and no flag; "
+      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag; "
       "--help lists the flags\n");
 }
 

@@ -50,7 +50,7 @@ class RepairBench {
       } else if (seq == 60) {
         record.cause = Cause::materials;
         record.subject = 0;
-        MaterialRow row{"marble", {9, 9, 9, 255}, {}};
+        MaterialRow row{"bench stone", {9, 9, 9, 255}, {}};
         row.visibility = Visibility::opaque;
         record.edit = materials_edit(
             {static_cast<Material>(sample_meta().materials.size()), {std::move(row)}});
