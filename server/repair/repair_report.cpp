@@ -38,7 +38,7 @@ std::string chunks_text(const VoxelBox& box, std::int32_t edge) {
   return " chunks" + text;
 }
 
-std::string lost_text(const LostEdit& edit, std::int32_t edge) {
+std::string lost_text(const GoneEdit& edit, std::int32_t edge) {
   std::string text = "seq=" + std::to_string(edit.seq);
   if (edit.author != 0) text += " author=#" + std::to_string(edit.author);
   if (edit.cause == Cause::rights) text += " a change of rights";
@@ -58,14 +58,14 @@ void print(const RepairReport& report, std::int32_t edge, std::ostream& out) {
     out << "taken       " << report.records_from_backup << " records of the log from the backup\n";
   print_list(report.taken, out, "taken       ", line);
   print_list(report.lost, out, "lost        ",
-             [&](const LostEdit& edit) { return lost_text(edit, edge); });
+             [&](const GoneEdit& edit) { return lost_text(edit, edge); });
   print_list(report.losses, out, "lost        ", line);
   if (report.materials_made != 0) {
     out << "materials   " << report.materials_made
         << " rows named lost_ID stand for materials that are lost\n";
   }
   const bool has_lost_rights = std::ranges::any_of(
-      report.lost, [](const LostEdit& edit) { return !edit.cause || edit.cause == Cause::rights; });
+      report.lost, [](const GoneEdit& edit) { return !edit.cause || edit.cause == Cause::rights; });
   if (has_lost_rights) {
     out << "rights      changes of rights may be lost: look at roles, bans and protected boxes\n";
   }

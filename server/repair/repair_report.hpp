@@ -13,7 +13,7 @@
 namespace runstone {
 
 /// A record of the log that is gone.
-struct LostEdit {
+struct GoneEdit {
   Sequence seq = 0;
   AuthorId author = 0;         // 0: the server, or not known
   std::optional<Cause> cause;  // nullopt: not known
@@ -32,7 +32,7 @@ struct RepairReport {
   std::vector<std::string> damage;  // one line each
   std::uint64_t records = 0;        // of the log that were found
   std::uint64_t records_from_backup = 0;
-  std::vector<LostEdit> lost;
+  std::vector<GoneEdit> lost;
   std::size_t materials_made = 0;  // rows in place of lost ones
   std::vector<KeptGround> ground;
   std::vector<std::string> taken;   // from the backup, one line for each table

@@ -192,7 +192,7 @@ StoreResult<void> WorldRebuild::report_lost(const std::vector<Sequence>& lost,
       "SELECT time_us FROM edit_log WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 1");
   if (!behind) return failed(behind.error());
   for (const Sequence seq : lost) {
-    LostEdit edit;
+    GoneEdit edit;
     edit.seq = seq;
     const auto bound = static_cast<std::int64_t>(seq);
     const sql::ResetAtEnd reset_before_at_end(*before);
