@@ -94,7 +94,8 @@ StoreResult<void> PageFile::read_header() {
     damage_.push_back("the header of the database is damaged");
   }
   if (!is_page_size(page_bytes_)) page_bytes_ = guessed_page_bytes();
-  pages_ = static_cast<std::uint32_t>(main_bytes_ / page_bytes_);
+  // A page that is cut off is read with zeros behind its end.
+  pages_ = static_cast<std::uint32_t>((main_bytes_ + page_bytes_ - 1) / page_bytes_);
   return {};
 }
 
@@ -183,7 +184,7 @@ std::optional<Bytes> PageFile::page(std::uint32_t number) {
   if (framed != committed_.end())
     return read_from(*log_, framed->second + kLogFrameHeaderBytes, page_bytes_);
   const std::uint64_t at = std::uint64_t{number - 1} * page_bytes_;
-  if (at + page_bytes_ > main_bytes_) return std::nullopt;
+  if (at >= main_bytes_) return std::nullopt;
   return read_from(main_, at, page_bytes_);
 }
 
