@@ -75,10 +75,10 @@ class RepairBench {
 
   std::string world_file() const { return world + "/world.sqlite"; }
   /// Returns the error, or an empty string. What the program printed is then in `printed`.
-  std::string repair_to(const std::string& folder, const std::string& from = "",
+  std::string repair_to(const std::string& place, const std::string& from = "",
                         bool in_place = false) {
     std::ostringstream out;
-    const auto done = repair({world, folder, from, in_place, false}, kRepairTimeUs, out);
+    const auto done = repair({world, place, from, in_place, false}, kRepairTimeUs, out);
     printed = out.str();
     return done ? "" : done.error();
   }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr Sequence kRecords = 6;
 
-std::vector<EditRecord> make_world(const std::string& folder) {
+std::vector<EditRecord> make_sample_world(const std::string& folder) {
   SplitMix64 rng{1};
   auto store = create_world(folder, sample_meta());
   REQUIRE(store.has_value());
@@ -32,7 +32,7 @@ std::vector<EditRecord> make_world(const std::string& folder) {
 
 TEST_CASE("a start reads the state of the store and replays its log", "[server]") {
   const TempFolder folder;
-  const auto records = make_world(folder / "world");
+  const auto records = make_sample_world(folder / "world");
   auto store = open_world(folder / "world", StoreAccess::read_write);
   REQUIRE(store.has_value());
   const auto start = read_world_start(**store);
@@ -58,7 +58,7 @@ TEST_CASE("a start reads the state of the store and replays its log", "[server]"
 
 TEST_CASE("a start takes the time of the newest record, not the latest time", "[server][clock]") {
   const TempFolder folder;
-  const auto records = make_world(folder / "world");
+  const auto records = make_sample_world(folder / "world");
   auto store = open_world(folder / "world", StoreAccess::read_write);
   REQUIRE(store.has_value());
   EditRecord correction;
@@ -77,7 +77,7 @@ TEST_CASE("a start takes the time of the newest record, not the latest time", "[
 
 TEST_CASE("the replay begins above the checkpoint", "[server]") {
   const TempFolder folder;
-  make_world(folder / "world");
+  make_sample_world(folder / "world");
   auto store = open_world(folder / "world", StoreAccess::read_write);
   REQUIRE(store.has_value());
   REQUIRE((*store)->save_snapshots({}, Sequence{4}).has_value());
@@ -95,7 +95,7 @@ TEST_CASE("the replay begins above the checkpoint", "[server]") {
 TEST_CASE("a start fails if a name or an edit in the middle of the log is missing", "[server]") {
   for (const std::string rows : {"player_name WHERE author = 1", "edit_log WHERE seq = 3"}) {
     const TempFolder folder;
-    make_world(folder / "world");
+    make_sample_world(folder / "world");
     REQUIRE(raw_sql(folder / "world/world.sqlite",
                     "DELETE FROM " + rows + "; SELECT changes() > 0") == "1");
     auto store = open_world(folder / "world", StoreAccess::read_write);
@@ -111,7 +111,7 @@ TEST_CASE("a start fails if a name or an edit in the middle of the log is missin
 TEST_CASE("a start fails if a player or a watermark is missing", "[server]") {
   for (const std::string table : {"player", "player_instance"}) {
     const TempFolder folder;
-    make_world(folder / "world");
+    make_sample_world(folder / "world");
     REQUIRE(raw_sql(folder / "world/world.sqlite",
                     "DELETE FROM " + table + " WHERE author = 1; SELECT changes() > 0") == "1");
     auto store = open_world(folder / "world", StoreAccess::read_write);
@@ -124,7 +124,7 @@ TEST_CASE("a start fails if a player or a watermark is missing", "[server]") {
 
 TEST_CASE("a start fails on a damaged name of a player and names it", "[server]") {
   const TempFolder folder;
-  make_world(folder / "world");
+  make_sample_world(folder / "world");
   REQUIRE(raw_sql(folder / "world/world.sqlite",
                   "UPDATE player_name SET name = 'x' WHERE author = 2; SELECT changes()") == "1");
   auto store = open_world(folder / "world", StoreAccess::read_write);
@@ -136,7 +136,7 @@ TEST_CASE("a start fails on a damaged name of a player and names it", "[server]"
 
 TEST_CASE("a start fails on a damaged last record and names it", "[server]") {
   const TempFolder folder;
-  make_world(folder / "world");
+  make_sample_world(folder / "world");
   REQUIRE(raw_sql(folder / "world/world.sqlite",
                   "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 6; SELECT changes()") ==
           "1");
@@ -152,7 +152,7 @@ TEST_CASE("a start goes on without places or a clock that are damaged", "[server
       GENERATE(std::pair{"player_places", false}, std::pair{"world_clock", true});
   CAPTURE(key);
   const TempFolder folder;
-  const auto records = make_world(folder / "world");
+  const auto records = make_sample_world(folder / "world");
   const SavedState saved{{LastPlace{}}, SavedClock{kRecords + 1, {5, 1}}};
   {
     auto store = open_world(folder / "world", StoreAccess::read_write);
@@ -206,7 +206,7 @@ std::vector<EditRecord> log_of(Store& store) {
 /// A world that an owner has written, and the records that a follower has.
 struct TakeoverBench {
   TakeoverBench() {
-    records = make_world(folder / "world");
+    records = make_sample_world(folder / "world");
     SplitMix64 rng{2};
     for (EditRecord& record : sample_records(rng, 1, kRecords + 1, 4)) records.push_back(record);
     auto opened = open_world(folder / "world", StoreAccess::read_write);
