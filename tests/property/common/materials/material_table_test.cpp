@@ -35,7 +35,7 @@ std::size_t first_bad(const std::vector<MaterialRow>& table, const std::vector<M
                                       [&](const MaterialRow& old) { return old.name == row.name; });
     const bool is_see_through = row.visibility == Visibility::opaque && row.colour[3] != 255;
     const bool is_silly =
-        row.look && (row.look->grain > 100 || static_cast<int>(row.look->pattern) > 6);
+        row.look && (row.look->grain > 100 || static_cast<int>(row.look->pattern) > 9);
     if (is_known || is_see_through || is_silly || row.name.empty() || row.name.size() > 64)
       return i;
     all.push_back(row);
