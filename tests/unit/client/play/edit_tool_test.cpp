@@ -159,7 +159,7 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   CHECK_FALSE(act_on_tool(tool, Action::help, kNow).has_value());
   CHECK(act(Action::next_tool) == "tool: box");
   CHECK(act(Action::previous_tool) == "tool: voxel");
-  CHECK(act(Action::previous_tool) == "tool: scatter");
+  CHECK(act(Action::previous_tool) == "tool: array");
   CHECK(act(Action::copy) == "refused: nothing is selected");
   CHECK(act(Action::paste) == "refused: nothing was copied");
   box.select(VoxelBox{{0, -2, 0}, {3, 0, 1}});

@@ -12,7 +12,7 @@ using namespace runstone;
 
 namespace {
 
-constexpr std::array<int, 2> kToolsSize = {1280, 900};
+constexpr std::array<int, 2> kToolsSize = {1280, 1020};
 
 /// A display with its tool window open, and a tool box that obeys it.
 struct ToolWindowBench {
@@ -67,7 +67,7 @@ struct ToolWindowBench {
   /// Clicks from above to below until a command of this type comes. Returns the command and keeps
   /// its place.
   template <class T>
-  std::optional<T> find(double x, double from_y, double to_y = 800) {
+  std::optional<T> find(double x, double from_y, double to_y = 920) {
     for (found_y = from_y; found_y < to_y; found_y += 5) {
       commands.clear();
       click(x, found_y);
@@ -190,7 +190,7 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
   frames();
   // The last header is that of the selection. Its buttons follow.
   std::optional<SelectionCommand> copied;
-  for (double y = 560; y > 250 && !copied; y -= 5) {
+  for (double y = 680; y > 250 && !copied; y -= 5) {
     click(x(kRow), y);
     copied = find<SelectionCommand>(x(kRow), y + 60, y + 90);
   }
@@ -204,7 +204,7 @@ TEST_CASE_METHOD(ToolWindowBench,
                  "[client_ui]") {
   state.time_of_day = 0.25;
   state.has_own_time = true;
-  for (double y = 380; y < 540 && times.empty(); y += 5) {
+  for (double y = 500; y < 660 && times.empty(); y += 5) {
     found_y = y + 24;
     click(x(kRow), y);  // a header, perhaps
     click(x(kSliderMiddle), found_y);
@@ -261,7 +261,7 @@ TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes vox
     const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
     return static_cast<double>(window->Pos.y + window->Size.y);
   };
-  size = {1280, 1000};  // all of the window fits
+  size = {1280, 1200};  // all of the window fits
   state.has_files = true;
   frames();
   click(x(kRow), below() - 15);

@@ -109,7 +109,7 @@ TEST_CASE("a silly look of a material is taken for the nearest valid one", "[pro
   CHECK(look_from(std::nullopt) == std::nullopt);
   CHECK(look_from(wire::MaterialLook(1, 2, 3, 100, 6)) ==
         MaterialLook{1, 2, 3, 100, MaterialPattern::weave});
-  CHECK(look_from(wire::MaterialLook(101, 255, 200, 255, 7)) ==
+  CHECK(look_from(wire::MaterialLook(101, 255, 200, 255, kMaterialPatterns)) ==
         MaterialLook{100, 100, 100, 100, MaterialPattern::none});
 }
 

@@ -132,7 +132,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
   CHECK(mistake("log cause rage") ==
         "log cause \"rage\": player, console, rollback, undo, redo, import, rights, materials, "
-        "library, clock or textures");
+        "library, clock, textures or gap");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("materials wool red") ==

@@ -131,12 +131,12 @@ TEST_CASE("the kind of new materials says if a row has a look", "[edits]") {
     bytes.at(at) = byte;
     return !decode_descriptor(bytes).has_value();
   };
-  CHECK(refused(0, 0x08));                // the kind without looks
-  CHECK(refused(good.size() - 5, 101));   // variation
-  CHECK(refused(good.size() - 2, 101));   // emission
-  CHECK(refused(good.size() - 1, 7));     // a pattern of a later version
-  CHECK(refused(good.size() - 6, 0x01));  // a row without a look, and bytes behind it
-  CHECK(refused(good.size() - 6, 0x21));  // an unused bit
+  CHECK(refused(0, 0x08));                             // the kind without looks
+  CHECK(refused(good.size() - 5, 101));                // variation
+  CHECK(refused(good.size() - 2, 101));                // emission
+  CHECK(refused(good.size() - 1, kMaterialPatterns));  // a pattern of a later version
+  CHECK(refused(good.size() - 6, 0x01));               // a row without a look, and bytes behind it
+  CHECK(refused(good.size() - 6, 0x21));               // an unused bit
   Bytes without = encode(materials_edit({300, {plain, other}}));
   without[0] = 0x09;
   CHECK(decode_descriptor(without).error().code == ErrorCode::not_canonical);
