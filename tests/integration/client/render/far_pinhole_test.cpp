@@ -248,8 +248,8 @@ TEST_CASE("distant ground has no pinholes and no dots, flat worlds included", "[
   }
   // Rasterizers round to 1/256 of a pixel: a pixel in ten places may still be one. Without the care
   // for borders there are more than ten a place.
-  const FarScan done = scan(*context, 12, 6);
-  CHECK(done.places == 12);
+  const FarScan done = scan(*context, 24, 12);
+  CHECK(done.places == 24);
   CHECK(10 * done.pinholes <= done.places);
 }
 

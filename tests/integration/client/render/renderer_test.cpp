@@ -572,7 +572,7 @@ TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour",
   const auto blue = centre({key, kEdge, std::make_shared<const ChunkMesh>(placed), nullptr});
   const auto red = centre({key, kEdge, nullptr, std::make_shared<const ChunkMesh>(removed)});
   CHECK(blue[2] > blue[0] + 40);
-  CHECK(red[0] > red[2] + 20);
+  CHECK(red[0] > red[2] + 10);
   CHECK(none[0] < none[2] + 20);
   CHECK(centre({}) == none);
 }

@@ -67,7 +67,7 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
   const TempFolder folder;
   create(folder.path());
   const std::string file = folder / "world.sqlite";
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 11").empty());
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 12").empty());
   const auto before = bytes_of(file);
   for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
     const auto store = open_world(folder.path(), access);
