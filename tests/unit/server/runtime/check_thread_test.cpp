@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "server/runtime/logging.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -27,6 +28,7 @@ void make_world(const std::string& folder) {
 
 /// Returns the faults that a whole round finds.
 std::uint64_t faults_of(const std::string& folder) {
+  start_logging(LogLevel::error, LogFormat::text);
   CheckThread check(folder);
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (check.rounds() == 0 && std::chrono::steady_clock::now() < end)
@@ -58,6 +60,7 @@ TEST_CASE("a check counts damage and reads on", "[server][sqlite]") {
 TEST_CASE("a check ends at once", "[server][sqlite]") {
   TempFolder folder;
   make_world(folder / "world");
+  start_logging(LogLevel::error, LogFormat::text);
   const auto begun = std::chrono::steady_clock::now();
   {
     CheckThread check(folder / "world");
