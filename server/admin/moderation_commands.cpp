@@ -18,13 +18,6 @@ namespace {
 constexpr const char* kAddressWord = "address";
 constexpr const char* kWidened = " [a single IPv6 address means its /64]";
 
-/// Returns a count of bytes in the largest unit of which there is at least one.
-std::string memory_text(std::size_t bytes) {
-  if (bytes < 1024) return std::to_string(bytes) + " bytes";
-  if (bytes < 1024 * 1024) return std::to_string(bytes / 1024) + " KiB";
-  return std::to_string(bytes / (1024 * 1024)) + " MiB";
-}
-
 /// Returns a line with what to do about damaged rows, or an empty text if none is known.
 std::string damage_text(const OperatorActions& actions) {
   const std::uint64_t faults = actions.row_faults ? actions.row_faults() : 0;
@@ -34,20 +27,29 @@ std::string damage_text(const OperatorActions& actions) {
          "`runstone-server repair`";
 }
 
+/// Returns a line with why edits are refused, or an empty text if they are taken.
+std::string read_only_text(const Order& order) {
+  const std::string why = read_only_reason(order);
+  return why.empty() ? "" : "\nREAD-ONLY: edits are refused: " + why;
+}
+
 void show_status(const CommandCall& call) {
   const WorldServer& world = call.world();
+  const auto& ask_health = call.services.actions.health;
+  const ServerHealth health = ask_health ? ask_health() : ServerHealth{};
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer(
-      "sessions " + std::to_string(world.session_count()) + ", edits " +
-      std::to_string(world.order().head()) + " (on disk " +
-      std::to_string(world.order().durable()) + "), since the start " +
-      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
-      " (" + memory_text(memory.voxels) + "), waiting edits " +
-      memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
-      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-      std::to_string(call.services.rollback.running()) + damage_text(call.services.actions));
+  call.answer(version_line(health) + "\nsessions " + std::to_string(world.session_count()) +
+              ", edits " + std::to_string(world.order().head()) + " (on disk " +
+              std::to_string(world.order().durable()) + "), since the start " +
+              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+              " rejected\nchunks in memory " +
+              std::to_string(world.order().chunks().resident_count()) + " (" +
+              byte_count_text(memory.voxels) + "), waiting edits " +
+              byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
+              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+              std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
+              read_only_text(world.order()) + damage_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

@@ -8,6 +8,7 @@
 
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
+#include "server/admin/server_health.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
 
@@ -35,6 +36,8 @@ struct OperatorActions {
       save_build_file;
   /// Returns how many damaged rows the check of the world has found. The runtime sets it.
   std::function<std::uint64_t()> row_faults;
+  /// Returns how the server is, for `status`. The runtime sets it.
+  std::function<ServerHealth()> health;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/bytes.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/os/low_priority.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/store/store.hpp"
@@ -54,15 +56,29 @@ bool CheckThread::check(const std::function<StoreResult<void>()>& part) {
   return rest(kRestParts * (std::chrono::steady_clock::now() - begun));
 }
 
+std::optional<std::uint64_t> CheckThread::log_bytes() const {
+  const std::int64_t counted = log_bytes_.load();
+  if (counted < 0) return std::nullopt;
+  return static_cast<std::uint64_t>(counted);
+}
+
 bool CheckThread::check_log(WorldReader& reader) {
   const auto range = reader.log_range();
   if (!range) return check([&] { return only_error(range); });
+  std::uint64_t bytes = 0;
+  Bytes descriptor;
   for (Sequence seq = range->first; seq <= range->last.version.seq; seq += kEditsAtOnce) {
     const bool goes_on = check([&] {
-      return reader.read_log(seq, seq + kEditsAtOnce - 1, [](const EditRecord&) { return true; });
+      return reader.read_log(seq, seq + kEditsAtOnce - 1, [&](const EditRecord& record) {
+        descriptor.clear();
+        encode(record.edit, descriptor);
+        bytes += descriptor.size() + kLogRowBytes;
+        return true;
+      });
     });
     if (!goes_on) return false;
   }
+  log_bytes_ = static_cast<std::int64_t>(bytes);
   return true;
 }
 

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -34,6 +35,11 @@ class CheckThread {
   void stop();
   /// Returns how many faults the last round found, or this one if it has found more. Thread: any.
   std::uint64_t faults() const { return faults_.load(); }
+  /// Returns the bytes of the log of edits as the last round counted them, or nullopt before the
+  /// first one. A record counts as its descriptor and kLogRowBytes. Thread: any.
+  std::optional<std::uint64_t> log_bytes() const;
+  /// About what a record takes besides its descriptor: columns and entries of indexes.
+  static constexpr std::uint64_t kLogRowBytes = 64;
   /// Returns how often all rows were read. Thread: any.
   std::uint64_t rounds() const { return rounds_.load(); }
 
@@ -51,8 +57,9 @@ class CheckThread {
 
   const std::string place_;
   std::atomic<std::uint64_t> faults_{0}, rounds_{0};
-  std::uint64_t round_faults_ = 0;  // of the present round; of the thread
-  std::mutex mutex_;                // a leaf
+  std::atomic<std::int64_t> log_bytes_{-1};  // -1: not counted yet
+  std::uint64_t round_faults_ = 0;           // of the present round; of the thread
+  std::mutex mutex_;                         // a leaf
   std::condition_variable end_;
   bool stopping_ = false;  // guarded by mutex_
   std::thread thread_;     // starts last, because it uses the members above

@@ -59,11 +59,25 @@ std::string sending_part(const WorldServer& world, const NetCounters& net,
       runtime.row_faults);
 }
 
-std::string waits_part(const WaitHistogram& waits) {
-  std::string out =
-      fmt::format("edit_wait_count={} edit_wait_us={}", waits.count(), waits.sum_us());
+std::string waits_part(const char* name, const WaitHistogram& waits) {
+  std::string out = fmt::format("{0}_count={1} {0}_us={2}", name, waits.count(), waits.sum_us());
   for (std::size_t i = 0; i < WaitHistogram::kBoundsMs.size(); ++i)
-    out += fmt::format(" edit_wait_ms_le_{}={}", WaitHistogram::kBoundsMs[i], waits.at_most(i));
+    out += fmt::format(" {}_ms_le_{}={}", name, WaitHistogram::kBoundsMs[i], waits.at_most(i));
+  return out;
+}
+
+/// Sizes that are not known are left out.
+std::string health_part(const WorldServer& world, const ServerHealth& health) {
+  std::string out =
+      fmt::format("uptime_s={} read_only={:d} durable_lag_us={}", health.uptime_us / 1'000'000,
+                  !read_only_reason(world.order()).empty(), health.durable_lag_us);
+  const auto add = [&](const char* name, const std::optional<std::uint64_t>& bytes) {
+    if (bytes) out += fmt::format(" {}={}", name, *bytes);
+  };
+  add("disk_free_bytes", health.disk_free_bytes);
+  add("world_bytes", health.world_bytes);
+  add("wal_bytes", health.wal_bytes);
+  add("log_bytes", health.log_bytes);
   return out;
 }
 
@@ -71,10 +85,12 @@ std::string waits_part(const WaitHistogram& waits) {
 
 std::string counters_line(const WorldServer& world, const NetCounters& net,
                           const LogWriter::Counters& log, const RuntimeCounters& runtime) {
-  return fmt::format("counters {} {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
+  return fmt::format("counters {} {} {} {} {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
                      sessions_part(world, net), ownership_part(world), log_part(world, log),
                      chunks_part(world, runtime), sending_part(world, net, runtime),
-                     waits_part(world.order().authority().edit_waits()),
+                     health_part(world, runtime.health),
+                     waits_part("edit_wait", world.order().authority().edit_waits()),
+                     waits_part("durable_wait", runtime.durable_waits),
                      world.order().chunks().stack_depths().text(), dense_expansions());
 }
 

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <string>
 
+#include "server/admin/server_health.hpp"
 #include "server/net/net_session.hpp"
 #include "server/store/log_writer.hpp"
+#include "server/world/order/wait_histogram.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
@@ -16,6 +18,8 @@ struct RuntimeCounters {
   std::uint64_t memory_bytes = 0;      // of the process
   std::uint64_t log_lines_dropped = 0;
   std::uint64_t row_faults = 0;  // that the check of the rows has found
+  ServerHealth health = {};
+  WaitHistogram durable_waits = {};  // from ordering an edit until it was on disk
 };
 
 /// Returns one line of fields. Thread: the world strand.

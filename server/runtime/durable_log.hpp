@@ -67,6 +67,10 @@ class DurableLog {
   Sequence durable() const { return durable_.load(); }
   /// Returns how many faults the check of the rows has found. Thread: any.
   std::uint64_t row_faults() const { return check_ ? check_->faults() : 0; }
+  /// Returns CheckThread::log_bytes(), or nullopt without a check. Thread: any.
+  std::optional<std::uint64_t> log_bytes() const {
+    return check_ ? check_->log_bytes() : std::nullopt;
+  }
   /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full disk the edits
   /// behind durable() are lost. It may be called again.
   void stop();

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <span>
 
+#include "common/core/version.hpp"
 #include "common/os/clock_service.hpp"
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
@@ -55,6 +56,7 @@ ServerCore::ServerCore(const ServerThreads& threads, const ServerConfig& config,
              !config.insecure),
       environment_(strand_, sessions_, *listener_, sender_, readers_, tiles_, owner_),
       commits_(strand_, listener_->counters(), [this] { world_->commit_one(read_clocks()); }),
+      health_(strand_, threads.workers, world_place(config)),
       tile_resends_(strand_.make_timer()),
       ticks_(strand_, kTickInterval, [this] { tick(); }),
       stalls_(strand_, kStallInterval, [this] { close_stalled(); }),
@@ -142,6 +144,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
       return doubt_of_clock_behind(evidence);
     };
     actions.row_faults = [this] { return log_ ? log_->row_faults() : 0; };
+    actions.health = [this] { return health(); };
     // The log writer is another one after each takeover.
     actions.save_build_file = [this](std::uint64_t content, std::shared_ptr<const Bytes> file,
                                      std::function<void(const std::string&)> done) {
@@ -294,6 +297,7 @@ void ServerCore::start() {
   listener_->start();
   if (gateway_) gateway_->start();
   ticks_.start();
+  health_.start();
   if (chat_log_) chat_retention_.start();
   stalls_.start();
   if (config_.counters_s > 0) activity_.start();
@@ -322,7 +326,9 @@ void ServerCore::close_stalled() {
 }
 
 void ServerCore::after_task() {
-  if (world_->has_ready_edits(steady_now_us())) commits_.schedule();
+  const TimeUs now_us = steady_now_us();
+  if (world_->has_ready_edits(now_us)) commits_.schedule();
+  health_.observe(world_->order().head(), world_->order().durable(), now_us);
   schedule_delivery();
   schedule_tile_resends();
   is_live_.store(world_->cluster().is_live());
@@ -337,8 +343,10 @@ void ServerCore::log_counters() {
 }
 
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
-  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
-                                memory_bytes, dropped_log_lines(), log_ ? log_->row_faults() : 0};
+  const RuntimeCounters runtime{
+      sender_.encoded_count(), environment_.enqueue_ns() / 1'000, memory_bytes,
+      dropped_log_lines(),     log_ ? log_->row_faults() : 0,     health(),
+      health_.durable_waits()};
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
 }
 
@@ -358,8 +366,8 @@ std::string ServerCore::status_of_follower() const {
   const std::string owner = world_->cluster().is_live()
                                 ? "this server follows the owner at " + owner_.address()
                                 : "this server waits for an owner of the world";
-  return fmt::format("{}\nsessions {}, edits {} (on disk {})", owner, world_->session_count(),
-                     world_->order().head(), world_->order().durable());
+  return fmt::format("{}\n{}\nsessions {}, edits {} (on disk {})", version_line(health()), owner,
+                     world_->session_count(), world_->order().head(), world_->order().durable());
 }
 
 void ServerCore::command(const std::string& line, CommandReply reply) {
@@ -383,6 +391,9 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
   if (question != "status") return refuse(reply, "the only question is `status`");
   strand_.post([this, memory_bytes = process_memory_bytes(), reply = std::move(reply)] {
     std::string text = all_counters(memory_bytes);
+    text += fmt::format("\nversion {}", version());
+    if (const std::string why = read_only_reason(world_->order()); !why.empty())
+      text += "\nread_only " + why;
     for (const auto& player : world_->people().online()) {
       text += "\nplayer " + player.name;
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
@@ -442,6 +453,7 @@ std::optional<bool> ServerCore::finish_stop() {
       log_ && (log_->has_failed() || (log_->is_full() && world_->order().is_stop_overdue()));
   if (!gives_up && !world_->order().is_flushed()) return std::nullopt;
   ticks_.stop();
+  health_.stop();
   stalls_.stop();
   activity_.stop();
   chat_retention_.stop();

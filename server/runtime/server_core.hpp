@@ -27,6 +27,7 @@
 #include "server/runtime/commit_scheduler.hpp"
 #include "server/runtime/connected_sessions.hpp"
 #include "server/runtime/durable_log.hpp"
+#include "server/runtime/health_watch.hpp"
 #include "server/runtime/message_turns.hpp"
 #include "server/runtime/owner_connection.hpp"
 #include "server/runtime/periodic_task.hpp"
@@ -130,7 +131,8 @@ class ServerCore final : public NetEvents {
   CommandAnswer answer_of(const std::string& line);
 
   /// Answers a question of a gateway, of which there is one: "status". The answer is the line of
-  /// all counters (counters_line.hpp) and a line "player NAME" for each session. Thread: any.
+  /// all counters (counters_line.hpp), a line "version V", a line "read_only WHY" if edits are
+  /// refused, and the lines "player NAME" and "place X Y Z NAME" for each session. Thread: any.
   void answer_gateway(const std::string& question, CommandReply reply);
 
   /// Takes over the settings that a running server may change, logs which, and replies. `read` is
@@ -173,6 +175,7 @@ class ServerCore final : public NetEvents {
   /// it has, otherwise true if another server waits to take the world over.
   std::optional<bool> finish_stop();
   std::string all_counters(std::uint64_t memory_bytes) const;
+  ServerHealth health() const { return health_.health(log_ ? log_->log_bytes() : std::nullopt); }
   /// Returns the answer to the command `status` at a server that follows.
   std::string status_of_follower() const;
   /// Logs what happened since the last call, if anything did.
@@ -199,6 +202,7 @@ class ServerCore final : public NetEvents {
   OwnerConnection owner_;
   ServerEnvironment environment_;
   CommitScheduler commits_;
+  HealthWatch health_;
   asio::steady_timer tile_resends_;   // Ground::resend_tiles()
   bool is_resend_scheduled_ = false;  // used on the world strand
   PeriodicTask ticks_, stalls_, activity_, chat_retention_, checkpoints_;

@@ -48,14 +48,14 @@ std::int64_t ServerStatus::counter(const std::string& name) const {
   return found == counters.end() ? 0 : found->second;
 }
 
-std::vector<EditWaits> edit_waits(const ServerStatus& status) {
-  constexpr std::string_view kPrefix = "edit_wait_ms_le_";
+std::vector<EditWaits> edit_waits(const ServerStatus& status, std::string_view name) {
+  const std::string prefix = std::string(name) + "_ms_le_";
   std::vector<EditWaits> out;
-  for (const auto& [name, value] : status.counters) {
-    if (!name.starts_with(kPrefix) || value < 0) continue;
+  for (const auto& [counter, value] : status.counters) {
+    if (!counter.starts_with(prefix) || value < 0) continue;
     EditWaits waits{0, static_cast<std::uint64_t>(value)};
-    const char* end = name.data() + name.size();
-    const auto [rest, error] = std::from_chars(name.data() + kPrefix.size(), end, waits.ms_max);
+    const char* end = counter.data() + counter.size();
+    const auto [rest, error] = std::from_chars(counter.data() + prefix.size(), end, waits.ms_max);
     if (error == std::errc{} && rest == end) out.push_back(waits);
   }
   std::ranges::sort(out, {}, &EditWaits::ms_max);
@@ -64,6 +64,7 @@ std::vector<EditWaits> edit_waits(const ServerStatus& status) {
 
 Result<ServerStatus> parse_server_status(std::string_view answer) {
   constexpr std::string_view kCounters = "|counters ", kPlayer = "|player ", kPlace = "|place ";
+  constexpr std::string_view kVersionLine = "|version ", kReadOnly = "|read_only ";
   ServerStatus out;
   while (!answer.empty()) {
     std::string_view line = take_until(answer, '\n');
@@ -73,6 +74,10 @@ Result<ServerStatus> parse_server_status(std::string_view answer) {
     }
     if (line.starts_with(kCounters)) {
       read_counters(line.substr(kCounters.size()), out.counters);
+    } else if (line.starts_with(kVersionLine)) {
+      out.version = line.substr(kVersionLine.size());
+    } else if (line.starts_with(kReadOnly)) {
+      out.read_only = line.substr(kReadOnly.size());
     } else if (line.starts_with(kPlayer)) {
       out.players.emplace_back(line.substr(kPlayer.size()));
     } else if (line.starts_with(kPlace)) {

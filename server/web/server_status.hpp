@@ -18,8 +18,10 @@ struct PlayerPlace {
 };
 
 struct ServerStatus {
-  bool is_up = false;  // the server has answered
-  std::string why;     // it has not
+  bool is_up = false;     // the server has answered
+  std::string why;        // it has not
+  std::string version;    // of the server; empty: it is an older one, which does not say it
+  std::string read_only;  // why edits are refused; empty: they are taken
   std::map<std::string, std::int64_t> counters;
   std::vector<std::string> players;  // names, one for each session
   std::vector<PlayerPlace> places;   // of the same players, empty if the server sends no places
@@ -39,11 +41,12 @@ struct WorldStatus {
 struct EditWaits {
   std::uint64_t ms_max = 0, count = 0;
 };
-/// Returns the counters edit_wait_ms_le_N of a status, by N.
-std::vector<EditWaits> edit_waits(const ServerStatus& status);
+/// Returns the counters NAME_ms_le_N of a status, by N.
+std::vector<EditWaits> edit_waits(const ServerStatus& status, std::string_view name);
 
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
-/// are "counters NAME=VALUE NAME=VALUE ...", "player NAME" and "place X Y Z NAME". Values that are
+/// are "counters NAME=VALUE NAME=VALUE ...", "version TEXT", "read_only WHY", "player NAME" and "place X
+/// Y Z NAME". Values that are
 /// no whole numbers and lines of other kinds are skipped, because a later server may have more of
 /// them.
 Result<ServerStatus> parse_server_status(std::string_view answer);

@@ -53,7 +53,7 @@ std::string waits_table(const ServerStatus& server) {
            std::to_string(share) + "\">" + std::to_string(share) + " %</meter></td><td>" +
            std::to_string(count) + "</td></tr>\n";
   };
-  for (const EditWaits& waits : edit_waits(server)) {
+  for (const EditWaits& waits : edit_waits(server, "edit_wait")) {
     row("up to " + std::to_string(waits.ms_max) + " ms",
         waits.count - std::min(before, waits.count));
     before = std::max(before, waits.count);
@@ -82,6 +82,11 @@ std::string server_tables(const ServerStatus& server) {
                                  {"chunks sent", of("snapshots_sent")},
                                  {"chunks that cannot be read", of("chunks_failed")},
                                  {"digests that differed", of("digest_mismatches")}}) +
+         number_table("Disk", {{"MiB free", of("disk_free_bytes") / kMib},
+                               {"MiB of the world", of("world_bytes") / kMib},
+                               {"MiB of its write-ahead log", of("wal_bytes") / kMib},
+                               {"ms that the disk is behind", of("durable_lag_us") / 1'000},
+                               {"damaged rows", of("row_faults")}}) +
          number_table("Memory", {{"MiB of the server", of("memory_bytes") / kMib},
                                  {"MiB of edits on chunks", of("stacked_bytes") / kMib},
                                  {"MiB of messages to send", of("queued_bytes") / kMib}}) +
@@ -191,9 +196,13 @@ std::string world_page(const WebConfig& config, bool has_client, const ServerSta
 
 std::string status_page(const WebConfig& config, const ServerStatus& server, const WebCounters& web,
                         std::string_view recent_edits, bool is_one_of_several) {
-  std::string body = server.is_up ? "<p class=\"up\">The server is running.</p>\n" +
-                                        players_list(server) + server_tables(server)
-                                  : kDownText;
+  std::string body = kDownText;
+  if (server.is_up) {
+    body = "<p class=\"up\">The server is running.</p>\n";
+    if (!server.read_only.empty())
+      body += "<p class=\"down\">Edits are refused: " + html_text(server.read_only) + ".</p>\n";
+    body += players_list(server) + server_tables(server);
+  }
   body += edits_table(recent_edits);
   if (is_one_of_several) {
     body +=

@@ -18,12 +18,13 @@ class WaitHistogram {
   static constexpr std::array<std::uint32_t, 10> kBoundsMs = {1,  2,   5,   10,  20,
                                                               50, 100, 200, 500, 1000};
 
-  void add(TimeUs wait_us) {
+  /// Adds `count` edits that waited so long.
+  void add(TimeUs wait_us, std::uint64_t count = 1) {
     std::size_t bucket = 0;
     while (bucket < kBoundsMs.size() && wait_us > TimeUs{kBoundsMs[bucket]} * 1000) ++bucket;
-    ++buckets_[bucket];
-    ++count_;
-    sum_us_ += wait_us;
+    buckets_[bucket] += count;
+    count_ += count;
+    sum_us_ += wait_us * static_cast<TimeUs>(count);
   }
   /// Returns the number of waits that were not longer than kBoundsMs[bucket].
   std::uint64_t at_most(std::size_t bucket) const {

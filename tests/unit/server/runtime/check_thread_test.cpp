@@ -26,14 +26,19 @@ void make_world(const std::string& folder) {
   REQUIRE(store->save_snapshots(chunks, kEdits).has_value());
 }
 
-/// Returns the faults that a whole round finds.
-std::uint64_t faults_of(const std::string& folder) {
-  start_logging(LogLevel::error, LogFormat::text);
-  CheckThread check(folder);
+/// Reads all rows once.
+void wait_for_round(const CheckThread& check) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (check.rounds() == 0 && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK(check.rounds() == 1);
+}
+
+/// Returns the faults that a whole round finds.
+std::uint64_t faults_of(const std::string& folder) {
+  start_logging(LogLevel::error, LogFormat::text);
+  CheckThread check(folder);
+  wait_for_round(check);
   return check.faults();
 }
 
@@ -43,6 +48,17 @@ TEST_CASE("a check of a sound world finds nothing", "[server][sqlite]") {
   TempFolder folder;
   make_world(folder / "world");
   CHECK(faults_of(folder / "world") == 0);
+}
+
+TEST_CASE("a check counts the bytes of the log of edits", "[server][sqlite]") {
+  TempFolder folder;
+  make_world(folder / "world");
+  const std::string bytes =
+      raw_sql(folder / "world/world.sqlite", "SELECT sum(length(descriptor)) FROM edit_log");
+  start_logging(LogLevel::error, LogFormat::text);
+  CheckThread check(folder / "world");
+  wait_for_round(check);
+  CHECK(check.log_bytes() == std::stoull(bytes) + kEdits * CheckThread::kLogRowBytes);
 }
 
 TEST_CASE("a check counts damage and reads on", "[server][sqlite]") {

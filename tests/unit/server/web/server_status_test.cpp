@@ -7,9 +7,12 @@ using namespace runstone;
 TEST_CASE("the answer of the status socket gives counters and players", "[web]") {
   const auto read = parse_server_status(
       "|counters sessions=2 seq=9120 stack_depths=\"0:3 1:4\" rate=1.5 bytes_in=-1\n"
-      "|player ana\n|player bea = 7\n|weather mild\n=ok\n");
+      "|player ana\n|player bea = 7\n|weather mild\n|version 1.2.3\n|read_only the disk is full\n"
+      "=ok\n");
   REQUIRE(read.has_value());
   CHECK(read->is_up);
+  CHECK(read->version == "1.2.3");
+  CHECK(read->read_only == "the disk is full");
   CHECK(read->counter("sessions") == 2);
   CHECK(read->counter("seq") == 9120);
   CHECK(read->counter("bytes_in") == -1);
