@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "server/admin/activity_commands.hpp"
 #include "server/admin/clock_commands.hpp"
 #include "server/admin/ground_commands.hpp"
 #include "server/admin/host_commands.hpp"
@@ -111,9 +112,10 @@ const std::vector<CommandRow>& command_table() {
   static const std::vector<CommandRow> table = [] {
     std::vector<CommandRow> rows;
     for (const auto& part :
-         {player_commands(), ground_commands(), moderation_commands(), rollback_commands(),
-          role_commands(), password_commands(), clock_commands(), library_commands(),
-          shape_commands(), texture_commands(), time_commands(), host_commands()})
+         {player_commands(), ground_commands(), moderation_commands(), activity_commands(),
+          rollback_commands(), role_commands(), password_commands(), clock_commands(),
+          library_commands(), shape_commands(), texture_commands(), time_commands(),
+          host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -107,6 +107,17 @@ std::optional<AuthorId> KnownPlayers::author_of(const PublicKey& key) const {
   return found == players_.end() ? std::nullopt : found->second.author;
 }
 
+std::optional<PublicKey> KnownPlayers::key_of(AuthorId author) const {
+  const auto found = authors_.find(author);
+  if (found == authors_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string KnownPlayers::name_of(const PublicKey& key) const {
+  const auto found = players_.find(key);
+  return found == players_.end() ? std::string() : found->second.name;
+}
+
 bool KnownPlayers::has_name(const PublicKey& key, const std::string& name) const {
   const auto found = players_.find(key);
   return found != players_.end() && folded_name(found->second.name) == folded_name(name);

@@ -49,6 +49,10 @@ class KnownPlayers {
   std::string list_of_named(const std::string& name) const { return list_of(named(name)); }
   /// Returns the author number of a key, or nullopt.
   std::optional<AuthorId> author_of(const PublicKey& key) const;
+  /// Returns the key of an author number, or nullopt.
+  std::optional<PublicKey> key_of(AuthorId author) const;
+  /// Returns the name that the player has now, or an empty text if none is known.
+  std::string name_of(const PublicKey& key) const;
   /// Returns true if the player has this name now. Case and the like do not count.
   bool has_name(const PublicKey& key, const std::string& name) const;
   /// Returns a word with which find() finds this key alone: "#N", the fingerprint or the key. Cost:
