@@ -1,14 +1,19 @@
 #include "server/admin/moderation_commands.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <variant>
 
+#include "common/core/utc_text.hpp"
 #include "common/names/folded_name.hpp"
 #include "common/rights/restriction_text.hpp"
 #include "server/admin/address_range_text.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/joined_replies.hpp"
 #include "server/admin/rights_change_text.hpp"
+#include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_lists.hpp"
 #include "server/admin/world_lists.hpp"
 
@@ -68,27 +73,55 @@ void list_names(const CommandCall& call, std::monostate) {
   call.answer(name_list(owned));
 }
 
+/// Returns true if the next word is another subject, and not an option.
+bool has_more_subjects(const WordReader& reader) {
+  if (reader.at_end()) return false;
+  const std::string& word = reader.peek();
+  // `ban ana 2d` leaves out "for". A player of such a name is named first, or by number.
+  return word != "for" && word != "reason" && !parse_duration(word);
+}
+
 Result<KickCommand, std::string> parse_kick(WordReader& reader) {
   KickCommand command;
-  command.player = reader.player("kick");
+  do {
+    command.players.push_back(reader.player("kick"));
+  } while (has_more_subjects(reader));
   command.reason = reader.reason();
   if (!reader.at_end()) reader.wrong("kick \"" + reader.peek() + "\": reason \"TEXT\"");
   return reader.result(command);
 }
 
+void kick_player(const CommandCall& call, const PublicKey& key, const std::string& who,
+                 const std::string& reason) {
+  // A player may kick whom the player may mute: those who have fewer rights.
+  const Restrict mute{RestrictionKind::mute, key, 0, ""};
+  if (auto why = call.world().rights().change_refusal(mute, call.caller.actor))
+    return call.refuse(*std::move(why));
+  const std::size_t ended = call.world().people().kick(key, reason);
+  if (ended == 0) return call.refuse(who + " is not here");
+  call.answer(who + " was kicked; sessions ended: " + std::to_string(ended));
+}
+
+/// Returns what the answer to an unknown name begins with. Names are looked up before anything is
+/// done.
+const char* before_unknown(std::size_t names) { return names > 1 ? "nothing has changed: " : ""; }
+
 void kick(const CommandCall& call, const KickCommand& command) {
   call.with_players(
-      {command.player},
+      command.players,
       [call, reason = command.reason](const KnownPlayers& players, const CommandCall::Keys& keys) {
-        const std::string who = players.text_of(keys[0]);
-        // A player may kick whom the player may mute: those who have fewer rights.
-        const Restrict mute{RestrictionKind::mute, keys[0], 0, ""};
-        if (auto why = call.world().rights().change_refusal(mute, call.caller.actor))
-          return call.refuse(*std::move(why));
-        const std::size_t ended = call.world().people().kick(keys[0], reason);
-        if (ended == 0) return call.refuse(who + " is not here");
-        call.answer(who + " was kicked; sessions ended: " + std::to_string(ended));
-      });
+        CommandCall::Keys once;
+        for (const PublicKey& key : keys) {
+          if (std::ranges::find(once, key) == once.end()) once.push_back(key);
+        }
+        const auto replies = joined_replies(call.reply, once.size());
+        for (std::size_t i = 0; i < once.size(); ++i) {
+          CommandCall part = call;
+          part.reply = replies[i];
+          kick_player(part, once[i], players.text_of(once[i]), reason);
+        }
+      },
+      before_unknown(command.players.size()));
 }
 
 /// Takes the subject of a restriction. Only bans are for addresses.
@@ -114,11 +147,19 @@ RestrictionWord take_subject(WordReader& reader, RestrictionKind kind) {
   return {"", (*range)->range, (*range)->is_widened, text, is_address};
 }
 
+std::vector<RestrictionWord> take_subjects(WordReader& reader, RestrictionKind kind) {
+  std::vector<RestrictionWord> subjects;
+  do {
+    subjects.push_back(take_subject(reader, kind));
+  } while (has_more_subjects(reader));
+  return subjects;
+}
+
 template <RestrictionKind kind>
 Result<RestrictCommand, std::string> parse_restrict(WordReader& reader) {
   RestrictCommand command;
   command.kind = kind;
-  command.who = take_subject(reader, kind);
+  command.who = take_subjects(reader, kind);
   while (!reader.at_end()) {
     if (reader.take_word("for")) {
       command.until_us = reader.end_of_duration("for");
@@ -157,18 +198,46 @@ std::optional<std::string> doubt_of_address(const CommandCall& call, const Restr
          " for the player";
 }
 
-/// Calls `go_on` with the subject of a restriction and its text.
-void with_subject(
-    const CommandCall& call, const RestrictionWord& word,
-    const std::function<void(const RestrictionSubject&, const std::string& who)>& go_on) {
-  if (word.range) {
-    if (auto doubt = doubt_of_address(call, word)) return call.refuse(*std::move(doubt));
-    return go_on(*word.range, "everybody from " + subject_text(*word.range));
+/// A subject of a restriction, as it was found.
+struct FoundSubject {
+  RestrictionSubject subject;
+  std::string who;  // its text
+  RestrictionWord word;
+};
+using FoundSubjects = std::vector<FoundSubject>;
+
+/// Calls `go_on` with the subjects of a restriction, each once. Refuses the command if one of them is
+/// not known or in doubt.
+void with_subjects(const CommandCall& call, const std::vector<RestrictionWord>& words,
+                   const std::function<void(const FoundSubjects&)>& go_on) {
+  const std::string before = before_unknown(words.size());
+  std::vector<std::string> names;
+  for (const RestrictionWord& word : words) {
+    if (!word.range) names.push_back(word.player);
+    if (!word.range) continue;
+    if (auto doubt = doubt_of_address(call, word)) return call.refuse(before + *doubt);
   }
-  call.with_players({word.player},
-                    [go_on](const KnownPlayers& players, const CommandCall::Keys& keys) {
-                      go_on(keys[0], players.text_of(keys[0]));
-                    });
+  const auto found = [words, go_on](const KnownPlayers& players, const CommandCall::Keys& keys) {
+    FoundSubjects subjects;
+    auto key = keys.begin();
+    for (const RestrictionWord& word : words) {
+      FoundSubject each;
+      each.word = word;
+      if (word.range) {
+        each.subject = *word.range;
+        each.who = "everybody from " + subject_text(*word.range);
+      } else {
+        each.subject = *key;
+        each.who = players.text_of(*key++);
+      }
+      const bool is_new = std::ranges::none_of(
+          subjects, [&](const FoundSubject& other) { return other.subject == each.subject; });
+      if (is_new) subjects.push_back(std::move(each));
+    }
+    go_on(subjects);
+  };
+  if (names.empty()) return found({}, {});
+  call.with_players(names, found, before);
 }
 
 /// Returns what a ban of addresses cannot do in a world whose default role administers.
@@ -180,46 +249,66 @@ std::string exempt_by_default(const RightsState& rights) {
          " administers (role default visitor changes it)";
 }
 
-void restrict_subject(const CommandCall& call, const RestrictCommand& command) {
-  with_subject(call, command.who,
-               [call, command](const RestrictionSubject& subject, const std::string& who) {
-                 const Restrict change{command.kind, subject, command.until_us, command.reason};
-                 std::string text =
-                     restriction_text(who + (command.who.range ? ", except administrators," : "") +
-                                          " is " + restricted_text(command.kind),
-                                      change);
-                 if (command.who.is_widened) text += kWidened;
-                 if (command.who.range) text += exempt_by_default(call.rights());
-                 call.change_rights(change, text);
-               });
+void restrict_subjects(const CommandCall& call, const RestrictCommand& command) {
+  with_subjects(call, command.who, [call, command](const FoundSubjects& subjects) {
+    const auto change_of = [&](const FoundSubject& each) {
+      return Restrict{command.kind, each.subject, command.until_us, command.reason};
+    };
+    // A warning about one of several comes before all changes.
+    for (const FoundSubject& each : subjects) {
+      if (subjects.size() > 1 &&
+          call.refuse_unless_confirmed(hazard_of(call.rights(), change_of(each))))
+        return;
+    }
+    const auto replies = joined_replies(call.reply, subjects.size());
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      const auto& [subject, who, word] = subjects[i];
+      const Restrict change = change_of(subjects[i]);
+      std::string text = restriction_text(who + (word.range ? ", except administrators," : "") +
+                                              " is " + restricted_text(command.kind),
+                                          change);
+      if (word.is_widened) text += kWidened;
+      if (word.range) text += exempt_by_default(call.rights());
+      CommandCall part = call;
+      part.reply = replies[i];
+      part.change_rights(change, text);
+    }
+  });
 }
 
 template <RestrictionKind kind>
 Result<LiftCommand, std::string> parse_lift(WordReader& reader) {
-  const LiftCommand command{kind, take_subject(reader, kind)};
+  const LiftCommand command{kind, take_subjects(reader, kind)};
   reader.expect_end(reader.command());
   return reader.result(command);
 }
 
-void lift_restriction(const CommandCall& call, const LiftCommand& command) {
-  with_subject(
-      call, command.who,
-      [call, command](const RestrictionSubject& subject, const std::string& who) {
-        const TimeUs now_us = call.rights_time();
-        const std::string kind = restricted_text(command.kind);
-        const Decided<Restrict>* found = call.rights().find_restriction(command.kind, subject);
-        if (found == nullptr || (found->value.until_us != 0 && found->value.until_us <= now_us)) {
-          std::string text = who + " is not " + kind;
-          const auto* range = std::get_if<AddressRange>(&subject);
-          const auto* wider =
-              range == nullptr ? nullptr : call.rights().address_ban(range->first, now_us);
-          if (wider != nullptr) text += ", but " + subject_text(wider->value.subject) + " is";
-          return call.refuse(text + " (bans lists all)");
-        }
-        call.change_rights(
-            Lift{command.kind, subject},
-            who + " is no longer " + kind + (command.who.is_widened ? kWidened : ""));
-      });
+void lift_one(const CommandCall& call, RestrictionKind lifted, const FoundSubject& each) {
+  const auto& [subject, who, word] = each;
+  const TimeUs now_us = call.rights_time();
+  const std::string kind = restricted_text(lifted);
+  const Decided<Restrict>* found = call.rights().find_restriction(lifted, subject);
+  if (found == nullptr || (found->value.until_us != 0 && found->value.until_us <= now_us)) {
+    std::string text = who + " is not " + kind;
+    const auto* range = std::get_if<AddressRange>(&subject);
+    const auto* wider =
+        range == nullptr ? nullptr : call.rights().address_ban(range->first, now_us);
+    if (wider != nullptr) text += ", but " + subject_text(wider->value.subject) + " is";
+    return call.refuse(text + " (bans lists all)");
+  }
+  call.change_rights(Lift{lifted, subject},
+                     who + " is no longer " + kind + (word.is_widened ? kWidened : ""));
+}
+
+void lift_restrictions(const CommandCall& call, const LiftCommand& command) {
+  with_subjects(call, command.who, [call, kind = command.kind](const FoundSubjects& subjects) {
+    const auto replies = joined_replies(call.reply, subjects.size());
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      CommandCall part = call;
+      part.reply = replies[i];
+      lift_one(part, kind, subjects[i]);
+    }
+  });
 }
 
 void list_restrictions(const CommandCall& call) {
@@ -271,25 +360,26 @@ constexpr std::array<CommandRow, 12> kModerationRows = {{
     {"names", kModerators, "names                     which key owns which name",
      parsed_by<parse_names, list_names>()},
     {"kick", kModerators,
-     "kick PLAYER [reason TEXT] end the sessions of a player, who may come back",
+     "kick PLAYER ... [reason TEXT]\n"
+     "                          end the sessions of players, who may come back",
      parsed_by<parse_kick, kick>()},
     {.words = "ban",
      .rule = kModerators,
-     .help = "ban PLAYER|ADDRESS|RANGE [for DURATION] [reason TEXT]\n"
-             "                          let nobody join with this key, or from there; "
+     .help = "ban PLAYER|ADDRESS|RANGE ... [for DURATION] [reason TEXT]\n"
+             "                          let nobody join with these keys, or from there; "
              "administrators\n"
              "                          still join from there",
-     .functions = parsed_by<parse_restrict<RestrictionKind::ban>, restrict_subject>(),
+     .functions = parsed_by<parse_restrict<RestrictionKind::ban>, restrict_subjects>(),
      .may_be_confirmed = true},
-    {"mute", kModerators, "mute PLAYER ...           let a player not write to others",
-     parsed_by<parse_restrict<RestrictionKind::mute>, restrict_subject>()},
-    {"freeze", kModerators, "freeze PLAYER ...         let a player not edit",
-     parsed_by<parse_restrict<RestrictionKind::freeze>, restrict_subject>()},
-    {"unban", kModerators, "unban, unmute, unfreeze   end a ban, a mute or a freeze",
-     parsed_by<parse_lift<RestrictionKind::ban>, lift_restriction>()},
-    {"unmute", kModerators, "", parsed_by<parse_lift<RestrictionKind::mute>, lift_restriction>()},
+    {"mute", kModerators, "mute PLAYER ...           let players not write to others",
+     parsed_by<parse_restrict<RestrictionKind::mute>, restrict_subjects>()},
+    {"freeze", kModerators, "freeze PLAYER ...         let players not edit",
+     parsed_by<parse_restrict<RestrictionKind::freeze>, restrict_subjects>()},
+    {"unban", kModerators, "unban, unmute, unfreeze   end bans, mutes or freezes",
+     parsed_by<parse_lift<RestrictionKind::ban>, lift_restrictions>()},
+    {"unmute", kModerators, "", parsed_by<parse_lift<RestrictionKind::mute>, lift_restrictions>()},
     {"unfreeze", kModerators, "",
-     parsed_by<parse_lift<RestrictionKind::freeze>, lift_restriction>()},
+     parsed_by<parse_lift<RestrictionKind::freeze>, lift_restrictions>()},
     {"bans", kModerators, "bans                      the bans, mutes and freezes in force",
      alone<list_restrictions>()},
     {"refusals", kModerators, "refusals                  what players were refused lately",

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/core/ids.hpp"
 #include "common/rights/address_range.hpp"
@@ -13,7 +14,7 @@
 namespace runstone {
 
 struct KickCommand {
-  std::string player;
+  std::vector<std::string> players;
   std::string reason;  // may be empty
   friend bool operator==(const KickCommand&, const KickCommand&) = default;
 };
@@ -28,14 +29,14 @@ struct RestrictionWord {
 };
 struct RestrictCommand {
   RestrictionKind kind{};
-  RestrictionWord who;
+  std::vector<RestrictionWord> who;
   TimeUs until_us = 0;  // UTC; 0: until it is lifted
   std::string reason;   // may be empty
   friend bool operator==(const RestrictCommand&, const RestrictCommand&) = default;
 };
 struct LiftCommand {
   RestrictionKind kind{};
-  RestrictionWord who;
+  std::vector<RestrictionWord> who;
   friend bool operator==(const LiftCommand&, const LiftCommand&) = default;
 };
 

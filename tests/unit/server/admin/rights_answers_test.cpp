@@ -1,4 +1,5 @@
 // The answers of the commands about rights.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -287,6 +288,51 @@ TEST_CASE("a ban ends sessions and is listed until it is lifted", "[admin][right
   bench.done("unmute player2");
   bench.done("freeze player2");
   CHECK(bench.player(2, "undo").text == "you are frozen");
+}
+
+TEST_CASE("a ban of several players has a line for each, in one answer", "[admin][rights]") {
+  RightsBench bench;
+  const std::string both = bench.done("ban player2 player1 #2 for 1d reason spam");
+  CHECK(both.starts_with(RightsBench::text_of(2) + " is banned until "));
+  CHECK(
+      has(both, ": spam (record 1); sessions ended: 1\n" + RightsBench::text_of(1) + " is banned"));
+  CHECK(std::ranges::count(both, '\n') == 1);
+  CHECK(bench.answers.size() == 1);
+  CHECK(bench.bench.server.session_count() == 0);
+
+  const CommandAnswer one = bench.console("unmute player1 player2");
+  CHECK_FALSE(one.is_ok);
+  bench.done("mute player2");
+  const CommandAnswer mixed = bench.console("unmute player1 player2");
+  CHECK_FALSE(mixed.is_ok);
+  CHECK(mixed.text == RightsBench::text_of(1) + " is not muted (bans lists all)\n" +
+                          RightsBench::text_of(2) + " is no longer muted" +
+                          bench.record(bench.head()));
+}
+
+TEST_CASE("a ban of several players with one who is unknown changes nothing", "[admin][rights]") {
+  RightsBench bench;
+  const CommandAnswer refused = bench.console("ban player1 nobody");
+  CHECK_FALSE(refused.is_ok);
+  CHECK(refused.text.starts_with("nothing has changed: \"nobody\": nobody of that name"));
+  const CommandAnswer wide = bench.console("ban player1 0.0.0.0/0");
+  CHECK_FALSE(wide.is_ok);
+  CHECK(has(wide.text, "nothing has changed: nobody but administrators could join from"));
+  CHECK(has(wide.text, "give the command as: ban player1 0.0.0.0/0 anyway"));
+  CHECK(bench.head() == 0);
+  CHECK(bench.bench.server.session_count() == 2);
+  bench.done("ban player1 0.0.0.0/0 anyway");
+  CHECK(bench.head() == 2);
+}
+
+TEST_CASE("several players are kicked in one line, and each who is not here is named",
+          "[admin][rights]") {
+  RightsBench bench;
+  bench.done("kick player2");
+  const CommandAnswer kicked = bench.console("kick player1 player2 reason bye");
+  CHECK_FALSE(kicked.is_ok);
+  CHECK(kicked.text == RightsBench::text_of(1) + " was kicked; sessions ended: 1\n" +
+                           RightsBench::text_of(2) + " is not here");
 }
 
 TEST_CASE("a player kicks only players with fewer rights", "[admin][rights]") {

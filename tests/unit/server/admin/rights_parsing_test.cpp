@@ -1,6 +1,7 @@
 // The commands about roles, restrictions, ground and the password, as values.
 #include <catch2/catch.hpp>
 #include <string>
+#include <vector>
 
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/ground_commands.hpp"
@@ -45,22 +46,22 @@ TEST_CASE("commands about roles and grants are parsed", "[admin][rights]") {
 TEST_CASE("commands about restrictions are parsed", "[admin][rights]") {
   const auto ban = parsed<RestrictCommand>("ban ana for 2d reason \"broke the bridge\"");
   CHECK(ban.kind == RestrictionKind::ban);
-  CHECK(ban.who == RestrictionWord{"ana", std::nullopt, false});
+  CHECK(ban.who == std::vector{RestrictionWord{"ana", std::nullopt, false}});
   CHECK(ban.until_us == kTypedUs + 2 * 86'400'000'000);
   CHECK(ban.reason == "broke the bridge");
   const auto mute = parsed<RestrictCommand>("mute ana");
-  CHECK(mute == RestrictCommand{RestrictionKind::mute, {"ana", std::nullopt, false}, 0, ""});
+  CHECK(mute == RestrictCommand{RestrictionKind::mute, {{"ana", std::nullopt, false}}, 0, ""});
   CHECK(parsed<RestrictCommand>("freeze #3 reason x").kind == RestrictionKind::freeze);
 
-  const auto range = parsed<RestrictCommand>("ban 192.0.2.7/24").who;
+  const auto range = parsed<RestrictCommand>("ban 192.0.2.7/24").who.at(0);
   CHECK(range.player.empty());
   CHECK(range.range == AddressRange{address_block_v4(0xc0'00'02'00), 32 + 24});
   CHECK(range.address == "192.0.2.7/24");
   CHECK_FALSE(range.is_address);
-  CHECK(parsed<RestrictCommand>("ban address 192.0.2.7").who.is_address);
-  CHECK(parsed<RestrictCommand>("ban address for 1h").who.player == "address");
-  CHECK(parsed<RestrictCommand>("ban address").who.player == "address");
-  const auto wide = parsed<RestrictCommand>("ban 2001:db8::1").who;
+  CHECK(parsed<RestrictCommand>("ban address 192.0.2.7").who.at(0).is_address);
+  CHECK(parsed<RestrictCommand>("ban address for 1h").who.at(0).player == "address");
+  CHECK(parsed<RestrictCommand>("ban address").who.at(0).player == "address");
+  const auto wide = parsed<RestrictCommand>("ban 2001:db8::1").who.at(0);
   CHECK(wide.is_widened);
   CHECK(wide.range == AddressRange{AddressBlock{0x2001'0db8'0000'0000}, 64});
 
@@ -68,8 +69,23 @@ TEST_CASE("commands about restrictions are parsed", "[admin][rights]") {
   CHECK(parsed<LiftCommand>("unmute ana").kind == RestrictionKind::mute);
   CHECK(parsed<LiftCommand>("unfreeze ana").kind == RestrictionKind::freeze);
   CHECK(row_of("bans") == "bans");
-  CHECK(parsed<KickCommand>("kick ana reason \"come back\"") == KickCommand{"ana", "come back"});
+  CHECK(parsed<KickCommand>("kick ana reason \"come back\"") == KickCommand{{"ana"}, "come back"});
   CHECK(parsed<KickCommand>("kick ana").reason.empty());
+}
+
+TEST_CASE("commands about restrictions take several players", "[admin][rights]") {
+  const auto ban = parsed<RestrictCommand>(
+      "ban ana \"the mole, jr.\" address 192.0.2.7 #3 2001:db8::1 for 1h reason x");
+  REQUIRE(ban.who.size() == 5);
+  CHECK(ban.who[0].player == "ana");
+  CHECK(ban.who[1].player == "the mole, jr.");
+  CHECK(ban.who[2].is_address);
+  CHECK(ban.who[3].player == "#3");
+  CHECK(ban.who[4].is_widened);
+  CHECK(ban.until_us == kTypedUs + 3'600'000'000);
+  CHECK(ban.reason == "x");
+  CHECK(parsed<LiftCommand>("unmute ana bob").who.size() == 2);
+  CHECK(parsed<KickCommand>("kick 2d ana reason x") == KickCommand{{"2d", "ana"}, "x"});
 }
 
 TEST_CASE("commands about protected ground are parsed", "[admin][rights]") {
@@ -188,7 +204,9 @@ TEST_CASE("an error in a command about restrictions names the wrong word", "[adm
   CHECK(mistake("unban ana for 2d") == "unban \"for\": nothing comes after it");
   CHECK(mistake("bans ana") == "bans \"ana\": nothing comes after bans");
   CHECK(mistake("kick") == std::string("kick: ") + kPlayer + " is missing");
-  CHECK(mistake("kick ana now") == "kick \"now\": reason \"TEXT\"");
+  CHECK(mistake("kick ana 2d") == "kick \"2d\": reason \"TEXT\"");
+  CHECK(mistake("ban ana for 1h bob") == "ban \"bob\": for DURATION or reason \"TEXT\"");
+  CHECK(mistake("mute ana 192.0.2.7") == "mute \"192.0.2.7\": only bans are for addresses");
 }
 
 TEST_CASE("an error in a command about ground names the wrong word", "[admin][rights]") {
