@@ -25,7 +25,8 @@ constexpr const char* kBoxHelp =
     "BOX: X Y Z X Y Z, two opposite corners, both inside; or columns X Z X Z, from the bottom to "
     "the top";
 constexpr const char* kFilterHelp =
-    "FILTERS, any of: author NAME or author #N (several: any of them), "
+    "FILTERS, any of: author NAME, author #N or author NA* (several: any of them), not author NAME,\n"
+    "  address-of NAME, joined-after 2d, "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
     "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library|clock|textures";
 
@@ -89,10 +90,15 @@ Result<Command, std::string> parse_words(const CommandRow& row, WordReader reade
 }
 
 /// Returns true if the last word of the line confirms the command. It does not where it is the first
-/// word behind those that name the command, the text of a reason, or the name of an owner.
+/// word behind those that name the command, the text of a reason, or the name of an owner or an
+/// author.
 bool ends_with_anyway(const CommandRow& row, const std::vector<std::string>& words) {
-  return row.may_be_confirmed && words.size() > naming_words(row) + 1 && words.back() == kAnyway &&
-         words[words.size() - 2] != "reason" && words[words.size() - 2] != "owner";
+  if (!row.may_be_confirmed || words.size() <= naming_words(row) + 1 || words.back() != kAnyway)
+    return false;
+  const std::string& before = words[words.size() - 2];
+  const bool is_of_log = row.words == "rollback preview";
+  return before != "reason" && before != "owner" &&
+         !(is_of_log && (before == "author" || before == "address-of"));
 }
 
 /// Returns the row of a line that is a word and a text, or null. `text` becomes the text.

@@ -10,6 +10,32 @@
 #include "server/names/name_reference.hpp"
 
 namespace runstone {
+namespace {
+
+/// Returns true if the text fits the pattern, in which "*" stands for any bytes. Cost: O(bytes of the
+/// text * bytes of the pattern).
+bool fits(std::string_view pattern, std::string_view text) {
+  std::size_t at = 0, next = 0;                          // in the pattern and in the text
+  std::size_t star = std::string_view::npos, again = 0;  // the last "*", and where its text ends
+  while (next < text.size()) {
+    if (at < pattern.size() && pattern[at] == '*') {
+      star = at++;
+      again = next;
+    } else if (at < pattern.size() && pattern[at] == text[next]) {
+      ++at;
+      ++next;
+    } else if (star != std::string_view::npos) {
+      at = star + 1;  // the last "*" takes one byte more
+      next = ++again;
+    } else {
+      return false;
+    }
+  }
+  while (at < pattern.size() && pattern[at] == '*') ++at;
+  return at == pattern.size();
+}
+
+}  // namespace
 
 KnownPlayers::KnownPlayers(const Sources& sources) {
   for (const PlayerRow& row : sources.present) add(row.key, row.name, row.author);
@@ -105,6 +131,15 @@ std::optional<std::string> KnownPlayers::doubt_of(AuthorId author) const {
 std::optional<AuthorId> KnownPlayers::author_of(const PublicKey& key) const {
   const auto found = players_.find(key);
   return found == players_.end() ? std::nullopt : found->second.author;
+}
+
+std::vector<PublicKey> KnownPlayers::matching(const std::string& pattern) const {
+  const std::string folded = folded_name(pattern);
+  std::set<PublicKey> keys;
+  for (const auto& [name, named] : names_) {
+    if (fits(folded, name)) keys.insert(named.begin(), named.end());
+  }
+  return {keys.begin(), keys.end()};
 }
 
 std::optional<PublicKey> KnownPlayers::key_of(AuthorId author) const {

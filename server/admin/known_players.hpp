@@ -15,6 +15,9 @@
 
 namespace runstone {
 
+/// Returns true if a word for a player is a pattern of names: it contains a "*".
+inline bool is_name_pattern(const std::string& word) { return word.find('*') != std::string::npos; }
+
 class KnownPlayers {
  public:
   /// Where players are known from.
@@ -49,6 +52,12 @@ class KnownPlayers {
   std::string list_of_named(const std::string& name) const { return list_of(named(name)); }
   /// Returns the author number of a key, or nullopt.
   std::optional<AuthorId> author_of(const PublicKey& key) const;
+  /// Returns the players who have, own or had a name that fits a pattern (is_name_pattern), ascending.
+  /// A "*" stands for any characters, and for none. Case and the like do not count. Cost: O(names *
+  /// bytes of the pattern).
+  std::vector<PublicKey> matching(const std::string& pattern) const;
+  /// Returns how many players have an author number.
+  std::size_t author_count() const { return authors_.size(); }
   /// Returns the key of an author number, or nullopt.
   std::optional<PublicKey> key_of(AuthorId author) const;
   /// Returns the name that the player has now, or an empty text if none is known.

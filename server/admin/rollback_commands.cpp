@@ -7,15 +7,14 @@
 #include <utility>
 #include <variant>
 
-#include "common/core/hex.hpp"
 #include "common/core/utc_text.hpp"
 #include "server/admin/build_file.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/log_selection.hpp"
 #include "server/admin/material_file.hpp"
 #include "server/admin/rights_change_text.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/history/edit_text.hpp"
-#include "server/names/name_reference.hpp"
 #include "server/rollback/count_text.hpp"
 #include "server/rollback/newest_actions.hpp"
 #include "server/rollback/preview_edits.hpp"
@@ -39,6 +38,8 @@ constexpr std::array<CauseName, 12> kCauses = {{{"player", Cause::player},
                                                 {"clock", Cause::clock},
                                                 {"textures", Cause::textures},
                                                 {"gap", Cause::gap}}};
+constexpr const char* kFilterWords =
+    "author, not author, address-of, joined-after, since, until, box, cause";
 constexpr const char* kCauseNames =
     "player, console, rollback, undo, redo, import, rights, materials, library, clock, textures or "
     "gap";
@@ -58,6 +59,21 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
   if (word == "author") {
     reader.take("", "");
     filter.authors.push_back(author_of(reader.take(word, std::string(kPlayerWord) + ","), reader));
+  } else if (word == "not") {
+    reader.take("", "");
+    if (!reader.take_word("author")) {
+      reader.wrong(reader.at_end() ? "not: author PLAYER is missing"
+                                   : "not \"" + reader.peek() + "\": author PLAYER");
+      return true;
+    }
+    filter.not_authors.push_back(
+        author_of(reader.take("not author", std::string(kPlayerWord) + ","), reader));
+  } else if (word == "address-of") {
+    reader.take("", "");
+    filter.address_of.push_back(reader.player(word));
+  } else if (word == "joined-after") {
+    reader.take("", "");
+    filter.joined_after_us = reader.moment(word);
   } else if (word == "since" || word == "until") {
     reader.take("", "");
     (word == "since" ? filter.from_us : filter.until_us) = reader.moment(word);
@@ -89,62 +105,12 @@ StoreResult<KnownPlayers> read_builders(WorldReader& reader) {
   return KnownPlayers(sources);
 }
 
-/// Returns true if the word is the number, the fingerprint or the key of a player.
-bool is_reference(const std::string& word) {
-  PublicKey key{};
-  return word.starts_with('#') || !fingerprint_in(word).empty() || read_hex(word, key);
-}
-
-/// Calls `go_on` with the filter for the log. Authors are looked up on a worker, as players are in
-/// all commands; the command is refused if one is unknown or ambiguous, with a text that begins with
-/// `command`.
-void with_selection(const CommandCall& call, const CommandFilter& filter,
-                    const std::string& command,
-                    const std::function<void(const SelectionFilter&)>& go_on) {
-  SelectionFilter out;
-  out.from_us = filter.from_us.value_or(out.from_us);
-  out.until_us = filter.until_us.value_or(out.until_us);
-  out.box = filter.box;
-  out.cause = filter.cause;
-  std::vector<std::string> words;
-  for (const CommandFilter::Author& author : filter.authors) {
-    if (author.number) out.authors.push_back(*author.number);
-    if (!author.number) words.push_back(author.name);
-  }
-  if (filter.authors.empty()) return go_on(out);
-  const std::string before = command + " author ";
-  call.with_players(
-      words,
-      [call, out, words, before, go_on](const KnownPlayers& players,
-                                        const CommandCall::Keys& keys) {
-        // A number needs no player: the log of a copy may have authors whom nobody knows here.
-        for (const AuthorId number : out.authors) {
-          if (const auto doubt = players.doubt_of(number))
-            return call.refuse(before + "\"#" + std::to_string(number) + "\": " + *doubt);
-        }
-        SelectionFilter selected = out;
-        for (std::size_t i = 0; i < words.size(); ++i) {
-          const std::string quoted = "\"" + words[i] + "\"";
-          const auto author = players.author_of(keys[i]);
-          if (!author)
-            return call.refuse(before + quoted + ": " + players.text_of(keys[i]) +
-                               " has never built (players lists who has)");
-          if (!players.has_name(keys[i], words[i]) && !is_reference(words[i]))
-            call.report("author " + quoted + " is now called " + players.text_of(keys[i]));
-          selected.authors.push_back(*author);
-        }
-        go_on(selected);
-      },
-      before);
-}
-
 Result<LogCommand, std::string> parse_log(WordReader& reader) {
   LogCommand log;
   while (!reader.at_end()) {
     if (take_filter(reader, log.filter)) continue;
     const std::string word = reader.take("", "");
-    if (word != "limit")
-      return failure("log \"" + word + "\": author, since, until, box, cause or limit");
+    if (word != "limit") return failure("log \"" + word + "\": " + kFilterWords + " or limit");
     const std::string text = reader.take(word, "how many edits");
     const auto number = number_of<std::uint64_t>(text);
     if (!number || *number == 0 || *number > kLogLinesMax) {
@@ -189,7 +155,7 @@ Result<std::string, std::string> read_log_lines(WorldReader& reader, const Selec
 void list_log(const CommandCall& call, const LogCommand& command) {
   call.world().commit(call.now);
   with_selection(
-      call, command.filter, "log", [call, limit = command.limit](SelectionFilter filter) {
+      call, command.filter, "log", false, [call, limit = command.limit](SelectionFilter filter) {
         filter.last = call.world().order().durable();
         call.on_worker(
             "log: ",
@@ -206,8 +172,7 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
       continue;
     }
     if (take_filter(reader, preview.filter)) continue;
-    return failure("rollback preview \"" + reader.peek() +
-                   "\": author, since, until, box, cause or picture");
+    return failure("rollback preview \"" + reader.peek() + "\": " + kFilterWords + " or picture");
   }
   if (!reader.error().empty()) return failure("rollback preview " + reader.error());
   if (preview.filter.cause == Cause::rights)
@@ -224,9 +189,8 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
     return failure("rollback preview cause \"gap\": these records are lost and have no voxels");
   // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
-    return failure(
-        "rollback preview: say whose edits, when, where or why: author, since, until, "
-        "box or cause");
+    return failure("rollback preview: say whose edits, when, where or why: " +
+                   std::string(kFilterWords));
   }
   return preview;
 }
@@ -268,7 +232,7 @@ void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& com
     }
     reply(given);
   };
-  with_selection(call, command.filter, "rollback preview",
+  with_selection(call, command.filter, "rollback preview", true,
                  [call, answer, viewer, summarise](const SelectionFilter& filter) {
                    call.services.rollback.preview(filter, call.now, answer, viewer, summarise);
                  });
@@ -294,11 +258,13 @@ constexpr CommandRule kRollback = needs(Right::roll_back);
 constexpr std::array<CommandRow, 6> kRollbackRows = {{
     {"log", kRollback, "log FILTERS [limit N]     the newest actions, the last one at the bottom",
      parsed_by<parse_log, list_log>()},
-    {"rollback preview", kRollback,
-     "rollback preview FILTERS [picture]\n"
-     "                          what a rollback of these edits would do; "
-     "`picture` draws the area before and after",
-     parsed_by<parse_preview, preview_rollback>()},
+    {.words = "rollback preview",
+     .rule = kRollback,
+     .help = "rollback preview FILTERS [picture]\n"
+             "                          what a rollback of these edits would do; "
+             "`picture` draws the area before and after",
+     .functions = parsed_by<parse_preview, preview_rollback>(),
+     .may_be_confirmed = true},
     {"rollback apply", kRollback,
      "rollback apply ID         do it, while people go on playing; "
      "what others built since stays",

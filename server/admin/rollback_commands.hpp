@@ -17,16 +17,24 @@ namespace runstone {
 
 /// Selects edits by author, time, place and cause. A field that is not set selects all edits.
 struct CommandFilter {
-  /// A player, by author number ("#3"), or by a word of KnownPlayers::find().
+  /// A player, by author number ("#3"), by a word of KnownPlayers::find(), or by a pattern of names
+  /// (is_name_pattern).
   struct Author {
     std::string name;  // empty: by number
     std::optional<AuthorId> number;
     friend bool operator==(const Author&, const Author&) = default;
   };
   std::vector<Author> authors;              // edits of any of them; empty: of everybody
+  std::vector<std::string> address_of;      // also those who share an address with one of these
+  std::vector<Author> not_authors;          // edits of none of them
+  std::optional<TimeUs> joined_after_us;    // UTC; edits of players who joined later
   std::optional<TimeUs> from_us, until_us;  // UTC, both included
   std::optional<VoxelBox> box;
   std::optional<Cause> cause;
+  /// Returns true if players must be looked up.
+  bool is_about_players() const {
+    return !authors.empty() || !address_of.empty() || !not_authors.empty() || joined_after_us;
+  }
   friend bool operator==(const CommandFilter&, const CommandFilter&) = default;
 };
 

@@ -23,7 +23,10 @@ StoreResult<void> read_log_backwards(LogReader& reader, const SelectionFilter& f
     query.last = last;
     query.first = last - first >= width ? last - width + 1 : first;
     const auto read = reader.query_log(query, [&](const EditRecord& record) {
-      if (authors.empty() || authors.contains(record.op.author)) to_record(record);
+      const AuthorId author = record.op.author;
+      const bool is_wanted = (authors.empty() || authors.contains(author)) &&
+                             !std::ranges::binary_search(filter.excluded_authors, author);
+      if (is_wanted) to_record(record);
       return true;
     });
     if (!read) return failure(read.error());

@@ -87,18 +87,24 @@ StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& fi
   Collector collector(reader);
   collector.keep_inside(filter.box);
   std::set<AuthorId> authors(filter.authors.begin(), filter.authors.end());
+  const bool is_one_pass = authors.empty() || authors.size() > kSearchedAuthorsMax;
+  const auto admits = [&](AuthorId author) {
+    return (authors.empty() || authors.contains(author)) &&
+           !std::ranges::binary_search(filter.excluded_authors, author);
+  };
   bool has_room = true;
   bool is_wanted = true;
   const auto run = [&]() {
     return reader.query_log(query, [&](const EditRecord& record) {
       is_wanted = !should_continue || should_continue();
-      if (is_wanted) has_room = collector.take(record);
+      if (is_wanted && admits(record.op.author)) has_room = collector.take(record);
       return is_wanted && has_room;
     });
   };
   StoreResult<void> done;
-  if (authors.empty()) done = run();
+  if (is_one_pass) done = run();
   for (const AuthorId author : authors) {
+    if (is_one_pass) break;
     query.author = author;
     if (done && has_room && is_wanted) done = run();
   }

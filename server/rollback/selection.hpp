@@ -16,6 +16,7 @@ namespace runstone {
 /// Conditions on the edits of a selection. A condition that is not set holds for every edit.
 struct SelectionFilter {
   std::vector<AuthorId> authors;                         // any of them; empty: every author
+  std::vector<AuthorId> excluded_authors;                // none of them, ascending
   TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
   TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
   /// Voxels outside the box stay as they are, even those of an edit that reaches into it.
@@ -23,6 +24,9 @@ struct SelectionFilter {
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };
+
+/// Beyond so many authors one pass over the log costs less than a search for each.
+inline constexpr std::size_t kSearchedAuthorsMax = 256;
 
 struct Selection {
   /// The selected edits, ascending, for each chunk that they touch and that overlaps the box.

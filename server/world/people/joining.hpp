@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "server/limits/player_addresses.hpp"
 #include "server/world/order/receipts.hpp"
 #include "server/world/people/chat_room.hpp"
 #include "server/world/people/credentials.hpp"
@@ -39,6 +40,7 @@ class Joining {
     ChatRoom& chat;
     Visits& visits;
     PlayerPlaces& places;
+    PlayerAddresses& addresses;
   };
   Joining(const World& world, RandomBytes random);
 

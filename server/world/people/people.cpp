@@ -24,7 +24,7 @@ People::People(const World& world, const WorldStart& start, const RandomBytes& r
              world.receipts, world.rights, world.quotas),
       joining_({world.config, world.environment, world.sessions, world.order, world.receipts,
                 world.rights, world.quotas, world.ground, world.changes, names_, presence_, chat_,
-                visits_, places_},
+                visits_, places_, addresses_},
                random) {}
 
 std::vector<OnlinePlayer> People::online() const {

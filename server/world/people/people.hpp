@@ -46,6 +46,7 @@ class People {
   Previews& previews() { return previews_; }
   Visits& visits() { return visits_; }
   PlayerPlaces& places() { return places_; }
+  const PlayerAddresses& addresses() const { return addresses_; }
   EditRequests& edits() { return edits_; }
 
   /// Returns the players with open sessions, ordered by session.
@@ -72,6 +73,7 @@ class People {
   ChatRoom chat_;
   Visits visits_;
   PlayerPlaces places_;
+  PlayerAddresses addresses_;
   Commands commands_;
   Previews previews_;
   EditRequests edits_;

@@ -84,6 +84,23 @@ TEST_CASE("a filter selects by author, time, place and cause", "[admin][command]
   CHECK(parsed<LogCommand>("log limit 7 cause undo").limit == 7);
 }
 
+TEST_CASE("a filter selects groups of players", "[admin][command]") {
+  const CommandFilter f = parsed<RollbackPreviewCommand>(
+                              "rollback preview author grief* not author ana not author #7 "
+                              "address-of \"the mole, jr.\" joined-after 2h")
+                              .filter;
+  CHECK(f.authors == std::vector{CommandFilter::Author{"grief*", std::nullopt}});
+  CHECK(f.not_authors ==
+        std::vector{CommandFilter::Author{"ana", std::nullopt}, CommandFilter::Author{"", 7}});
+  CHECK(f.address_of == std::vector<std::string>{"the mole, jr."});
+  CHECK(f.joined_after_us == kTypedUs - TimeUs{7'200} * 1'000'000);
+  // The last word confirms, unless it is a name.
+  CHECK(command_of("rollback preview author * anyway").is_confirmed);
+  CHECK_FALSE(command_of("rollback preview author anyway").is_confirmed);
+  CHECK_FALSE(command_of("rollback preview not author anyway").is_confirmed);
+  CHECK_FALSE(command_of("rollback preview address-of anyway").is_confirmed);
+}
+
 TEST_CASE("a rollback command takes one id", "[admin][command]") {
   CHECK(row_of("rollback apply p1") == "rollback apply");
   CHECK(parsed<std::string>("rollback apply p1") == "p1");
@@ -110,11 +127,19 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
   CHECK(mistake("rollback apply") ==
         "rollback apply: one id comes after it (rollback list names them)");
   CHECK(mistake("rollback list now") == "rollback list \"now\": nothing comes after list");
-  CHECK(
-      mistake("rollback preview") ==
-      "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
+  const std::string filters =
+      "author, not author, address-of, joined-after, since, until, box, cause";
+  CHECK(mistake("rollback preview") ==
+        "rollback preview: say whose edits, when, where or why: " + filters);
   CHECK(mistake("rollback preview by ana") ==
-        "rollback preview \"by\": author, since, until, box, cause or picture");
+        "rollback preview \"by\": " + filters + " or picture");
+  CHECK(mistake("log by ana") == "log \"by\": " + filters + " or limit");
+  CHECK(mistake("rollback preview not ana") == "rollback preview not \"ana\": author PLAYER");
+  CHECK(mistake("rollback preview not") == "rollback preview not: author PLAYER is missing");
+  CHECK(mistake("rollback preview joined-after ever") ==
+        "rollback preview joined-after \"ever\": how long ago (90s, 15m, 2h30m, 2d, "
+        "1w) or when (2026-11-21T23:57:42Z, in UTC)");
+  CHECK(mistake("log address-of").starts_with("log address-of: a name, # and a number"));
   CHECK(mistake("rollback preview cause rights") ==
         "rollback preview cause \"rights\": rights undo SEQ takes these records back");
   CHECK(mistake("rollback preview cause materials") ==

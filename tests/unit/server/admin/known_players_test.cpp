@@ -23,6 +23,24 @@ KnownPlayers players() {
 
 }  // namespace
 
+TEST_CASE("a pattern finds players by their present and earlier names", "[admin][rights]") {
+  const KnownPlayers known = players();
+  using Keys = std::vector<PublicKey>;
+  CHECK(known.matching("AN*") == Keys{kAna});
+  CHECK(known.matching("the *") == Keys{kMole, kBat});
+  CHECK(known.matching("*bat") == Keys{kMole, kBat});
+  CHECK(known.matching("*a*") == Keys{kAna, kMole, kBat});
+  CHECK(known.matching("t*e*m*l*e") == Keys{kMole});
+  CHECK(known.matching("*").size() == 4);
+  CHECK(known.matching("ana*") == Keys{kAna});  // a star may stand for nothing
+  CHECK(known.matching("b*").empty());
+  CHECK(known.matching("*" + std::string(500, '*') + "x").empty());
+  CHECK(known.author_count() == 3);
+  CHECK(known.name_of(kAna) == "Ana");
+  CHECK(known.key_of(2) == kMole);
+  CHECK(known.key_of(9) == std::nullopt);
+}
+
 TEST_CASE("a player is found by name, number, key and fingerprint", "[admin][rights]") {
   const KnownPlayers known = players();
   CHECK(*known.find("ana") == kAna);  // names are folded
