@@ -8,7 +8,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::array kCommands = {"ban"sv,
+constexpr std::array kCommands = {"activity"sv,
+                                  "ban"sv,
                                   "bans"sv,
                                   "builds cancel"sv,
                                   "builds list"sv,
@@ -40,6 +41,9 @@ constexpr std::array kCommands = {"ban"sv,
                                   "protected"sv,
                                   "redo"sv,
                                   "refusals"sv,
+                                  "report"sv,
+                                  "reports"sv,
+                                  "reports close"sv,
                                   "revoke"sv,
                                   "rights undo"sv,
                                   "role default"sv,

@@ -16,6 +16,7 @@
 #include "server/admin/command_row.hpp"
 #include "server/admin/known_players.hpp"
 #include "server/admin/operator_actions.hpp"
+#include "server/admin/player_reports.hpp"
 #include "server/place/place_service.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/world/world_server.hpp"
@@ -67,6 +68,7 @@ struct CommandServices {
   };
   std::vector<Waiting> waiting = {};
   std::shared_ptr<FolderImport> folder_import = nullptr;  // the last one
+  PlayerReports reports = {};
 
   /// Lets the commands go on that wait for the disk, and the import of a folder. Call it on every
   /// tick, and when the log became durable or failed.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "protocol/codec/key_fingerprint.hpp"
-#include "protocol/rules/chat_text.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/line_text.hpp"
 #include "server/admin/material_file.hpp"
 #include "server/admin/world_lists.hpp"
 
@@ -60,20 +60,6 @@ void add_materials(const CommandCall& call, const std::string& file) {
         }
         call.refuse("materials add: " + wrong.message());
       });
-}
-
-/// Parses what comes after `say`. A text that is quoted as a whole is taken without its quotes.
-Result<std::string, std::string> parse_say(WordReader& reader) {
-  std::string_view rest = reader.text();
-  const std::size_t last = rest.find_last_not_of(' ');
-  rest = rest.substr(0, last == std::string_view::npos ? 0 : last + 1);
-  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-  const bool is_quoted =
-      rest.size() >= 2 && rest.front() == '"' && rest.find('"', 1) == rest.size() - 1;
-  if (is_quoted) rest = rest.substr(1, rest.size() - 2);
-  auto text = chat_text(rest);
-  if (!text) return failure("say: the text is refused: " + text.error());
-  return *std::move(text);
 }
 
 void say(const CommandCall& call, const std::string& text) {
@@ -148,7 +134,7 @@ constexpr std::array<CommandRow, 8> kHostRows = {{
     {.words = "say",
      .rule = kAdministrators,
      .help = "say TEXT                  write to all players, as the server",
-     .functions = parsed_by<parse_say, say>(),
+     .functions = parsed_by<line_text, say>(),
      .takes_text = true},
     {"backup", kLocal,
      "backup DIR                copy the world to a new folder, while people go on playing",

@@ -38,6 +38,8 @@ struct OperatorActions {
   std::function<std::uint64_t()> row_faults;
   /// Returns how the server is, for `status`. The runtime sets it.
   std::function<ServerHealth()> health;
+  /// Writes a line into the log of the server. The runtime sets it.
+  std::function<void(const std::string&)> log_line;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

@@ -145,6 +145,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
     };
     actions.row_faults = [this] { return log_ ? log_->row_faults() : 0; };
     actions.health = [this] { return health(); };
+    actions.log_line = [](const std::string& line) { logger("app").info("{}", line); };
     // The log writer is another one after each takeover.
     actions.save_build_file = [this](std::uint64_t content, std::shared_ptr<const Bytes> file,
                                      std::function<void(const std::string&)> done) {

@@ -114,6 +114,17 @@ std::size_t ChatRoom::say(const std::string& text, const PublicKey& by, const Cl
       sessions_.open(), [](const Session* session) { return reads_chat(*session); }));
 }
 
+std::size_t ChatRoom::tell_those(const std::function<bool(const PublicKey&)>& is_meant,
+                                 const std::string& text, const Clocks& now) {
+  std::size_t told = 0;
+  for (const Session* session : sessions_.open()) {
+    if (!is_meant(session->key)) continue;
+    tell(*session, text, now);
+    ++told;
+  }
+  return told;
+}
+
 void ChatRoom::tell(const Session& session, const std::string& text, const Clocks& now) {
   if (!reads_chat(session)) return;
   const ChatLine line{ChatLineKind::server, 0, "", text, time_of_line(now)};

@@ -3,6 +3,7 @@
 // Thread: the world strand.
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,6 +34,10 @@ class ChatRoom {
   /// Sends one session a line of the host, which nobody else gets and no log keeps. It is skipped
   /// if the session reads no chat or has no room. Requires a text that chat_text() returned.
   void tell(const Session& session, const std::string& text, const Clocks& now);
+  /// Sends a line of the host, as tell(), to each open session whose player is meant. Returns their
+  /// number. Cost: O(sessions).
+  std::size_t tell_those(const std::function<bool(const PublicKey&)>& is_meant,
+                         const std::string& text, const Clocks& now);
   /// Sends every session a line about a player who has joined or left, but not to the player. No
   /// log keeps it. Sessions without the feature visits do not get it.
   void tell_of_visit(const PublicKey& player, const std::string& text, const Clocks& now);
