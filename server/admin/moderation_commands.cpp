@@ -16,6 +16,7 @@
 #include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_lists.hpp"
 #include "server/admin/world_lists.hpp"
+#include "server/world/environment/world_border.hpp"
 
 namespace runstone {
 namespace {
@@ -32,6 +33,11 @@ std::string damage_text(const OperatorActions& actions) {
          "`runstone-server repair`";
 }
 
+/// Returns a line with the border of the world, or an empty text if it has none.
+std::string border_line(const WorldServer& world) {
+  return world.border() ? "\nborder: " + border_text(*world.border()) : "";
+}
+
 /// Returns a line with why edits are refused, or an empty text if they are taken.
 std::string read_only_text(const Order& order) {
   const std::string why = read_only_reason(order);
@@ -44,17 +50,17 @@ void show_status(const CommandCall& call) {
   const ServerHealth health = ask_health ? ask_health() : ServerHealth{};
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer(version_line(health) + "\nsessions " + std::to_string(world.session_count()) +
-              ", edits " + std::to_string(world.order().head()) + " (on disk " +
-              std::to_string(world.order().durable()) + "), since the start " +
-              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-              " rejected\nchunks in memory " +
-              std::to_string(world.order().chunks().resident_count()) + " (" +
-              byte_count_text(memory.voxels) + "), waiting edits " +
-              byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
-              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-              std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
-              read_only_text(world.order()) + damage_text(call.services.actions));
+  call.answer(
+      version_line(health) + "\nsessions " + std::to_string(world.session_count()) + ", edits " +
+      std::to_string(world.order().head()) + " (on disk " +
+      std::to_string(world.order().durable()) + "), since the start " +
+      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
+      " (" + byte_count_text(memory.voxels) + "), waiting edits " +
+      byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
+      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+      std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
+      border_line(world) + read_only_text(world.order()) + damage_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

@@ -8,6 +8,7 @@
 #include "common/core/tile_keys.hpp"
 #include "protocol/codec/server_list.hpp"
 #include "protocol/rules/chat_text.hpp"
+#include "server/admin/border_setting.hpp"
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
@@ -85,6 +86,16 @@ FormField operators_field() {
             }
             return text;
           }};
+}
+
+FormField border_field() {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+            const auto border = parse_border(text);
+            if (!border) return failure(border.error());
+            config.border = *border;
+            return {};
+          },
+          [](const ServerConfig& config) { return border_setting_text(config.border); }};
 }
 
 FormField builder_budget_field() {
@@ -291,6 +302,11 @@ const SettingsTable<ServerConfig>& settings() {
                  "voxels above y = 0 where edits may be"),
           number("depth_max", &C::depth_max, 0, 1ULL << 29,
                  "voxels below y = 0 where edits may be"),
+          form(
+              "border",
+              "x z x z of two opposite columns, or x y z x y z of two opposite corners, all inside: "
+              "players edit within them; empty: everywhere",
+              border_field()),
           number("reach_max", &C::reach_max, 0, 1ULL << 30,
                  "voxels from a player to the farthest voxel of an edit, 0: no limit"),
           number("speed_max", &C::speed_max, 0, 1ULL << 30,

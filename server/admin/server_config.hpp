@@ -4,11 +4,13 @@
 // reference. docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 #include "common/core/text_error.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -97,6 +99,7 @@ struct ServerConfig {
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
   std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
+  std::optional<VoxelBox> border;             // edits lie within it; nullopt: there is none
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
   /// Voxels a second at which `reach_max` follows a player who jumps, 0: at once .. 2^30.
   std::uint64_t speed_max = 0;

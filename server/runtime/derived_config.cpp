@@ -39,6 +39,7 @@ WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta, s
   world.chunk_edge = meta.chunk_edge;
   world.heights = {-static_cast<std::int32_t>(config.depth_max),
                    static_cast<std::int32_t>(config.height_max)};
+  world.border = config.border;
   world.spawn = meta.spawn;
   world.materials = meta.materials;
   world.server_keys = key_pair_of(meta.server_key_seed);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <span>
 
 #include "common/core/version.hpp"
@@ -17,6 +18,7 @@
 #include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 #include "server/runtime/recovery.hpp"
+#include "server/world/environment/world_border.hpp"
 #include "server/world/ground/tile_resends.hpp"
 
 namespace runstone {
@@ -124,6 +126,14 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   world_ = std::make_unique<WorldServer>(
       std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
+  const WorldPos& spawn = store_.meta().spawn;
+  const auto whole = [](double at) { return static_cast<std::int32_t>(std::floor(at)); };
+  const VoxelPos spawn_voxel{whole(spawn.x), whole(spawn.y), whole(spawn.z)};
+  if (config_.border && !config_.border->contains(spawn_voxel)) {
+    logger("world").warn(
+        "border: the spawn of the world lies outside ({}): players who join there cannot edit",
+        border_text(*config_.border));
+  }
   const auto replayed = replay_log(store_, start, *world_);
   if (!replayed) return failure(replayed.error());
   environment_.attach(*world_, chat_log_.get());

@@ -137,6 +137,7 @@ const Cluster& WorldServer::cluster() const { return rooms_->cluster; }
 BuildReads& WorldServer::build_reads() { return rooms_->build_reads; }
 BuildUploads& WorldServer::build_uploads() { return rooms_->build_uploads; }
 const WorldCounters& WorldServer::counters() const { return rooms_->counters; }
+const std::optional<VoxelBox>& WorldServer::border() const { return rooms_->config.border; }
 std::size_t WorldServer::session_count() const { return rooms_->sessions.count(); }
 
 void WorldServer::replay_onto_stack(const EditRecord& record) {
@@ -155,6 +156,7 @@ void WorldServer::reconfigure(const WorldConfig& config) {
   mine.sessions_per_address = config.sessions_per_address;
   mine.range_seats_percent = config.range_seats_percent;
   mine.idle_us_max = config.idle_us_max;
+  mine.border = config.border;
   mine.reach_max = config.reach_max;
   mine.speed_max = config.speed_max;
   mine.operators = config.operators;

@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/rules/edit_price.hpp"
 #include "protocol/rules/refusal_text.hpp"
+#include "server/world/environment/world_border.hpp"
 #include "server/world/people/reach.hpp"
 
 namespace runstone {
@@ -120,6 +122,14 @@ std::optional<EditRequests::Refusal> EditRequests::check_reach(const Attempt& at
   return Refusal{RejectReason::out_of_reach};
 }
 
+std::optional<EditRequests::Refusal> EditRequests::check_border(const Attempt& attempt) {
+  if (!config_.border || !has_voxels(attempt.request.edit)) return std::nullopt;
+  const VoxelBox box = bounding_box(attempt.request.edit);
+  if (intersect(box, *config_.border) == box) return std::nullopt;
+  return Refusal{RejectReason::outside_world, "the edit reaches beyond the border of this world: " +
+                                                  border_text(*config_.border)};
+}
+
 std::optional<EditRequests::Refusal> EditRequests::check_edit(const Attempt& attempt) {
   const auto wrong = order_.authority().check(attempt.request.edit);
   if (!wrong) return std::nullopt;
@@ -137,9 +147,9 @@ std::optional<EditRequests::Refusal> EditRequests::check_and_enqueue(const Attem
   if (authority.resolved().knows(attempt.op))
     return Refusal{authority.resolved().answer_to(attempt.op)};
   constexpr Check kChecks[] = {
-      &EditRequests::check_action, &EditRequests::check_room,  &EditRequests::check_budget,
-      &EditRequests::check_bytes,  &EditRequests::check_reach, &EditRequests::check_edit,
-      &EditRequests::check_rights,
+      &EditRequests::check_action, &EditRequests::check_room,   &EditRequests::check_budget,
+      &EditRequests::check_bytes,  &EditRequests::check_reach,  &EditRequests::check_edit,
+      &EditRequests::check_border, &EditRequests::check_rights,
   };
   for (const Check check : kChecks) {
     auto refusal = (this->*check)(attempt);

@@ -88,6 +88,7 @@ class EditRequests {
   std::optional<Refusal> check_budget(const Attempt& attempt);
   std::optional<Refusal> check_bytes(const Attempt& attempt);
   std::optional<Refusal> check_reach(const Attempt& attempt);
+  std::optional<Refusal> check_border(const Attempt& attempt);
   std::optional<Refusal> check_edit(const Attempt& attempt);
   std::optional<Refusal> check_rights(const Attempt& attempt);
   /// Returns why an edit of a patient session cannot join its action, or nullopt.
