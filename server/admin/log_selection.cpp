@@ -25,7 +25,7 @@ bool is_reference(const std::string& word) {
 }
 
 /// The words of a filter about players, in the order in which they are looked up.
-std::vector<std::string> words_of(const CommandFilter& filter) {
+std::vector<std::string> player_words_of(const CommandFilter& filter) {
   std::vector<std::string> words;
   for (const auto* authors : {&filter.authors, &filter.not_authors}) {
     for (const CommandFilter::Author& author : *authors) {
@@ -174,7 +174,7 @@ void with_selection(const CommandCall& call, const CommandFilter& filter,
                 "leave nobody");
   };
   call.with_players(
-      words_of(filter),
+      player_words_of(filter),
       [=](const KnownPlayers& players, const CommandCall::Keys& keys) {
         AuthorFinder finder(call, filter, players, keys);
         if (const auto found = finder.find(); !found)

@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-std::string page_of(const ServerStatus& status) {
+std::string metrics_page_of(const ServerStatus& status) {
   const WorldStatus world{"", "", std::make_shared<const ServerStatus>(status)};
   return metrics_text(std::span(&world, 1), WebCounters{});
 }
@@ -27,7 +27,7 @@ double only_value(const MetricsPage& page, const std::string& name) {
 
 TEST_CASE("a strict reader takes the page of metrics, and each metric has help and a type",
           "[web][metrics]") {
-  const MetricsPage page = read_metrics_page(page_of(full_server_status()));
+  const MetricsPage page = read_metrics_page(metrics_page_of(full_server_status()));
   CHECK(page.wrong.empty());
   INFO(page.wrong);
   for (const auto& [name, family] : page.families) {
@@ -48,7 +48,7 @@ TEST_CASE("a strict reader takes the page of metrics, and each metric has help a
 }
 
 TEST_CASE("waits are histograms of seconds", "[web][metrics]") {
-  const MetricsPage page = read_metrics_page(page_of(full_server_status()));
+  const MetricsPage page = read_metrics_page(metrics_page_of(full_server_status()));
   for (const char* name : {"runstone_edit_wait_seconds", "runstone_durable_wait_seconds"}) {
     REQUIRE(page.families.contains(name));
     CHECK(page.families.at(name).type == "histogram");
@@ -68,13 +68,13 @@ TEST_CASE("waits are histograms of seconds", "[web][metrics]") {
 
 TEST_CASE("version and the reason of a world that cannot be written are labels", "[web][metrics]") {
   const std::string reason = R"(the "disk" \ is full)";
-  const MetricsPage page =
-      read_metrics_page(page_of(full_server_status("|version 1.2.3\n|read_only " + reason + "\n")));
+  const MetricsPage page = read_metrics_page(
+      metrics_page_of(full_server_status("|version 1.2.3\n|read_only " + reason + "\n")));
   CHECK(page.wrong.empty());
   CHECK(only_value(page, "runstone_build_info") == 1);
   CHECK(page.families.at("runstone_build_info").samples[0].labels.at("version") == "1.2.3");
   CHECK(page.families.at("runstone_read_only_info").samples[0].labels.at("reason") == reason);
-  const MetricsPage writable = read_metrics_page(page_of(full_server_status()));
+  const MetricsPage writable = read_metrics_page(metrics_page_of(full_server_status()));
   CHECK_FALSE(writable.families.contains("runstone_read_only_info"));
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("several worlds share the families of their metrics, and one may be do
 TEST_CASE("a counter that only a later server has is a metric without a type", "[web][metrics]") {
   ServerStatus status = full_server_status();
   status.counters["flying_pigs"] = 3;
-  const MetricsPage page = read_metrics_page(page_of(status));
+  const MetricsPage page = read_metrics_page(metrics_page_of(status));
   CHECK(page.wrong.empty());
   CHECK(page.families.at("runstone_flying_pigs").type == "untyped");
 }
