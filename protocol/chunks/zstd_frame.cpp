@@ -1,11 +1,11 @@
-#include "protocol/codec/zstd_frame.hpp"
+#include "protocol/chunks/zstd_frame.hpp"
 
 #include <zstd.h>
 
 #include <memory>
 
 #include "common/core/assert.hpp"
-#include "protocol/codec/codec_scratch.hpp"
+#include "protocol/chunks/codec_scratch.hpp"
 
 namespace runstone {
 namespace {

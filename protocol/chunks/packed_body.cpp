@@ -1,4 +1,4 @@
-#include "protocol/codec/packed_body.hpp"
+#include "protocol/chunks/packed_body.hpp"
 
 #include <zstd.h>
 
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "protocol/codec/codec_scratch.hpp"
-#include "protocol/codec/read_runs.hpp"
-#include "protocol/codec/wire_palette.hpp"
-#include "protocol/codec/zstd_frame.hpp"
+#include "protocol/chunks/codec_scratch.hpp"
+#include "protocol/chunks/read_runs.hpp"
+#include "protocol/chunks/wire_palette.hpp"
+#include "protocol/chunks/zstd_frame.hpp"
 
 namespace runstone {
 namespace {
