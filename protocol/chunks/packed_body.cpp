@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -114,7 +115,7 @@ void write_planes(const Runs& runs, Line line, PackScratch& s) {
 ByteView compress(PackScratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
-  RUNSTONE_ASSERT(s.compressor != nullptr);
+  if (!s.compressor) throw std::bad_alloc();
   // zstd stops when it runs out of space: the frame would not be smaller.
   s.frame.resize(kZstdMagic.size() + s.body.size() - 1);
   const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.frame.data(), s.frame.size(),
