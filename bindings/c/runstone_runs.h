@@ -1,16 +1,16 @@
-/* runstone_runs.h: reads the raw bytes of a chunk in place. It needs no library: C99 or C++, any byte order, no
- * allocation. docs/protocol.md specifies the bytes:
+/* runstone_runs.h: reads the raw bytes of a chunk in place. It needs no library: C99 or C++, any
+ * byte order, no allocation. docs/protocol.md specifies the bytes:
  *   u8 1 | u8 version 1 | u8 axis order | u8 0 | u8 x, y, z sides | u8 0 | u32 run count | runs
- * A volume of up to 65,535 voxels has runs {u16 end, u16 material}; a larger one has all u32 ends, then all u16
- * materials. Numbers are little-endian. Run i covers the voxels from the end of the run before it up to its own
- * end, of the chunk flattened in its axis order.
+ * A volume of up to 65,535 voxels has runs {u16 end, u16 material}; a larger one has all u32
+ * ends, then all u16 materials. Numbers are little-endian. Run i covers the voxels from the end
+ * of the run before it up to its own end, of the chunk flattened in its axis order.
  *
  *   runstone_runs runs;
  *   if (runstone_runs_open(&runs, bytes, count) == RUNSTONE_RUNS_OK)
  *     printf("%u\n", (unsigned)runstone_runs_at(&runs, x, y, z));
  *
- * A runstone_runs points into the bytes, which the caller keeps. It is never changed after it was opened, so any
- * number of threads may read it. */
+ * A runstone_runs points into the bytes, which the caller keeps. It is never changed after it was
+ * opened, so any number of threads may read it. */
 #ifndef RUNSTONE_RUNS_H
 #define RUNSTONE_RUNS_H
 
@@ -114,8 +114,8 @@ static inline uint16_t runstone_runs_at(const runstone_runs* runs, uint32_t x, u
   return runstone_runs_material(runs, first);
 }
 
-/* Writes the materials of all voxels to an array of `volume` elements, in the order of the flattened chunk. Cost:
- * O(volume). */
+/* Writes the materials of all voxels to an array of `volume` elements, in the order of the
+ * flattened chunk. Cost: O(volume). */
 static inline void runstone_runs_to_array(const runstone_runs* runs, uint16_t* out) {
   uint32_t i, voxel = 0;
   for (i = 0; i < runs->count; ++i) {

@@ -1,5 +1,5 @@
-/* Both headers compile as C99 with all warnings, and the sizes of structs, which programs are compiled with, stay
- * as they are. A negative size of an array is an error. */
+/* Both headers compile as C99 with all warnings, and the sizes of structs, which programs are
+ * compiled with, stay as they are. A negative size of an array is an error. */
 #include <runstone.h>
 #include <runstone_runs.h>
 

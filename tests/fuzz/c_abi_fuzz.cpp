@@ -200,9 +200,10 @@ class CallScript {
         }
         ends.push_back(in_.byte() == 255 ? in_.number() : x * y * x);
         materials.push_back(in_.byte() % 4);
+        const std::uint32_t order = in_.byte() % 7U;
         return renew_chunk([&](auto** out) {
-          return runstone_chunk_create_from_runs(x, y, x, in_.byte() % 7U, ends.data(),
-                                                 materials.data(), ends.size(), out);
+          return runstone_chunk_create_from_runs(x, y, x, order, ends.data(), materials.data(),
+                                                 ends.size(), out);
         });
       }
       case 3: {
@@ -232,23 +233,24 @@ class CallScript {
   }
 
   runstone_status change(unsigned which) {
+    runstone_chunk* const chunk = pick(chunks_);
     switch (which % 6) {
-      case 0:
-        return runstone_chunk_fill(pick(chunks_), in_.byte() * 8U, in_.byte(), in_.byte() % 4);
+      case 0: {
+        const std::uint32_t first = in_.byte() * 8U, voxels = in_.byte();
+        return runstone_chunk_fill(chunk, first, voxels, in_.byte() % 4);
+      }
       case 1:
-        return runstone_chunk_reorder(pick(chunks_), in_.byte() % 8U);
+        return runstone_chunk_reorder(chunk, in_.byte() % 8U);
       case 2: {
         runstone_changes changes{};
         changes.struct_size = in_.byte() == 255 ? 7 : sizeof changes;
         const runstone_pos at = {in_.place() / 100, in_.place() / 100, in_.place() / 100};
-        return runstone_chunk_apply(pick(chunks_), at, pick(edits_), &changes);
+        return runstone_chunk_apply(chunk, at, pick(edits_), &changes);
       }
-      case 3: {
-        const runstone_chunk* from = pick(chunks_);
-        return renew_chunk([&](auto** out) { return runstone_chunk_clone(from, out); });
-      }
+      case 3:
+        return renew_chunk([&](auto** out) { return runstone_chunk_clone(chunk, out); });
       case 4:
-        return runstone_tile_veil(pick(chunks_), pick(tables_));
+        return runstone_tile_veil(chunk, pick(tables_));
       default: {
         std::array<const runstone_chunk*, 8> children{};
         for (auto& child : children) child = pick(chunks_);
@@ -271,8 +273,10 @@ class CallScript {
         const runstone_pos min = in_.pos();
         return runstone_edits_add_box(to, {min, in_.pos()}, &with);
       }
-      case 2:
-        return runstone_edits_add_sphere(to, in_.pos(), in_.byte() % 20U, &with);
+      case 2: {
+        const runstone_pos centre = in_.pos();
+        return runstone_edits_add_sphere(to, centre, in_.byte() % 20U, &with);
+      }
       case 3: {
         std::vector<runstone_pos> points(in_.byte() % 5U + 1);
         for (runstone_pos& point : points) point = in_.pos();
@@ -288,39 +292,39 @@ class CallScript {
   }
 
   runstone_status read(unsigned which) {
+    const runstone_chunk* const chunk = pick(chunks_);
+    const runstone_edits* const edits = pick(edits_);
+    const std::uint8_t choice = in_.byte(), room = in_.byte();
     std::size_t count = 0;
     switch (which % 7) {
       case 0: {
-        std::vector<std::uint8_t> out(in_.byte() * 4U);
-        return runstone_chunk_encode(pick(chunks_), in_.byte() % 5U, out.data(), out.size(),
-                                     &count);
+        std::vector<std::uint8_t> out(room * 4U);
+        return runstone_chunk_encode(chunk, choice % 5U, out.data(), out.size(), &count);
       }
       case 1: {
-        std::vector<std::uint16_t> out(in_.byte() * 64U);
-        return runstone_chunk_to_array(pick(chunks_), in_.byte() % 7U, out.data(), out.size(),
-                                       &count);
+        std::vector<std::uint16_t> out(room * 64U);
+        return runstone_chunk_to_array(chunk, choice % 7U, out.data(), out.size(), &count);
       }
       case 2: {
         std::uint16_t material = 0;
-        return runstone_chunk_get(pick(chunks_), in_.byte(), in_.byte() % 40U, in_.byte() % 40U,
-                                  &material);
+        return runstone_chunk_get(chunk, choice, room, room / 2U, &material);
       }
       case 3: {
         std::uint32_t is_equal = 0;
-        return runstone_chunk_equal(pick(chunks_), pick(chunks_), &is_equal);
+        return runstone_chunk_equal(chunk, pick(chunks_), &is_equal);
       }
       case 4: {
-        std::vector<runstone_pos> out(in_.byte());
-        return runstone_edits_touched_chunks(pick(edits_), in_.byte() % 4U, in_.side(), out.data(),
-                                             out.size(), &count);
+        std::vector<runstone_pos> out(room);
+        return runstone_edits_touched_chunks(edits, choice % 4U, in_.side(), out.data(), out.size(),
+                                             &count);
       }
       case 5: {
-        std::vector<std::uint8_t> out(in_.byte());
-        return runstone_edits_bytes(pick(edits_), in_.byte() % 4U, out.data(), out.size(), &count);
+        std::vector<std::uint8_t> out(room);
+        return runstone_edits_bytes(edits, choice % 4U, out.data(), out.size(), &count);
       }
       default: {
         runstone_box box{};
-        return runstone_edits_bounds(pick(edits_), in_.byte() % 4U, &box);
+        return runstone_edits_bounds(edits, choice % 4U, &box);
       }
     }
   }
@@ -361,10 +365,12 @@ class CallScript {
     const runstone_body body{from, {from.x + 1, from.y + 2, from.z + in_.real()}};
     const std::array<std::uint8_t, 4> solid = {0, 1, in_.byte(), in_.byte()};
     switch (which % 7) {
-      case 0:
-        return runstone_space_set(space, {in_.place() / 100, in_.place() / 100, 0}, pick(chunks_));
+      case 0: {
+        const runstone_pos at = {in_.place() / 100, in_.place() / 100, 0};
+        return runstone_space_set(space, at, pick(chunks_));
+      }
       case 1:
-        return runstone_space_set_solid(space, solid.data(), in_.byte() % 5U, in_.byte() % 2U);
+        return runstone_space_set_solid(space, solid.data(), solid[2] % 5U, solid[3] % 2U);
       case 2: {
         runstone_sweep out{};
         out.struct_size = sizeof out;
@@ -386,7 +392,7 @@ class CallScript {
       }
       default: {
         std::vector<runstone_local_box> out(in_.byte() * 16U);
-        return runstone_chunk_boxes(pick(chunks_), solid.data(), 4, in_.byte() % 2U, out.data(),
+        return runstone_chunk_boxes(pick(chunks_), solid.data(), 4, solid[2] % 2U, out.data(),
                                     out.size(), &count);
       }
     }
