@@ -32,7 +32,7 @@ int main(void) {
 
   check(runstone_visibility_create(NULL, 0, &visibility)); /* all materials are opaque */
   check(runstone_mesh_create(&mesh));
-  check(runstone_mesh_chunk(mesh, chunk, NULL, NULL, visibility)); /* without neighbours */
+  check(runstone_mesh_chunk(mesh, chunk, NULL, NULL, visibility));         /* without neighbours */
   check(runstone_mesh_quads(mesh, RUNSTONE_PASS_OPAQUE, NULL, 0, &count)); /* asks for the size */
   quads = malloc(count * sizeof *quads);
   if (quads == NULL) return 1;
