@@ -12,7 +12,7 @@
 #include "common/core/tile_keys.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/text_file.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/codec/view_tiles.hpp"
 #include "protocol/limits.hpp"

@@ -11,7 +11,7 @@
 
 #include "common/core/result.hpp"
 #include "common/core/text_error.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
 #include "server/admin/log_format.hpp"

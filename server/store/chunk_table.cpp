@@ -3,7 +3,7 @@
 #include <array>
 
 #include "common/core/key_text.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
 #include "server/store/loss_advice.hpp"
 #include "server/store/sql_result.hpp"

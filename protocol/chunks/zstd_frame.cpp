@@ -1,11 +1,11 @@
-#include "protocol/codec/zstd_frame.hpp"
+#include "protocol/chunks/zstd_frame.hpp"
 
 #include <zstd.h>
 
 #include <memory>
+#include <new>
 
-#include "common/core/assert.hpp"
-#include "protocol/codec/codec_scratch.hpp"
+#include "protocol/chunks/codec_scratch.hpp"
 
 namespace runstone {
 namespace {
@@ -30,7 +30,7 @@ Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes) {
   }
   thread_local UnpackScratch s;
   if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
-  RUNSTONE_ASSERT(s.decompressor != nullptr);
+  if (!s.decompressor) throw std::bad_alloc();
   keep_small(s.body);
   s.body.resize(bytes);
   const std::size_t size =

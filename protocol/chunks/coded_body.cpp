@@ -1,4 +1,4 @@
-#include "protocol/codec/coded_body.hpp"
+#include "protocol/chunks/coded_body.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "protocol/codec/codec_scratch.hpp"
-#include "protocol/codec/range_coder.hpp"
-#include "protocol/codec/read_runs.hpp"
-#include "protocol/codec/wire_palette.hpp"
+#include "protocol/chunks/codec_scratch.hpp"
+#include "protocol/chunks/range_coder.hpp"
+#include "protocol/chunks/read_runs.hpp"
+#include "protocol/chunks/wire_palette.hpp"
 
 namespace runstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/codec/coded_body.hpp"
+#include "protocol/chunks/coded_body.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "protocol/codec/chunk_codec.hpp"
-#include "protocol/codec/range_coder.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
+#include "protocol/chunks/range_coder.hpp"
 #include "tests/support/core/hex.hpp"
 
 namespace runstone::test {

@@ -1,7 +1,7 @@
 // Tests of what the chunk codec allocates.
 #include <catch2/catch.hpp>
 
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "tests/support/codec/packed_spelling.hpp"
 #include "tests/support/core/count_allocations.hpp"
 #include "tests/support/runs/random_chunk.hpp"

@@ -1,4 +1,4 @@
-#include "protocol/codec/packed_body.hpp"
+#include "protocol/chunks/packed_body.hpp"
 
 #include <zstd.h>
 
@@ -7,14 +7,15 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "protocol/codec/codec_scratch.hpp"
-#include "protocol/codec/read_runs.hpp"
-#include "protocol/codec/wire_palette.hpp"
-#include "protocol/codec/zstd_frame.hpp"
+#include "protocol/chunks/codec_scratch.hpp"
+#include "protocol/chunks/read_runs.hpp"
+#include "protocol/chunks/wire_palette.hpp"
+#include "protocol/chunks/zstd_frame.hpp"
 
 namespace runstone {
 namespace {
@@ -114,7 +115,7 @@ void write_planes(const Runs& runs, Line line, PackScratch& s) {
 ByteView compress(PackScratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
-  RUNSTONE_ASSERT(s.compressor != nullptr);
+  if (!s.compressor) throw std::bad_alloc();
   // zstd stops when it runs out of space: the frame would not be smaller.
   s.frame.resize(kZstdMagic.size() + s.body.size() - 1);
   const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.frame.data(), s.frame.size(),

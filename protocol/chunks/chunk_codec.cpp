@@ -1,13 +1,14 @@
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 #include <array>
 #include <bit>
 #include <cstring>
 #include <vector>
 
-#include "protocol/codec/coded_body.hpp"
-#include "protocol/codec/packed_body.hpp"
-#include "protocol/limits.hpp"
+#include "common/core/assert.hpp"
+#include "protocol/chunks/chunk_size.hpp"
+#include "protocol/chunks/coded_body.hpp"
+#include "protocol/chunks/packed_body.hpp"
 
 namespace runstone {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "common/runs/run_builder.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "tests/support/core/hex.hpp"
 #include "tests/support/core/page_example.hpp"
 

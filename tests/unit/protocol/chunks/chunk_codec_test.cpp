@@ -3,8 +3,8 @@
 #include <functional>
 
 #include "common/runs/run_builder.hpp"
-#include "protocol/codec/chunk_codec.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
+#include "protocol/chunks/chunk_size.hpp"
 #include "tests/support/codec/packed_spelling.hpp"
 #include "tests/support/core/hex.hpp"
 #include "tests/support/runs/random_chunk.hpp"

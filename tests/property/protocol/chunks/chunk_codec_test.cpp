@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "tests/support/runs/dense_chunk.hpp"
 #include "tests/support/runs/random_chunk.hpp"
 
