@@ -278,12 +278,23 @@ StoreResult<void> WorldRebuild::complete(FoundTable table) {
   // Rows of torn frames are newer than the fold.
   const bool is_newer = pages_.has_torn_pages() && expected && found->count >= expected->count;
   if (expected == *found || is_newer) return {};
-  report_.losses.push_back(name + ": " +
-                           (expected
-                                ? std::to_string(found->count) + " rows of " +
-                                      std::to_string(expected->count) + " that meta counts"
-                                : "it is not known whether rows are missing, because meta key=" +
-                                      fold_key_of(table) + " is lost"));
+  std::string loss = name + ": ";
+  if (!expected) {
+    loss += "it is not known whether rows are missing, because meta key=" + fold_key_of(table) +
+            " is lost";
+  } else if (found->count == expected->count) {
+    loss += "an older row stands for one that is lost";
+  } else {
+    loss += std::to_string(found->count) + " rows of " + std::to_string(expected->count) +
+            " that meta counts";
+  }
+  if (table == FoundTable::player_instance) {
+    are_watermarks_lost_ = true;
+    loss +=
+        ". Edits of clients that run since before the repair are refused, because the world may "
+        "have them: their players start the client again";
+  }
+  report_.losses.push_back(std::move(loss));
   return {};
 }
 
@@ -396,11 +407,15 @@ StoreResult<void> WorldRebuild::follow_log() {
   return {};
 }
 
-StoreResult<void> WorldRebuild::raise_own_mark() {
-  if (own_mark_.resolved == 0) return {};
+StoreResult<void> WorldRebuild::raise_own_marks() {
   auto players = PlayerTable::open(*database_);
   if (!players) return failed(players.error());
   RowFold unused;
+  if (are_watermarks_lost_) {
+    if (auto raised = players->raise(lost_watermarks(state_.author_max, now_us_), unused); !raised)
+      return raised;
+  }
+  if (own_mark_.resolved == 0) return {};
   return players->raise(own_mark_, unused);
 }
 
@@ -451,7 +466,7 @@ StoreResult<void> WorldRebuild::fill(
   if (auto completed = complete_tables(); !completed) return completed;
   if (auto followed = follow_log(); !followed) return followed;
   if (auto completed = complete(FoundTable::player_instance); !completed) return completed;
-  if (auto raised = raise_own_mark(); !raised) return raised;
+  if (auto raised = raise_own_marks(); !raised) return raised;
   if (auto completed = complete_library(); !completed) return completed;
   return write_meta();
 }

@@ -56,8 +56,9 @@ class WorldRebuild {
   StoreResult<void> complete_library();
   /// Reads the log once and makes what follows from it: segments, watermarks, eras, marks of kinds.
   StoreResult<void> follow_log();
-  /// Writes the watermark of the records that stand for lost ones.
-  StoreResult<void> raise_own_mark();
+  /// Writes the watermark of the records that stand for lost ones, and the row that says that
+  /// watermarks are lost.
+  StoreResult<void> raise_own_marks();
   StoreResult<void> write_meta();
 
   const std::string folder_;
@@ -73,6 +74,7 @@ class WorldRebuild {
   std::vector<LogEra> eras_;
   std::uint64_t segments_ = 0;
   HighWater own_mark_;
+  bool are_watermarks_lost_ = false;
   ClientSequence operations_ = 0;
 };
 

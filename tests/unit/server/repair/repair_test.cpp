@@ -100,6 +100,52 @@ TEST_CASE("base chunks come from a backup", "[repair][sqlite]") {
   CHECK(bench.has_same_ground(*RepairBench::opened(bench.to)));
 }
 
+TEST_CASE_METHOD(RepairBench, "lost watermarks come back from the log", "[repair][sqlite]") {
+  const auto marks = opened(world)->high_waters();
+  REQUIRE(raw_sql(world_file(), "DELETE FROM player_instance") == "");
+  REQUIRE(repair_to(to) == "");
+  INFO(printed);
+  CHECK_THAT(printed, !Contains("lost "));
+  const auto repaired = opened(to)->high_waters();
+  REQUIRE((marks.has_value() && repaired.has_value()));
+  REQUIRE(repaired->size() == marks->size());
+  for (std::size_t i = 0; i < marks->size(); ++i) {
+    CHECK((*repaired)[i].author == (*marks)[i].author);
+    CHECK((*repaired)[i].instance == (*marks)[i].instance);
+    CHECK((*repaired)[i].resolved == (*marks)[i].resolved);
+  }
+}
+
+TEST_CASE_METHOD(RepairBench, "a world remembers that watermarks are lost with their records",
+                 "[repair][sqlite]") {
+  REQUIRE(raw_sql(world_file(), "DELETE FROM edit_log WHERE author = 2") == "");
+  SECTION("rows are missing") {
+    REQUIRE(raw_sql(world_file(), "DELETE FROM player_instance WHERE author = 2") == "");
+    REQUIRE(repair_to(to) == "");
+    CHECK_THAT(printed, Contains(" that meta counts. Edits of clients that run since before"));
+  }
+  SECTION("the count of the rows is lost") {
+    REQUIRE(raw_sql(world_file(), "DELETE FROM meta WHERE key = 'player_instance_fold'") == "");
+    REQUIRE(repair_to(to) == "");
+    CHECK_THAT(printed, Contains("meta key=player_instance_fold is lost. Edits of clients"));
+  }
+  const auto marks = opened(to)->high_waters();
+  REQUIRE(marks.has_value());
+  const auto lost = std::ranges::find_if(*marks, is_of_lost_watermarks);
+  REQUIRE(lost != marks->end());
+  CHECK(lost->resolved == 3);
+  CHECK(lost->last_us == kRepairTimeUs);
+}
+
+TEST_CASE_METHOD(RepairBench, "a world whose watermarks are all there refuses no client",
+                 "[repair][sqlite]") {
+  REQUIRE(raw_sql(world_file(), "DELETE FROM edit_log WHERE author = 2") == "");
+  REQUIRE(repair_to(to) == "");
+  const auto marks = opened(to)->high_waters();
+  REQUIRE(marks.has_value());
+  CHECK(std::ranges::none_of(*marks, is_of_lost_watermarks));
+}
+
 TEST_CASE_METHOD(RepairBench, "a page of zeros costs the rows in it alone", "[repair][sqlite]") {
   const auto page_bytes = std::stoul(raw_sql(world_file(), "PRAGMA page_size"));
   const auto root = std::stoul(
