@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/repair/built_in_materials.hpp"
 #include "server/store/build_table.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/claim_table.hpp"
@@ -18,6 +19,8 @@
 
 namespace runstone {
 namespace {
+
+constexpr const char* kMaterialsKey = "materials";
 
 std::uint64_t counter_in(const MetaRows& rows, const char* key) {
   const auto row = rows.find(key);
@@ -115,6 +118,9 @@ StoreResult<void> WorldRebuild::find_pinned_values() {
     } else if (const auto kept = from_backup.find(key); kept != from_backup.end()) {
       meta_[key] = kept->second;
       report_.taken.push_back("meta key=" + key + " from the backup");
+    } else if (key == kMaterialsKey) {
+      are_materials_lost_ = true;
+      meta_[key] = to_toml(MaterialTable());  // until the log is known
     } else {
       return failure(StoreError{StoreError::Kind::corrupt, folder_, "meta key=" + key,
                                 "is lost, and nothing else in the world has it. Give the folder of "
@@ -125,6 +131,29 @@ StoreResult<void> WorldRebuild::find_pinned_values() {
     return failure(StoreError{StoreError::Kind::corrupt, folder_, "meta key=" + meta.error(),
                               "has an impossible value"});
   }
+  return {};
+}
+
+StoreResult<void> WorldRebuild::find_materials() {
+  if (!are_materials_lost_) return {};
+  const auto meta = meta_of(meta_);
+  const bool has_shapes = found_->meta().contains(kShapesKey);
+  auto found = find_built_in_materials(*database_, {meta->generator, meta->chunk_edge, has_shapes});
+  if (!found) return failed(found.error());
+  if (found->name.empty()) {
+    return failure(StoreError{
+        StoreError::Kind::corrupt, folder_, std::string("meta key=") + kMaterialsKey,
+        "is lost, and nothing else in the world has it. The built-in table is not that of this "
+        "world: " +
+            found->fault + ". Give the folder of an older backup with --from"});
+  }
+  report_.taken.push_back(
+      std::string("meta key=") + kMaterialsKey + ": " + found->name + " with " +
+      std::to_string(found->table.size()) +
+      " rows. All of base and log fits it. If the world was created with --materials, take the table "
+      "from a backup instead: repair it with --from");
+  meta_[kMaterialsKey] = to_toml(found->table);
+  if (found->table.has_shapes()) meta_[kShapesKey] = std::int64_t{1};
   return {};
 }
 
@@ -219,6 +248,7 @@ StoreResult<void> WorldRebuild::report_lost(const std::vector<Sequence>& lost,
 StoreResult<void> WorldRebuild::rebuild_log() {
   sql::Database& database = *database_;
   if (auto removed = remove_misfits(database, head_, found_->doubtful()); !removed) return removed;
+  if (auto found = find_materials(); !found) return found;
   const auto kept = database.integer("SELECT count(*) FROM edit_log");
   if (!kept) return failed(kept.error());
   report_.records = static_cast<std::uint64_t>(*kept);

@@ -42,6 +42,8 @@ class WorldRebuild {
   ClientInstance instance() const { return static_cast<ClientInstance>(now_us_); }
   StoreResult<void> find_rows(const std::function<void(std::uint64_t, std::uint64_t)>& on_progress);
   StoreResult<void> find_pinned_values();
+  /// Finds the material table again if `meta` has lost it. Requires that the log has its records.
+  StoreResult<void> find_materials();
   StoreResult<void> find_head();
   StoreResult<void> read_mark();
   StoreResult<void> rebuild_log();
@@ -74,7 +76,7 @@ class WorldRebuild {
   std::vector<LogEra> eras_;
   std::uint64_t segments_ = 0;
   HighWater own_mark_;
-  bool are_watermarks_lost_ = false;
+  bool are_watermarks_lost_ = false, are_materials_lost_ = false;
   ClientSequence operations_ = 0;
 };
 
