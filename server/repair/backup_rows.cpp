@@ -68,7 +68,8 @@ StoreResult<std::uint64_t> BackupRows::fill_log(sql::Database& database, const L
   auto next = database.prepare(
       "SELECT epoch FROM edit_log WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 1");
   if (!next) return failed(next.error());
-  // Of a backup whose log has no record in common, the head alone is known to be common.
+  // The edits that the backup has compacted are taken for common, until a record shows that they
+  // are not. Their authors are known only if the log of the backup has no records.
   common_ = range->first - 1;
   author_max_ = range->last.version.seq == common_ ? store_->author_max() : 0;
   std::vector<EditRecord> taken;
@@ -82,7 +83,7 @@ StoreResult<std::uint64_t> BackupRows::fill_log(sql::Database& database, const L
     if (!there) return false;
     bool is_common = record.version.seq <= head.version.seq;
     if (record.version.seq == head.version.seq && record.version != head.version) {
-      // What was compacted in one of the two has another history in the other.
+      // The world has compacted another edit of this number: nothing is common.
       common_ = 0;
       author_max_ = 0;
       return false;

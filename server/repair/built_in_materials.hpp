@@ -28,7 +28,8 @@ struct MaterialsPin {
 ///   - the generator can be made with it;
 ///   - the world was not imported;
 ///   - the records of the log that add materials or give shapes continue it;
-///   - each voxel of the base, each edit and each texture has a material of the table as it was then.
+///   - each voxel of the base, each edit and each texture has a material of the table as it was
+///     then.
 /// `database` has the rows of `base`, `rights_record` and `edit_log`, each of which its checksum
 /// proves. Fails as the database. Cost: one pass over these tables.
 StoreResult<BuiltInMaterials> find_built_in_materials(sql::Database& database,

@@ -77,8 +77,8 @@ StoreResult<void> FoundRows::add(FoundTable table, const StoredRow& row, RowOrig
     return {};
   }
   // A free page may have rows from before a compaction. A record of the log says by its sequence
-  // whether it still counts. A watermark only rises and is never deleted, so an older one is a lower
-  // bound.
+  // whether it still counts. A watermark only rises and is never deleted, so an older one is a
+  // lower bound.
   const bool is_known_when_free =
       table == FoundTable::edit_log || table == FoundTable::player_instance;
   if (origin == RowOrigin::free && !is_known_when_free) return {};

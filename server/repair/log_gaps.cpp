@@ -84,11 +84,11 @@ class GapPlan {
   std::size_t materials_made() const { return made_; }
 
  private:
-  /// Makes the newest gaps add `count` rows.
+  /// Makes gaps add `count` rows. Returns false if there are too few gaps.
   bool add_materials(std::size_t count) {
     while (count > 0) {
-      // The table grows in the order of the log. The first gap that may take rows leaves later ones
-      // for what follows.
+      // Rows are added in the order of their ids, so a gap before the newest added rows cannot add
+      // some. Of the others the first is taken: a later record may need the rest.
       const auto first = std::ranges::find_if(gaps_, [&](const EditRecord& gap) {
         const GapEdit* edit = gap_of(gap.edit);
         return gap.version.seq > newest_materials_ && edit != nullptr && !edit->begins_era;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLogHeaderBytes = 32, kLogFrameHeaderBytes = 24;
 constexpr std::uint32_t kLogMagic = 0x377f0682;  // the last bit: checksums are big-endian
-constexpr std::uint32_t kFormatRepaired = 4;     // the first one with all tables
+constexpr std::uint32_t kFormatRepaired = 4;     // the first format that can be repaired
 constexpr std::array<std::size_t, 4> kPageBytesTried = {2'048, 4'096, 1'024, 8'192};
 
 /// The running checksum of the write-ahead log.

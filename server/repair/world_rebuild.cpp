@@ -150,8 +150,8 @@ StoreResult<void> WorldRebuild::find_materials() {
   report_.taken.push_back(
       std::string("meta key=") + kMaterialsKey + ": " + found->name + " with " +
       std::to_string(found->table.size()) +
-      " rows. All of base and log fits it. If the world was created with --materials, take the table "
-      "from a backup instead: repair it with --from");
+      " rows. All of base and log fits it. If the world was created with --materials, take the "
+      "table from a backup instead: repair it with --from");
   meta_[kMaterialsKey] = to_toml(found->table);
   if (found->table.has_shapes()) meta_[kShapesKey] = std::int64_t{1};
   return {};

@@ -1,5 +1,6 @@
-// WorldRebuild: fills the tables of a new world with what a damaged one still has. It writes base,
-// log, players and what else cannot be made anew; ground_rebuild.hpp makes the chunks.
+// WorldRebuild: fills the tables of a new world with the sound rows of a damaged one. It writes all
+// rows that cannot be made again from others, and the values of `meta`; GroundRebuild makes the
+// snapshots.
 // Threads: the one that owns the database.
 #pragma once
 #include <cstdint>

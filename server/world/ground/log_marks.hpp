@@ -2,8 +2,8 @@
 // world strand adds the names of their authors. Players who may not see the past may not see its
 // authors either. These bounds keep a client from delaying others:
 //   - A session has one read under way. A later request replaces the one that waits.
-//   - Its requests take effect view_interval_us apart, as its views and moments of the past. After a
-//     mark of a voxel it also waits kMarkPauseUs for each unit of its cost.
+//   - Its requests take effect view_interval_us apart, as its views and moments of the past. After
+//     a mark of a voxel it also waits kMarkPauseUs for each unit of its cost.
 //   - All sessions together have kLogMarkReadsMax reads under way, and take turns.
 // Thread: the world strand.
 #pragma once
