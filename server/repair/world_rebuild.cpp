@@ -152,6 +152,11 @@ StoreResult<void> WorldRebuild::find_materials() {
       std::to_string(found->table.size()) +
       " rows. All of base and log fits it. If the world was created with --materials, take the "
       "table from a backup instead: repair it with --from");
+  if (head_.version.seq != 0) {
+    report_.losses.push_back(
+        std::string("meta key=") + kMaterialsKey + ": materials that were added up to seq=" +
+        std::to_string(head_.version.seq) + ", and that no voxel has, are lost if there were any");
+  }
   meta_[kMaterialsKey] = to_toml(found->table);
   if (found->table.has_shapes()) meta_[kShapesKey] = std::int64_t{1};
   return {};
