@@ -1,16 +1,13 @@
 #include "server/repair/world_rebuild.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/repair/built_in_materials.hpp"
+#include "server/repair/table_folds.hpp"
 #include "server/store/build_table.hpp"
-#include "server/store/chunk_table.hpp"
-#include "server/store/claim_table.hpp"
 #include "server/store/durable_mark.hpp"
-#include "server/store/kept_records.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/segment_table.hpp"
@@ -27,56 +24,6 @@ std::uint64_t counter_in(const MetaRows& rows, const char* key) {
   const auto* value = row == rows.end() ? nullptr : std::get_if<std::int64_t>(&row->second);
   return value == nullptr || *value < 0 ? 0 : static_cast<std::uint64_t>(*value);
 }
-
-std::optional<RowFold> fold_in(const MetaRows& rows, const std::string& key) {
-  const auto row = rows.find(key);
-  const auto* bytes = row == rows.end() ? nullptr : std::get_if<Bytes>(&row->second);
-  if (bytes == nullptr || bytes->size() != 16) return std::nullopt;
-  ByteReader reader(*bytes);
-  const std::uint64_t count = reader.u64();
-  return RowFold{count, reader.u64()};
-}
-
-template <class Table, class Rows>
-StoreResult<RowFold> fold_of_rows(sql::Database& database, Rows rows) {
-  auto table = Table::open(database);
-  if (!table) return failed(table.error());
-  const auto found = rows(*table);
-  if (!found) return failed(found.error());
-  return found->fold;
-}
-
-StoreResult<RowFold> fold_of_chunks(sql::Database& database, ChunkTable::Kind kind) {
-  auto table = ChunkTable::open(database, kind);
-  if (!table) return failed(table.error());
-  return table->fold();
-}
-
-/// The tables that have a fold in `meta`, but for those of the library.
-constexpr std::array kFolded = {
-    FoundTable::base,       FoundTable::rights_record,   FoundTable::player,
-    FoundTable::name_claim, FoundTable::player_instance, FoundTable::snapshot};
-
-/// Returns the fold of a table of kFolded.
-StoreResult<RowFold> fold_of(sql::Database& database, FoundTable table) {
-  switch (table) {
-    case FoundTable::base:
-      return fold_of_chunks(database, ChunkTable::Kind::base);
-    case FoundTable::rights_record:
-      return fold_of_rows<KeptRecords>(database, [](KeptRecords& rows) { return rows.records(); });
-    case FoundTable::player:
-      return fold_of_rows<PlayerTable>(database, [](PlayerTable& rows) { return rows.players(); });
-    case FoundTable::name_claim:
-      return fold_of_rows<ClaimTable>(database, [](ClaimTable& rows) { return rows.claims(); });
-    case FoundTable::player_instance:
-      return fold_of_rows<PlayerTable>(database,
-                                       [](PlayerTable& rows) { return rows.high_waters(); });
-    default:
-      return fold_of_chunks(database, ChunkTable::Kind::snapshot);
-  }
-}
-
-std::string fold_key_of(FoundTable table) { return std::string(columns_of(table).name) + "_fold"; }
 
 }  // namespace
 
@@ -367,7 +314,7 @@ StoreResult<void> WorldRebuild::complete_tables() {
   const std::string foreign =
       "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
   if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
-  for (const FoundTable table : kFolded) {
+  for (const FoundTable table : kFoldedTables) {
     // Snapshots are made anew, and the log gives watermarks first.
     if (table == FoundTable::snapshot || table == FoundTable::player_instance) continue;
     if (auto completed = complete(table); !completed) return completed;
@@ -473,7 +420,7 @@ StoreResult<void> WorldRebuild::write_meta() {
   if (!eras_.empty()) {
     if (auto put = meta->put_log_eras(eras_); !put) return put;
   }
-  for (const FoundTable table : kFolded) {
+  for (const FoundTable table : kFoldedTables) {
     const auto fold = fold_of(*database_, table);
     if (!fold) return failed(fold.error());
     if (auto put = meta->put_fold(fold_key_of(table), *fold); !put) return put;
