@@ -1,7 +1,8 @@
 // FoundRows: writes the rows that a scan found into the tables of the new world. Of two sound rows
 // with one key the one that was found first stays; of two watermarks the higher one. A record of
 // the log that was not in a used page is doubtful: remove_misfits() deletes it if it does not fit
-// its neighbours. Threads: the one that owns the database.
+// its neighbours.
+// Threads: the one that owns the database.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -34,15 +34,15 @@ StoreResult<std::int64_t> epoch_of(sql::Database& database, Sequence seq) {
                                        std::to_string(seq)));
 }
 
-/// The records that stand for lost ones.
+/// Makes the records that stand for lost ones.
 class GapPlan {
  public:
   GapPlan(const LogEnd& head, const std::map<Sequence, LostRecord>& known, std::size_t materials,
           ClientInstance instance)
       : before_(head), known_(known), materials_(materials), instance_(instance) {}
 
-  /// Adds the gaps before a record that is there. Returns false if materials are missing for which
-  /// there is no gap.
+  /// Adds the gaps between the record of the call before and this one. Call it for all records that
+  /// are there, ascending. Returns false if the record needs more materials than gaps can add.
   bool add(const EditRecord& record) {
     const bool has_gap = before_.version.seq + 1 < record.version.seq;
     const bool has_past = before_.version.seq != 0;

@@ -168,7 +168,8 @@ StoreResult<void> PageFile::read_log() {
       committed_pages_ = size;
     }
   }
-  // A transaction that was not committed was never durable, unless its end is torn.
+  // Frames behind the last commit are of a transaction that was not committed, so they are dropped.
+  // If there are torn frames, the frame of its commit may be one of them.
   if (torn_frames_.empty()) open.clear();
   for (const auto& [page, from] : open) {
     torn_.try_emplace(page, from);

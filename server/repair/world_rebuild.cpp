@@ -239,7 +239,7 @@ StoreResult<std::uint64_t> WorldRebuild::fill_from_backup(FoundTable table) {
     case FoundTable::player_instance:
       return backup_->fill_watermarks(database);
     default:
-      return std::uint64_t{0};  // snapshots are made anew
+      return std::uint64_t{0};  // snapshots are made again
   }
 }
 
@@ -310,12 +310,13 @@ StoreResult<void> WorldRebuild::complete_names() {
 }
 
 StoreResult<void> WorldRebuild::complete_tables() {
-  // Chunks of other levels and versions that the log never had are no chunks of this world.
+  // A snapshot of another level, or of a version behind the end of the log, is damage that no
+  // checksum shows.
   const std::string foreign =
       "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
   if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
   for (const FoundTable table : kFoldedTables) {
-    // Snapshots are made anew, and the log gives watermarks first.
+    // Snapshots are made again. Watermarks are raised to the log before they are completed.
     if (table == FoundTable::snapshot || table == FoundTable::player_instance) continue;
     if (auto completed = complete(table); !completed) return completed;
   }
@@ -404,7 +405,7 @@ StoreResult<void> WorldRebuild::raise_own_marks() {
 StoreResult<void> WorldRebuild::write_meta() {
   auto meta = MetaTable::open(*database_);
   if (!meta) return failed(meta.error());
-  // Values that no row of another table has. The rest is made anew.
+  // These values follow from no other table. The values below are made again.
   for (const char* key : {kShapesKey, kTexturesKey, kGapsKey, kClockKey, kPlacesKey}) {
     const auto row = found_->meta().find(key);
     if (row != found_->meta().end()) meta_[key] = row->second;
