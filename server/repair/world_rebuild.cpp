@@ -310,8 +310,8 @@ StoreResult<void> WorldRebuild::complete_names() {
 }
 
 StoreResult<void> WorldRebuild::complete_tables() {
-  // A snapshot of another level, or of a version behind the end of the log, is damage that no
-  // checksum shows.
+  // A snapshot of another level, or of a version behind the end of the log, does not belong to this
+  // world.
   const std::string foreign =
       "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
   if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
