@@ -30,8 +30,9 @@ std::string damage_text(const OperatorActions& actions) {
   const std::uint64_t faults = actions.row_faults ? actions.row_faults() : 0;
   if (faults == 0) return "";
   return "\nDAMAGE: " + std::to_string(faults) +
-         " rows or parts of the world are damaged: the log of the server names them; stop it and run "
-         "`runstone-server repair`";
+         " rows or parts of the world are damaged: the log of the server names them. Stop the server "
+         "and run `runstone-server repair --world W --to NEW`, with --from and the folder of a backup "
+         "if there is one";
 }
 
 void show_status(const CommandCall& call) {

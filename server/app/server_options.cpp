@@ -50,6 +50,17 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   add_setting_flags(app, config_fields(), out.settings);
 }
 
+void add_progress(CLI::App& app, bool& out) {
+  app.add_flag("--progress", out, "print progress even if standard error is no terminal");
+}
+
+/// Adds an option that must be given. `refusal` returns what is wrong with a value, or nothing.
+template <class Refusal>
+void add_required(CLI::App& app, const char* name, std::string& out, const char* help,
+                  Refusal refusal) {
+  app.add_option(name, out, help)->required()->check(refusal);
+}
+
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   CLI::App* const made = app.add_subcommand(
       "import", "make a new world from a Luanti or Minecraft world, or from a file with a build");
@@ -76,9 +87,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   made->callback([kind, luanti] {
     if (kind->count() + luanti->count() == 0) throw CLI::RequiredError("KIND and SOURCE");
   });
-  made->add_option("--world", out.world, "folder of the new world")
-      ->required()
-      ->check(folder_refusal);
+  add_required(*made, "--world", out.world, "folder of the new world", folder_refusal);
   made->add_option_function<std::string>(
           "--at", [&out](const std::string& text) { out.at = *parse_voxel_pos(text); },
           "file: X,Y,Z of its lowest corner; default: 0,0,0")
@@ -104,19 +113,15 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       "--keep-all", out.keep_all,
       "keep blocks that are no whole cubes and have no shape, such as wires, as see-through "
       "cubes, and plants in water instead of the water");
-  made->add_flag("--progress", out.progress,
-                 "print progress even if standard error is no terminal");
+  add_progress(*made, out.progress);
   return made;
 }
 
 CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   CLI::App* const compact =
       app.add_subcommand("compact", "move the oldest part of a world's log into its base");
-  compact
-      ->add_option("--world", out.world,
-                   "folder of the world, or postgresql://...; no server may run it")
-      ->required()
-      ->check(place_refusal);
+  add_required(*compact, "--world", out.world,
+               "folder of the world, or postgresql://...; no server may run it", place_refusal);
   compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
       ->check(CLI::Range(0, 36'500));
@@ -125,49 +130,36 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   compact->add_flag_callback(
       "--keep-size", [&out] { out.shrink = false; },
       "leave the free space in the file, for new edits");
-  compact->add_flag("--progress", out.progress,
-                    "print progress even if standard error is no terminal");
+  add_progress(*compact, out.progress);
   return compact;
 }
 
 CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
   CLI::App* const copy = app.add_subcommand(
       "copy", "copy a world from a folder to a PostgreSQL database, or back, and verify it");
-  copy->add_option("--from", out.from, "folder of the world, or postgresql://...")
-      ->required()
-      ->check(place_refusal);
-  copy->add_option("--to", out.to, "the new folder, or postgresql://... without a world")
-      ->required()
-      ->check(place_refusal);
-  copy->add_flag("--progress", out.progress,
-                 "print progress even if standard error is no terminal");
+  add_required(*copy, "--from", out.from, "folder of the world, or postgresql://...",
+               place_refusal);
+  add_required(*copy, "--to", out.to, "the new folder, or postgresql://... without a world",
+               place_refusal);
+  add_progress(*copy, out.progress);
   return copy;
 }
 
 CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
   CLI::App* const backup = app.add_subcommand(
       "backup", "copy a world, also while a server runs it, and verify the copy");
-  backup->add_option("--world", out.world, "folder of the world")
-      ->required()
-      ->check(folder_refusal);
-  backup->add_option("--to", out.to, "the new folder; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
-  backup->add_flag("--progress", out.progress,
-                   "print progress even if standard error is no terminal");
+  add_required(*backup, "--world", out.world, "folder of the world", folder_refusal);
+  add_required(*backup, "--to", out.to, "the new folder; empty, or not there", folder_refusal);
+  add_progress(*backup, out.progress);
   return backup;
 }
 
 CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
   CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
-  restore->add_option("--from", out.from, "folder of the backup")
-      ->required()
-      ->check(folder_refusal);
-  restore->add_option("--world", out.world, "folder of the new world; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
-  restore->add_flag("--progress", out.progress,
-                    "print progress even if standard error is no terminal");
+  add_required(*restore, "--from", out.from, "folder of the backup", folder_refusal);
+  add_required(*restore, "--world", out.world, "folder of the new world; empty, or not there",
+               folder_refusal);
+  add_progress(*restore, out.progress);
   return restore;
 }
 
@@ -180,20 +172,16 @@ CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
                ? "is in a database: `runstone-server copy` it to a folder first, and back afterwards"
                : folder_refusal(place);
   };
-  repair->add_option("--world", out.world, "folder of the damaged world; no server may run it")
-      ->required()
-      ->check(refusal);
-  repair->add_option("--to", out.to, "the new folder; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
+  add_required(*repair, "--world", out.world, "folder of the damaged world; no server may run it",
+               refusal);
+  add_required(*repair, "--to", out.to, "the new folder; empty, or not there", folder_refusal);
   repair
       ->add_option("--from", out.from, "folder of an older backup, from which lost rows are taken")
       ->check(folder_refusal);
   repair->add_flag("--in-place", out.in_place,
                    "give the repaired world the name of the damaged one at the end; --to is then "
                    "the damaged one");
-  repair->add_flag("--progress", out.progress,
-                   "print progress even if standard error is no terminal");
+  add_progress(*repair, out.progress);
   return repair;
 }
 

@@ -30,7 +30,8 @@ std::vector<std::int32_t> cuts_of(std::int32_t min, std::int32_t max, std::int32
   return grid_cuts(max - min, edge, min - floor_div(min, edge) * edge);
 }
 
-/// Returns the cells of a chunk's part as numbers of the builder, or nullopt if its palette is full.
+/// Returns the cells of a chunk's part as numbers of the builder, or nullopt if its palette is
+/// full.
 std::optional<RunChunk> cells_of(const RunChunk& part, BuildBuilder& builder,
                                  std::vector<std::uint16_t>& numbers) {
   for (std::size_t i = 0; i < part.runs.size(); ++i) {

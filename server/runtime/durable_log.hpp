@@ -1,6 +1,6 @@
-// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It reports their progress
-// on the world strand. Several group commits become one report if the strand has not run in
-// between.
+// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It
+// reports their progress on the world strand. Several group commits become one report if the strand
+// has not run in between.
 // Threads: writer() as LogWriter says; the events run on the world strand.
 #pragma once
 #include <atomic>
@@ -67,8 +67,8 @@ class DurableLog {
   Sequence durable() const { return durable_.load(); }
   /// Returns how many faults the check of the rows has found. Thread: any.
   std::uint64_t row_faults() const { return check_ ? check_->faults() : 0; }
-  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full disk the edits
-  /// behind durable() are lost. It may be called again.
+  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full
+  /// disk the edits behind durable() are lost. It may be called again.
   void stop();
 
  private:

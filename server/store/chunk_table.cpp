@@ -78,6 +78,28 @@ StoreResult<RowFold> ChunkTable::read_rows(const std::function<void(const Stored
   }
 }
 
+StoreResult<std::vector<ChunkKey>> ChunkTable::keys(sql::Database& database,
+                                                    const std::optional<ChunkKey>& behind,
+                                                    std::size_t count) const {
+  // The index of the key has these columns, so no row of the table is read.
+  const std::string where = behind ? " WHERE (lod, x, y, z) > (?1, ?2, ?3, ?4)" : "";
+  auto row = database.prepare("SELECT lod, x, y, z FROM " + table_ + where +
+                              " ORDER BY lod, x, y, z LIMIT " + std::to_string(count));
+  if (!row) return failed(row.error());
+  if (behind) bind_key(*row, *behind);
+  std::vector<ChunkKey> keys;
+  for (;;) {
+    const auto more = row->step();
+    if (!more) return failed(more.error());
+    if (!*more) return keys;
+    const ChunkKey key = key_at(*row, 0);
+    const bool is_cut = key.lod != row->integer(0) || key.at.x != row->integer(1) ||
+                        key.at.y != row->integer(2) || key.at.z != row->integer(3);
+    if (is_cut) return chunk_failure(StoreError::Kind::corrupt, key, "has an impossible key");
+    keys.push_back(key);
+  }
+}
+
 StoreResult<RowFold> ChunkTable::fold() {
   return read_rows([](const StoredChunk&) {});
 }

@@ -128,6 +128,9 @@ class SqlStore final : public Store {
   Epoch epoch() const override { return state_.epoch; }
   StoreResult<std::vector<std::string>> accept_losses() override;
   StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<std::vector<ChunkKey>> chunk_keys(ChunkRows rows,
+                                                const std::optional<ChunkKey>& behind,
+                                                std::size_t count) override;
   StoreResult<void> complete_file() override;
   StoreResult<void> shrink() override;
 

@@ -32,6 +32,15 @@ void add_number(Families& out, const std::string& name, const std::string& help,
   add_metric(out, name, help, prometheus::MetricType::Untyped, std::move(metric), world);
 }
 
+std::string help_of(const std::string& counter) {
+  if (counter == "row_faults")
+    return "damaged rows of the world that the check has found. If it is not 0, the log of the "
+           "server names them: stop the server and run runstone-server repair";
+  if (counter == "chunks_failed")
+    return "chunks that could not be read. The log of the server names them";
+  return "counter of the server with this name";
+}
+
 /// Adds the histogram that the counters edit_wait_* describe. A later server may have other bounds.
 void add_waits(Families& out, const ServerStatus& server, std::string_view world) {
   prometheus::ClientMetric metric;
@@ -55,8 +64,7 @@ std::string metrics_text(std::span<const WorldStatus> worlds, const WebCounters&
     add_number(families, "up", "1 if the server answers the gateway", server.is_up ? 1 : 0,
                world.name);
     for (const auto& [name, value] : server.counters) {
-      add_number(families, name, "counter of the server with this name", static_cast<double>(value),
-                 world.name);
+      add_number(families, name, help_of(name), static_cast<double>(value), world.name);
     }
     if (server.is_up) add_waits(families, server, world.name);
   }
