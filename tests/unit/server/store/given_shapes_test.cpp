@@ -186,6 +186,39 @@ TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
   CHECK(stored_format(copy) == std::to_string(kWorldFormatOfShapes));
 }
 
+TEST_CASE("a world is of format 8 from its first pattern of plants on",
+          "[store][materials][shapes]") {
+  TempPlace place;
+  const auto format_with = [&](const std::string& name, MaterialPattern pattern) {
+    auto store = *create_world(place / name, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    const auto next = static_cast<Material>(store->meta().materials.size());
+    MaterialRow row{"plant", {9, 9, 9, 255}};
+    row.look = MaterialLook{1, 2, 3, 4, pattern};
+    EditRecord added = record_of_shapes(1, {});
+    added.edit = materials_edit({next, {row}});
+    REQUIRE(store->append({}, std::vector{added}).has_value());
+    CHECK((*store->materials())[next].look == row.look);
+    store.reset();
+    return stored_format(place / name);
+  };
+  CHECK(format_with("plain", MaterialPattern::weave) == std::to_string(kWorldFormat));
+  CHECK(format_with("blades", MaterialPattern::blades) == std::to_string(kWorldFormatOfShapes));
+  CHECK(format_with("foliage", MaterialPattern::foliage) == std::to_string(kWorldFormatOfShapes));
+
+  WorldMeta meta = sample_meta();
+  MaterialInfo flower{"flower", {9, 9, 9, 255}, Visibility::opaque, std::nullopt};
+  flower.look = MaterialLook{1, 2, 3, 4, MaterialPattern::flower};
+  REQUIRE(meta.materials.add(flower).has_value());
+  REQUIRE((*create_world(place / "created", meta))->raise_epoch().has_value());
+  {
+    const auto store = *open_world(place / "created", StoreAccess::read_write);
+    CHECK(*store->materials() == meta.materials);
+    CHECK(store->check().has_value());
+  }
+  CHECK(stored_format(place / "created") == std::to_string(kWorldFormatOfShapes));
+}
+
 TEST_CASE("a world that is created with shapes is of format 8", "[store][materials][shapes]") {
   TempPlace place;
   WorldMeta meta = sample_meta();
