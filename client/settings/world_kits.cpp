@@ -67,6 +67,17 @@ void UnsavedKits::add(std::string world, std::string line) {
   lines_.emplace_back(std::move(world), std::move(line));
 }
 
+void UnsavedKits::add_all(UnsavedKits newer) {
+  for (auto& [world, line] : newer.lines_) add(std::move(world), std::move(line));
+}
+
+std::optional<std::string> UnsavedKits::find(const std::string& world) const {
+  for (const auto& [of, line] : lines_) {
+    if (of == world) return line;
+  }
+  return std::nullopt;
+}
+
 Result<void, std::string> UnsavedKits::save(const std::string& file) {
   for (; !lines_.empty(); lines_.erase(lines_.begin())) {
     const auto& [world, line] = lines_.front();
