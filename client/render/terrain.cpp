@@ -41,6 +41,19 @@ void Terrain::set_materials(const MaterialTable& materials, ShapeTablePtr shapes
   bodies_.set_shapes(shapes ? std::move(shapes)
                             : std::make_shared<const ShapeTable>(shapes_of(materials)));
   light_codes_ = light_codes(materials);
+  surfaces_changed();
+}
+
+void Terrain::set_textures(const DrawnTexturesPtr& textures) {
+  textures_.set(textures);
+  surfaces_changed();
+}
+
+void Terrain::surfaces_changed() {
+  // Cubes cast the same shadows with every look and every picture.
+  const bool has_shapes = std::ranges::any_of(
+      bodies_.chunks(), [](const auto& entry) { return entry.second.shapes.count != 0; });
+  if (has_shapes) shadows_.all_changed();
 }
 
 void Terrain::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh,

@@ -40,7 +40,7 @@ class Terrain {
   /// Sets the materials of the world. `shapes` are their shapes; null: they are made here.
   void set_materials(const MaterialTable& materials, ShapeTablePtr shapes);
   /// Sets the textures of the world; null: none.
-  void set_textures(const DrawnTexturesPtr& textures) { textures_.set(textures); }
+  void set_textures(const DrawnTexturesPtr& textures);
   std::uint64_t texture_bytes() const { return textures_.byte_size(); }
   /// Returns TextureArray::left_out().
   std::size_t textures_left_out() const { return textures_.left_out(); }
@@ -77,6 +77,9 @@ class Terrain {
   std::uint64_t gpu_bytes() const;
 
  private:
+  /// Records that the silhouettes of plants or the holes of pictures may have changed. Cost:
+  /// O(chunks).
+  void surfaces_changed();
   /// Records that a chunk casts other shadows than before.
   void shadows_changed(const ChunkKey& key, std::int32_t edge);
   /// Sets the uniforms of a pass in its programs. `set` sets those that only this pass has.
