@@ -91,7 +91,7 @@ void GhostPainter::draw(const FrameView& view, std::span<const GhostChunk> ghost
   const auto draw = [&](const GhostChunk& ghost, const std::shared_ptr<const ChunkMesh>& mesh,
                         const glm::vec4& tint, float opaque) {
     if (!mesh || mesh->empty()) return;
-    // The form tells what is removed, too, because not everybody sees that red is red.
+    // Removed voxels also have another form, because not everybody can tell red from green.
     const float crossed = mesh == ghost.removed ? 1 : 0;
     glUniform1f(glGetUniformLocation(program_.get(), "crossed"), crossed);
     const glm::dvec3 shift{ghost.shift.x, ghost.shift.y, ghost.shift.z};

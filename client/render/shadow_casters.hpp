@@ -1,5 +1,5 @@
-// ShadowCasters: draws the depth of the chunks that cast shadows into a map of ShadowMaps. Thread: the
-// GL thread.
+// ShadowCasters: draws the depth of the chunks that cast shadows into a map of ShadowMaps. Thread:
+// the GL thread.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// TerrainBodies: the chunks and tiles on the GPU, which of them are shown in the place of others, and
-// the fades between them. Thread: the GL thread.
+// TerrainBodies: the chunks and tiles on the GPU, which of them are shown in the place of others,
+// and the fades between them. Thread: the GL thread.
 #pragma once
 #include <cstdint>
 #include <map>

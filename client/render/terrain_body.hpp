@@ -41,8 +41,8 @@ inline glm::dvec3 origin_in_world(const ChunkKey& key, std::int32_t edge) {
   return {o.x, o.y, o.z};
 }
 
-/// Coordinates of patterns, which are fixed to the world, are taken modulo this number of voxels, so
-/// that a float holds them precisely.
+/// Coordinates of patterns, which are fixed to the world, are taken modulo this number of voxels. So
+/// a float holds them precisely.
 inline constexpr std::int32_t kPatternPeriod = 8192;
 
 /// Returns the smallest corner of a chunk or tile, in voxels of its level modulo kPatternPeriod.

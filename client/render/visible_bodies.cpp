@@ -72,7 +72,8 @@ void VisibleBodies::add(VisibleBody body, unsigned variant, float gone) {
     body.variants = {variant | TerrainVariant::kFade, variant | TerrainVariant::kFade};
     body.drawn = {gone, 1};
   } else if (has_transparent && bodies_->fades().has(body.key)) {
-    // Water that is blended twice is too dark. So the finer one has the pixels that the octant lacks.
+    // Water that is blended twice is too dark. So the finer body has the pixels that the octant
+    // lacks.
     body.variants[1] |= TerrainVariant::kFade;
     body.drawn = {0, bodies_->fades().octant_gone(body.key)};
   }

@@ -1,5 +1,5 @@
-// VisibleBodies: the chunks and parts of tiles in view of a frame, from near to far, and the variants
-// of the programs that draw them. Pure.
+// VisibleBodies: the chunks and parts of tiles in view of a frame, from near to far, and the
+// variants of the programs that draw them. Thread: that of the TerrainBodies.
 #pragma once
 #include <array>
 #include <cstdint>

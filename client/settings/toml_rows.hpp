@@ -21,9 +21,9 @@ std::optional<std::string> line_of(const toml::node* node, std::size_t bytes_max
 Result<void, std::string> each_toml_row(std::string_view toml, std::string_view list,
                                         const std::function<void(const toml::table&)>& act);
 
-/// Calls `act` for each table of the list `list` in a file, in order. A file that is missing, cannot
-/// be read, has more than `bytes_max` bytes or is no TOML has none; the last one is kept as
-/// FILE.broken. Waits for the disk.
+/// Calls `act` for each table of the list `list` in a file, in order. A file that is missing, that
+/// cannot be read or that has more than `bytes_max` bytes has none. A file that is no TOML has none,
+/// too, and is renamed to FILE.broken. Waits for the disk.
 void each_row_of_file(const std::string& file, std::size_t bytes_max, std::string_view list,
                       const std::function<void(const toml::table&)>& act);
 

@@ -1,6 +1,6 @@
 // The looks that belong to a shape: the silhouettes of plants are for the planes of plants alone.
-// Programs of version 0.2.0 take a stored row with a silhouette for damage. Worlds with shapes have a
-// format that those programs refuse.
+// Programs of version 0.2.0 take a stored row with a silhouette for damage. They refuse worlds with
+// shapes, which have a later format.
 #pragma once
 #include <span>
 

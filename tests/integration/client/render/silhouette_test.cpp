@@ -1,5 +1,5 @@
-// The silhouettes of plants, in the picture and in their shadows. The cases draw off screen. If there
-// is no OpenGL context, they say so with WARN and pass.
+// The silhouettes of plants, in the picture and in their shadows. The cases draw off screen. If
+// there is no OpenGL context, they say so with WARN and pass.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>

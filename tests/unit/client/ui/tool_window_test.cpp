@@ -79,8 +79,8 @@ struct ToolWindowBench {
     return below() - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight() / 2 -
            number * row();
   }
-  /// Clicks from above to the lower border of the window until a command of this type comes. Returns
-  /// the command and keeps its place.
+  /// Clicks from above to the lower border of the window until a command of this type comes.
+  /// Returns the command and keeps its place.
   template <class T>
   std::optional<T> find(double x, double from_y) {
     for (found_y = from_y; found_y < below(); found_y += kStep) {
