@@ -131,7 +131,7 @@ struct MaterialFileRow {
 };
 /// Reads `[[material]]` tables for MaterialTable::append(). Air is not among them. Fails as
 /// parse_material_table() does, and for a generation rule: a generator makes terrain of the
-/// materials that its world was created with. Looks are those of with_look_on_shape().
+/// materials that its world was created with.
 Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_view toml,
                                                                     std::string_view file);
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "common/materials/look_on_shape.hpp"
 #include "common/materials/material_names.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/shapes/shape_faces.hpp"
@@ -345,8 +344,7 @@ Result<std::vector<MaterialFileRow>, TextError> parse_material_rows(std::string_
     if (const toml::node* rule = row.get("generate"))
       in.reject(*rule, path + ".generate", "a material that is added later cannot be terrain");
     if (in.failed()) return;
-    out.push_back(
-        {with_look_on_shape(row_of(info)), static_cast<std::uint32_t>(row.source().begin.line)});
+    out.push_back({row_of(info), static_cast<std::uint32_t>(row.source().begin.line)});
     if (const auto id = own.add(std::move(info)); !id) in.reject(row, path, id.error().what);
   });
   if (in.failed()) return in.error();

@@ -224,22 +224,6 @@ TEST_CASE("a file of added materials has rows with their lines, without air", "[
   CHECK((*rows)[1].line == 6);
 }
 
-TEST_CASE("a file of added materials gives patterns of plants to crossed planes alone",
-          "[materials]") {
-  const auto pattern_of = [](const std::string& shape) {
-    const auto rows = parse_material_rows(
-        "[[material]]\nname = \"a\"\ncolour = \"#80ff20\"\nlook = { pattern = \"flower\" }\n" +
-            shape,
-        "plants.toml");
-    REQUIRE(rows.has_value());
-    return (*rows)[0].row.look->pattern;
-  };
-  CHECK(pattern_of("shape = \"plant\"\n") == MaterialPattern::flower);
-  CHECK(pattern_of("crossed = [[0, 0, 0, 16, 16, 16]]\n") == MaterialPattern::flower);
-  CHECK(pattern_of("shape = \"slab\"\n") == MaterialPattern::none);
-  CHECK(pattern_of("") == MaterialPattern::none);
-}
-
 TEST_CASE("an error in a file of added materials names file, line and key", "[materials]") {
   const auto message = [](const std::string& toml) {
     const auto rows = parse_material_rows(toml, "wool.toml");

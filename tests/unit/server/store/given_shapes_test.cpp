@@ -1,13 +1,17 @@
 // Shapes of the materials of a world on disk: from record to record, compacted, copied, and the
 // format.
+#include <array>
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "common/sqlite/sqlite_file.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "server/store/copy_stored_world.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/sqlite_backend.hpp"
+#include "server/store/world_folder.hpp"
 #include "server/store/world_schema.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -217,6 +221,27 @@ TEST_CASE("a world is of format 8 from its first pattern of plants on",
     CHECK(store->check().has_value());
   }
   CHECK(stored_format(place / "created") == std::to_string(kWorldFormatOfShapes));
+}
+
+TEST_CASE("a file of a new world gives patterns of plants to crossed planes alone",
+          "[store][materials][shapes]") {
+  const TempFolder folder;
+  const std::string file = folder / "materials.toml";
+  std::ofstream(file) << "[[material]]\nname = \"air\"\nvisibility = \"empty\"\n";
+  const std::array<const char*, 3> shapes = {"shape = \"plant\"", "shape = \"slab\"", ""};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    std::ofstream(file, std::ios::app)
+        << "[[material]]\nname = \"m" << i
+        << "\"\ncolour = \"#80ff20\"\nlook = { pattern = \"flower\" }\n"
+        << shapes[i] << "\n";
+  }
+  const auto table = read_materials(file, "flat");
+  INFO((table ? std::string() : table.error()));
+  REQUIRE(table.has_value());
+  REQUIRE(table->size() == 4);
+  CHECK((*table)[1].look->pattern == MaterialPattern::flower);
+  CHECK((*table)[2].look->pattern == MaterialPattern::none);
+  CHECK((*table)[3].look->pattern == MaterialPattern::none);
 }
 
 TEST_CASE("a world that is created with shapes is of format 8", "[store][materials][shapes]") {
