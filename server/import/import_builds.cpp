@@ -10,7 +10,6 @@
 #include "common/builds/build_transforms.hpp"
 #include "common/formats/file_build.hpp"
 #include "common/formats/material_match.hpp"
-#include "common/materials/look_on_shape.hpp"
 #include "common/runs/reorder.hpp"
 
 namespace runstone {
@@ -124,7 +123,7 @@ Result<BuildsSurvey, std::string> survey_builds(ImportParts& parts,
     const FileBuild& build = (*part)->build;
     for (const BuildMaterial& material : build.materials) {
       if (material.row.visibility == Visibility::empty) continue;
-      const MaterialRow row = with_look_on_shape(world_row_of(material));
+      MaterialRow row = world_row_of(material);
       rows.try_emplace(row.name, row);
     }
     const VoxelBox box = moved(build.build->box(), (*part)->at, 1);
