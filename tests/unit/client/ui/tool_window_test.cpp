@@ -68,9 +68,10 @@ struct ToolWindowBench {
   static double x(double offset) { return window().Pos.x + offset; }
   /// Returns the ordinate of the lower border of the window.
   static double below() { return window().Pos.y + window().Size.y; }
-  /// Returns the ordinate of the lower border of the list of tools.
+  /// Returns the ordinate of a place below the list of tools and above the fields of the tool.
   static double below_list() {
-    return ImGui::TableFindByID(window().GetID("tools"))->OuterRect.Max.y;
+    return ImGui::TableFindByID(window().GetID("tools"))->OuterRect.Max.y +
+           ImGui::GetStyle().ItemSpacing.y;
   }
   /// Returns the distance of two rows of fields.
   static double row() { return ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y; }
