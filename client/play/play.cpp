@@ -329,6 +329,7 @@ void Play::step_author(const PlaySettings& settings, TimeUs now_us) {
   author_due_us_ = now_us + kAuthorEveryUs;
   const auto hit = settings.shows_authors ? tool_.pick() : std::nullopt;
   session_.step_voxel_author(hit ? std::optional(hit->voxel) : std::nullopt, now_us);
+  if (!session_.take_voxel_author_changed()) return;
   const VoxelAuthor::Found* const found = session_.voxel_author().found();
   std::string text;
   if (found != nullptr) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/materials/look_on_shape.hpp"
 #include "server/repair/built_in_materials.hpp"
 #include "server/repair/table_folds.hpp"
 #include "server/store/build_table.hpp"
@@ -371,7 +372,9 @@ StoreResult<void> WorldRebuild::follow_log() {
     state_.author_max = std::max(state_.author_max, author);
     state_.epoch = std::max(state_.epoch, record.version.epoch);
     if (corrects_time(record)) eras_.push_back({record.version.seq, record.time_us});
-    if (given_shapes_of(record.edit) != nullptr) meta_[kShapesKey] = std::int64_t{1};
+    const AddedMaterials* const added = added_materials_of(record.edit);
+    if (given_shapes_of(record.edit) != nullptr || (added && has_silhouettes(added->rows)))
+      meta_[kShapesKey] = std::int64_t{1};
     if (given_texture_of(record.edit) != nullptr) meta_[kTexturesKey] = std::int64_t{1};
     if (gap_of(record.edit) != nullptr) meta_[kGapsKey] = std::int64_t{1};
     return segments->add(record.version.seq, author, bounding_box(record.edit));

@@ -226,7 +226,7 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   CHECK(shape.points.back().x == 12);
   CHECK(shape.radius <= 16);
   CHECK(stroke->material == 2);
-  // Of a long stroke the end is seen.
+  // Others see the end of a stroke that is too long to be shared.
   for (std::int32_t i = 0; i < 200; ++i) {
     tool.fix_aim(FixedAim{{1 + i % 14, -1 - i % 15, 1 + i % 13}, Direction::pos_y});
     tool.drag();
