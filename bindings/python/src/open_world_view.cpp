@@ -38,10 +38,7 @@ ViewResult<std::shared_ptr<OpenWorldView>> OpenWorldView::open(
 }
 
 ViewResult<std::shared_ptr<OpenWorldView>> OpenWorldView::at(const NamedMoment& moment) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (auto is_open = check_open(); !is_open) return failure(is_open.error());
-  }
+  if (auto is_open = require_open(); !is_open) return failure(is_open.error());
   return open(place_, moment);
 }
 
@@ -55,6 +52,11 @@ void OpenWorldView::close() {
 bool OpenWorldView::is_closed() {
   const std::lock_guard lock(mutex_);
   return readers_.empty();
+}
+
+ViewResult<void> OpenWorldView::require_open() {
+  const std::lock_guard lock(mutex_);
+  return check_open();
 }
 
 ViewResult<void> OpenWorldView::add_reader() {

@@ -44,6 +44,8 @@ class OpenWorldView {
   ViewResult<std::shared_ptr<OpenWorldView>> at(const NamedMoment& moment);
   void close();
   bool is_closed();
+  /// Fails if the view is closed.
+  ViewResult<void> require_open();
 
   const std::string& place() const { return place_; }
   bool is_pinned() const { return is_pinned_; }

@@ -66,14 +66,14 @@ Result<BuildPtr> build_of(const VoxelGrid& grid) {
   return builder->finish();
 }
 
-MaterialRow row_of_material(Material id, const std::vector<PythonMaterial>& materials) {
+MaterialRow row_of_material(Material id, const std::vector<Self<PythonMaterial>>& materials) {
   MaterialRow row;
   const auto found = std::find_if(materials.begin(), materials.end(),
-                                  [id](const PythonMaterial& each) { return each.id == id; });
+                                  [id](const auto& each) { return each->id == id; });
   if (found != materials.end()) {
-    row.name = found->name;
-    row.colour = found->colour;
-    row.visibility = found->visibility;
+    row.name = (*found)->name;
+    row.colour = (*found)->colour;
+    row.visibility = (*found)->visibility;
   } else if (id == kEmpty) {
     row.name = "air";
     row.colour = {0, 0, 0, 0};
@@ -86,7 +86,7 @@ MaterialRow row_of_material(Material id, const std::vector<PythonMaterial>& mate
 }
 
 std::uint64_t write_build(const py::object& path, const py::array& array,
-                          const std::optional<std::vector<PythonMaterial>>& materials,
+                          const std::optional<std::vector<Self<PythonMaterial>>>& materials,
                           const Triple& origin, double metres_per_voxel, std::int64_t levels) {
   const auto file = py::module_::import("os").attr("fspath")(path).cast<std::string>();
   if (auto why = file_refusal(file, true); !why.empty()) refuse(why);
@@ -108,7 +108,7 @@ std::uint64_t write_build(const py::object& path, const py::array& array,
   out.info.sides = {static_cast<std::uint32_t>(grid.sides[0]),
                     static_cast<std::uint32_t>(grid.sides[1]),
                     static_cast<std::uint32_t>(grid.sides[2])};
-  const std::vector<PythonMaterial> none;
+  const std::vector<Self<PythonMaterial>> none;
   for (const Material id : out.build->palette())
     out.materials.push_back({row_of_material(id, materials ? *materials : none), {}});
   FileWriting writing;

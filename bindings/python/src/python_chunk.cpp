@@ -48,8 +48,8 @@ py::array shown(const py::dtype& type, std::size_t count, std::size_t stride, co
 }
 
 py::array runs_of(const py::object& self) {
-  const auto& chunk = self.cast<const PythonChunk&>();
-  const RunList& list = chunk.voxels.runs;
+  const auto chunk = self.cast<Self<PythonChunk>>();
+  const RunList& list = chunk->voxels.runs;
   if (list.is_narrow()) {
     return list.visit([&](auto runs) -> py::array {
       if constexpr (std::is_same_v<decltype(runs), NarrowRuns>) {
@@ -65,7 +65,7 @@ py::array runs_of(const py::object& self) {
 }
 
 py::array run_ends(const py::object& self) {
-  return self.cast<const PythonChunk&>().voxels.runs.visit([&](auto runs) {
+  return self.cast<Self<PythonChunk>>()->voxels.runs.visit([&](auto runs) {
     if constexpr (std::is_same_v<decltype(runs), NarrowRuns>) {
       return shown(py::dtype::of<std::uint16_t>(), runs.size(), sizeof(PackedRun),
                    &runs.packed()[0].end, self);
@@ -77,7 +77,7 @@ py::array run_ends(const py::object& self) {
 }
 
 py::array run_materials(const py::object& self) {
-  return self.cast<const PythonChunk&>().voxels.runs.visit([&](auto runs) {
+  return self.cast<Self<PythonChunk>>()->voxels.runs.visit([&](auto runs) {
     if constexpr (std::is_same_v<decltype(runs), NarrowRuns>) {
       return shown(py::dtype::of<Material>(), runs.size(), sizeof(PackedRun),
                    &runs.packed()[0].material, self);
@@ -88,10 +88,10 @@ py::array run_materials(const py::object& self) {
   });
 }
 
-py::bytes encoded(const PythonChunk& self, const std::string& encoding) {
+py::bytes encoded(const Self<PythonChunk>& self, const std::string& encoding) {
   for (const ChunkEncoding known :
        {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
-    if (encoding == name_of(known)) return bytes_of(encode_chunk(self.voxels, known));
+    if (encoding == name_of(known)) return bytes_of(encode_chunk(self->voxels, known));
   }
   refuse("an encoding is \"raw\", \"packed\" or \"coded\", got \"" + encoding + "\"");
 }
@@ -103,21 +103,21 @@ ChunkObject decoded(const py::bytes& bytes) {
 }
 
 std::vector<EditDescriptor> edits_of(const py::object& edits) {
-  if (py::isinstance<PythonEdit>(edits)) return {edits.cast<const PythonEdit&>().edit};
+  if (py::isinstance<PythonEdit>(edits)) return {edits.cast<Self<PythonEdit>>()->edit};
   std::vector<EditDescriptor> out;
   if (!py::isinstance<py::iterable>(edits))
     refuse("expected an edit or a sequence of edits, got " + std::string(py::repr(edits)));
   for (const py::handle edit : edits) {
     if (!py::isinstance<PythonEdit>(edit))
       refuse("expected a sequence of edits, got " + std::string(py::repr(edit)) + " in it");
-    out.push_back(edit.cast<const PythonEdit&>().edit);
+    out.push_back(edit.cast<Self<PythonEdit>>()->edit);
   }
   return out;
 }
 
-ChunkObject applied(const PythonChunk& self, const py::object& edits, const Triple& key) {
+ChunkObject applied(const Self<PythonChunk>& self, const py::object& edits, const Triple& key) {
   const std::vector<EditDescriptor> stack = edits_of(edits);
-  const auto sides = self.voxels.extent.sides();
+  const auto sides = self->voxels.extent.sides();
   Triple origin{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (key[axis] < -kWorldLimit || key[axis] > kWorldLimit)
@@ -125,7 +125,7 @@ ChunkObject applied(const PythonChunk& self, const py::object& edits, const Trip
     origin[axis] = key[axis] * sides[axis];
   }
   const VoxelPos first = position_of(origin);
-  auto out = std::make_shared<PythonChunk>(self);
+  auto out = std::make_shared<PythonChunk>(*self);
   const auto done = [&] {
     const py::gil_scoped_release released;
     thread_local ApplyScratch scratch;
@@ -138,28 +138,28 @@ ChunkObject applied(const PythonChunk& self, const py::object& edits, const Trip
 }
 
 /// Returns true if both chunks have equal voxels, in any axis order.
-bool are_equal(const PythonChunk& a, const PythonChunk& b) {
-  if (a.voxels.extent != b.voxels.extent || a.digest != b.digest) return false;
-  if (a.voxels.order == b.voxels.order) return a.voxels == b.voxels;
-  return a.voxels == reorder(b.voxels, a.voxels.order);
+bool are_equal(const Self<PythonChunk>& a, const Self<PythonChunk>& b) {
+  if (a->voxels.extent != b->voxels.extent || a->digest != b->digest) return false;
+  if (a->voxels.order == b->voxels.order) return a->voxels == b->voxels;
+  return a->voxels == reorder(b->voxels, a->voxels.order);
 }
 
-Material voxel_at(const PythonChunk& self, const Triple& at) {
-  const auto sides = self.voxels.extent.sides();
+Material voxel_at(const Self<PythonChunk>& self, const Triple& at) {
+  const auto sides = self->voxels.extent.sides();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (at[axis] < 0 || at[axis] >= sides[axis])
       throw py::index_error("the voxel " + text_of(at) + " is outside the chunk");
   }
-  return material_at(self.voxels,
+  return material_at(self->voxels,
                      {static_cast<std::uint8_t>(at[0]), static_cast<std::uint8_t>(at[1]),
                       static_cast<std::uint8_t>(at[2])});
 }
 
-std::string chunk_text(const PythonChunk& self) {
-  const Extent& e = self.voxels.extent;
+std::string chunk_text(const Self<PythonChunk>& self) {
+  const Extent& e = self->voxels.extent;
   return "<runstone.Chunk of " + std::to_string(e.x) + " x " + std::to_string(e.y) + " x " +
-         std::to_string(e.z) + " voxels, " + std::to_string(self.voxels.runs.size()) +
-         " runs in the order " + word_of(self.voxels.order) + ">";
+         std::to_string(e.z) + " voxels, " + std::to_string(self->voxels.runs.size()) +
+         " runs in the order " + word_of(self->voxels.order) + ">";
 }
 
 }  // namespace
@@ -195,7 +195,7 @@ void define_chunk(py::module_& module) {
            "Return the bytes of the chunk. The encoding is \"raw\", \"packed\" or \"coded\" "
            "(docs/protocol.md).")
       .def(
-          "to_numpy", [](const PythonChunk& self) { return array_of(self.voxels); },
+          "to_numpy", [](const Self<PythonChunk>& self) { return array_of(self->voxels); },
           "Return a new array of the voxels.")
       .def("runs", &runs_of,
            "Return the runs as an array with the fields end and material.\n\n"
@@ -210,48 +210,53 @@ void define_chunk(py::module_& module) {
                              "memory of the chunk.")
       .def_property_readonly(
           "shape",
-          [](const PythonChunk& self) {
-            const Extent& e = self.voxels.extent;
+          [](const Self<PythonChunk>& self) {
+            const Extent& e = self->voxels.extent;
             return py::make_tuple(e.x, e.y, e.z);
           },
           "The sides (x, y, z) in voxels.")
       .def_property_readonly(
-          "order", [](const PythonChunk& self) { return word_of(self.voxels.order); },
+          "order", [](const Self<PythonChunk>& self) { return word_of(self->voxels.order); },
           "The axis order of the runs, fastest axis first.")
       .def(
           "reorder",
-          [](const PythonChunk& self, const std::optional<std::string>& order) {
-            if (!order) return make_chunk(in_cheapest_order(self.voxels));
-            return make_chunk(reorder(self.voxels, axis_order_of(*order)));
+          [](const Self<PythonChunk>& self, const std::optional<std::string>& order) {
+            if (!order) return make_chunk(in_cheapest_order(self->voxels));
+            return make_chunk(reorder(self->voxels, axis_order_of(*order)));
           },
           py::arg("order") = py::none(),
           "Return the same voxels in another axis order. Without an order the one with the fewest "
           "runs is taken.")
       .def_property_readonly(
-          "run_count", [](const PythonChunk& self) { return self.voxels.runs.size(); },
+          "run_count", [](const Self<PythonChunk>& self) { return self->voxels.runs.size(); },
           "The number of runs.")
       .def_property_readonly(
-          "digest", [](const PythonChunk& self) { return to_hex(self.digest); },
+          "digest", [](const Self<PythonChunk>& self) { return to_hex(self->digest); },
           "The digest of the voxels as 32 hexadecimal digits. It does not depend on the axis "
           "order.")
       .def("apply", &applied, py::arg("edits"), py::arg("key") = Triple{0, 0, 0},
            "Return the chunk after an edit, or after a sequence of edits, the first one first.\n\n"
            "key is the place (x, y, z) of the chunk in the grid of chunks: its lowest voxel is at "
            "key times shape. Edits that miss the chunk do nothing.")
-      .def("mesh", &make_mesh, py::arg("neighbours") = py::none(),
-           py::arg("visibility") = py::none(),
-           "Return the mesh of the chunk.\n\n"
-           "neighbours are the six chunks around it or None, in the order -x, +x, -y, +y, -z, +z. "
-           "Where there is none, its voxels count as empty.\n"
-           "visibility has a number for each material: 0 empty, 1 opaque, 2 transparent. Materials "
-           "behind its end are opaque.")
+      .def(
+          "mesh",
+          [](const Self<PythonChunk>& self, const std::optional<PythonNeighbours>& neighbours,
+             const std::optional<std::vector<std::int64_t>>& visibility) {
+            return make_mesh(*self, neighbours, visibility);
+          },
+          py::arg("neighbours") = py::none(), py::arg("visibility") = py::none(),
+          "Return the mesh of the chunk.\n\n"
+          "neighbours are the six chunks around it or None, in the order -x, +x, -y, +y, -z, +z. "
+          "Where there is none, its voxels count as empty.\n"
+          "visibility has a number for each material: 0 empty, 1 opaque, 2 transparent. Materials "
+          "behind its end are opaque.")
       .def("__getitem__", &voxel_at, py::arg("at"),
            "Return the material at (x, y, z), counted from the lowest corner of the chunk.")
       .def("__eq__", &are_equal, py::is_operator())
       .def("__hash__",
-           [](const PythonChunk& self) { return py::hash(py::str(to_hex(self.digest))); })
+           [](const Self<PythonChunk>& self) { return py::hash(py::str(to_hex(self->digest))); })
       .def("__repr__", &chunk_text)
-      .def(py::pickle([](const PythonChunk& self) { return encoded(self, "packed"); },
+      .def(py::pickle([](const Self<PythonChunk>& self) { return encoded(self, "packed"); },
                       [](const py::bytes& bytes) { return decoded(bytes); }));
 }
 

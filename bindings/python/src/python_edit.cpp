@@ -1,6 +1,7 @@
 #include "python_edit.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -35,7 +36,7 @@ Mask mask_of(const py::object& mask) {
     if (word == "empty") return {MaskKind::only_empty, kEmpty};
     if (word == "solid") return {MaskKind::only_solid, kEmpty};
   } else if (py::hasattr(mask, "__index__")) {
-    return {MaskKind::only_material, material_of(mask.cast<std::int64_t>())};
+    return {MaskKind::only_material, material_of(whole_number(mask, "a mask"))};
   }
   refuse("a mask is \"everything\", \"empty\", \"solid\" or the number of a material, got " +
          std::string(py::repr(mask)));
@@ -127,56 +128,57 @@ Orientation orientation_of(std::int64_t turns, const std::string& mirror) {
   return out;
 }
 
-py::list chunk_list(const PythonEdit& self, std::int64_t edge) {
+py::list chunk_list(const Self<PythonEdit>& self, std::int64_t edge) {
   if (edge != 16 && edge != 32 && edge != 64 && edge != 128)
     refuse("the edge of a chunk of a world is 16, 32, 64 or 128, got " + std::to_string(edge));
   py::list out;
-  for (const ChunkCoord& at : touched_chunks(self.edit, static_cast<std::int32_t>(edge)))
+  for (const ChunkCoord& at : touched_chunks(self->edit, static_cast<std::int32_t>(edge)))
     out.append(py::make_tuple(at.x, at.y, at.z));
   return out;
 }
 
-std::string repr_of(const PythonEdit& self) {
-  const VoxelBox box = bounding_box(self.edit);
-  std::string text = std::string("<runstone.Edit ") + name_of(kind_of(self.edit));
+std::string repr_of(const Self<PythonEdit>& self) {
+  const VoxelBox box = bounding_box(self->edit);
+  std::string text = std::string("<runstone.Edit ") + name_of(kind_of(self->edit));
   if (box.empty()) return text + ">";
   const auto corner = [](VoxelPos at) { return text_of({at.x, at.y, at.z}); };
   text += " " + corner(box.min) + " to " + corner(box.max);
-  if (!std::holds_alternative<Paste>(self.edit.shape))
-    text += ", material " + std::to_string(self.edit.material);
+  if (!std::holds_alternative<Paste>(self->edit.shape))
+    text += ", material " + std::to_string(self->edit.material);
   return text + ">";
 }
 
 void define_base(py::module_& module) {
-  py::class_<PythonEdit>(module, "Edit",
-                         "An edit: a shape, a mask and a material. Edits never change.\n\n"
-                         "FillBox and the other classes make edits. docs/edit-log.md defines what "
-                         "each of them does.")
+  py::class_<PythonEdit, std::shared_ptr<PythonEdit>>(
+      module, "Edit",
+      "An edit: a shape, a mask and a material. Edits never change.\n\n"
+      "FillBox and the other classes make edits. docs/edit-log.md defines what "
+      "each of them does.")
       .def_property_readonly(
-          "kind", [](const PythonEdit& self) { return name_of(kind_of(self.edit)); },
+          "kind", [](const Self<PythonEdit>& self) { return name_of(kind_of(self->edit)); },
           "The kind: voxel, box, sphere, stroke or paste. Records of a log may also have kinds "
           "without voxels, such as rights.")
       .def_property_readonly(
-          "box", [](const PythonEdit& self) { return box_object(bounding_box(self.edit)); },
+          "box", [](const Self<PythonEdit>& self) { return box_object(bounding_box(self->edit)); },
           "The smallest box that holds the shape, as ((x, y, z), (x, y, z)). The second corner is "
           "not in the box. None if the edit has no place.")
       .def_property_readonly(
-          "material", [](const PythonEdit& self) { return self.edit.material; },
+          "material", [](const Self<PythonEdit>& self) { return self->edit.material; },
           "The material that is written. 0 removes voxels. 0 for a paste, whose cells have their "
           "own materials.")
       .def_property_readonly(
-          "mask", [](const PythonEdit& self) { return mask_object(self.edit.mask); },
+          "mask", [](const Self<PythonEdit>& self) { return mask_object(self->edit.mask); },
           "The voxels that may be overwritten: \"everything\", \"empty\", \"solid\" or the number "
           "of a material.")
       .def_property_readonly(
-          "voxel_count", [](const PythonEdit& self) { return counted_voxels(self.edit); },
+          "voxel_count", [](const Self<PythonEdit>& self) { return counted_voxels(self->edit); },
           "The number of voxels of the shape. For a stroke it is an upper bound.")
       .def(
           "chunks", &chunk_list, py::arg("edge"),
           "Return the chunks that the shape touches, as a list of (x, y, z) in ascending order.\n\n"
           "edge is the edge of the world's chunks: 16, 32, 64 or 128.")
       .def(
-          "encode", [](const PythonEdit& self) { return bytes_of(encode(self.edit)); },
+          "encode", [](const Self<PythonEdit>& self) { return bytes_of(encode(self->edit)); },
           "Return the canonical bytes of the edit (docs/edit-log.md).")
       .def_static(
           "decode",
@@ -188,9 +190,11 @@ void define_base(py::module_& module) {
           py::arg("bytes"),
           "Return the edit of canonical bytes. Raise ValueError for all other bytes.")
       .def(
-          "__eq__", [](const PythonEdit& a, const PythonEdit& b) { return a.edit == b.edit; },
+          "__eq__",
+          [](const Self<PythonEdit>& a, const Self<PythonEdit>& b) { return a->edit == b->edit; },
           py::is_operator())
-      .def("__hash__", [](const PythonEdit& self) { return py::hash(bytes_of(encode(self.edit))); })
+      .def("__hash__",
+           [](const Self<PythonEdit>& self) { return py::hash(bytes_of(encode(self->edit))); })
       .def("__repr__", &repr_of);
 }
 
@@ -221,14 +225,16 @@ py::object box_object(const VoxelBox& box) {
 void define_edits(py::module_& module) {
   define_base(module);
   const char* const any = "everything";
-  py::class_<PythonSetVoxel, PythonEdit>(module, "SetVoxel", "An edit of one voxel.")
+  py::class_<PythonSetVoxel, PythonEdit, std::shared_ptr<PythonSetVoxel>>(module, "SetVoxel",
+                                                                          "An edit of one voxel.")
       .def(py::init([](const Triple& at, std::int64_t material, const py::object& mask) {
              return checked<PythonSetVoxel>(
                  {SetVoxel{position_of(at)}, mask_of(mask), material_of(material)});
            }),
            py::arg("at"), py::arg("material"), py::arg("mask") = any,
            "Set the voxel at (x, y, z) to a material.");
-  py::class_<PythonFillBox, PythonEdit>(module, "FillBox", "An edit of all voxels of a box.")
+  py::class_<PythonFillBox, PythonEdit, std::shared_ptr<PythonFillBox>>(
+      module, "FillBox", "An edit of all voxels of a box.")
       .def(py::init([](const Triple& min, const Triple& max, std::int64_t material,
                        const py::object& mask) {
              return checked<PythonFillBox>(
@@ -237,7 +243,8 @@ void define_edits(py::module_& module) {
            py::arg("min"), py::arg("max"), py::arg("material"), py::arg("mask") = any,
            "Fill the box from the corner min to the corner max, which is not in the box.\n\n"
            "Each side has 1 to 4096 voxels.");
-  py::class_<PythonFillSphere, PythonEdit>(module, "FillSphere", "An edit of a sphere.")
+  py::class_<PythonFillSphere, PythonEdit, std::shared_ptr<PythonFillSphere>>(
+      module, "FillSphere", "An edit of a sphere.")
       .def(
           py::init([](const Triple& centre, std::int64_t radius, std::int64_t material,
                       const py::object& mask) {
@@ -247,15 +254,16 @@ void define_edits(py::module_& module) {
           py::arg("centre"), py::arg("radius"), py::arg("material"), py::arg("mask") = any,
           "Fill the voxels whose squared distance from the centre is at most radius**2 + radius.\n\n"
           "The radius is 0 to 512.");
-  py::class_<PythonFillStroke, PythonEdit>(module, "FillStroke",
-                                           "An edit of a sphere that is drawn along a line.")
+  py::class_<PythonFillStroke, PythonEdit, std::shared_ptr<PythonFillStroke>>(
+      module, "FillStroke", "An edit of a sphere that is drawn along a line.")
       .def(py::init(&make_stroke), py::arg("points"), py::arg("radius"), py::arg("material"),
            py::arg("mask") = any,
            "Fill the voxels whose squared distance from the line through the points is at most "
            "radius**2 + radius.\n\n"
            "There are 2 to 256 points, and consecutive ones differ by at most 1024 along each "
            "axis. The radius is 1 to 512.");
-  py::class_<PythonPaste, PythonEdit>(module, "Paste", "An edit that writes an array of cells.")
+  py::class_<PythonPaste, PythonEdit, std::shared_ptr<PythonPaste>>(
+      module, "Paste", "An edit that writes an array of cells.")
       .def(py::init([](const Triple& at, const py::array& cells,
                        const std::optional<py::array>& touched, std::int64_t turns,
                        const std::string& mirror, const py::object& mask) {
@@ -274,8 +282,8 @@ void define_edits(py::module_& module) {
            "The encoded cells may have 48 KiB.")
       .def_property_readonly(
           "orientation",
-          [](const PythonPaste& self) {
-            return std::get_if<Paste>(&self.edit.shape)->orientation.to_byte();
+          [](const Self<PythonPaste>& self) {
+            return std::get_if<Paste>(&self->edit.shape)->orientation.to_byte();
           },
           "The orientation as it is stored, 0 to 47 (docs/edit-log.md).");
 }

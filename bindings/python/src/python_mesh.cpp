@@ -123,58 +123,64 @@ std::shared_ptr<PythonMesh> make_mesh(const PythonChunk& chunk,
 
 void define_mesh(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(QuadRow, x, y, z, width, height, direction, material);
-  py::class_<PythonVertices>(module, "Vertices", "The corners and triangles of a mesh.")
-      .def_readonly("positions", &PythonVertices::positions,
-                    "Array of float32 of the shape (corners, 3): x, y, z in voxels from the lowest "
-                    "corner of the chunk. Each quad has four corners of its own.")
-      .def_readonly("normals", &PythonVertices::normals,
-                    "Array of float32 of the shape (corners, 3).")
-      .def_readonly("materials", &PythonVertices::materials,
-                    "Array of uint16: the material of each corner.")
-      .def_readonly("triangles", &PythonVertices::triangles,
-                    "Array of uint32 of the shape (triangles, 3): indices of corners, "
-                    "counter-clockwise seen from outside.");
+  py::class_<PythonVertices, std::shared_ptr<PythonVertices>>(
+      module, "Vertices", "The corners and triangles of a mesh.")
+      .def_property_readonly(
+          "positions", [](const Self<PythonVertices>& self) { return self->positions; },
+          "Array of float32 of the shape (corners, 3): x, y, z in voxels from the lowest "
+          "corner of the chunk. Each quad has four corners of its own.")
+      .def_property_readonly(
+          "normals", [](const Self<PythonVertices>& self) { return self->normals; },
+          "Array of float32 of the shape (corners, 3).")
+      .def_property_readonly(
+          "materials", [](const Self<PythonVertices>& self) { return self->materials; },
+          "Array of uint16: the material of each corner.")
+      .def_property_readonly(
+          "triangles", [](const Self<PythonVertices>& self) { return self->triangles; },
+          "Array of uint32 of the shape (triangles, 3): indices of corners, "
+          "counter-clockwise seen from outside.");
   py::class_<PythonMesh, std::shared_ptr<PythonMesh>>(
       module, "Mesh", "The visible faces of a chunk, joined to quads. Meshes never change.")
       .def("__len__",
-           [](const PythonMesh& self) {
-             return self.mesh.opaque.quads.size() + self.mesh.transparent.quads.size();
+           [](const Self<PythonMesh>& self) {
+             return self->mesh.opaque.quads.size() + self->mesh.transparent.quads.size();
            })
       .def_property_readonly(
           "quads",
-          [](const PythonMesh& self) {
-            return quad_rows({self.mesh.opaque.quads, self.mesh.transparent.quads});
+          [](const Self<PythonMesh>& self) {
+            return quad_rows({self->mesh.opaque.quads, self->mesh.transparent.quads});
           },
           "All quads as an array with the fields x, y, z (the voxel of the lowest corner), width, "
           "height (1 to 128), direction (0 to 5: -x, +x, -y, +y, -z, +z) and material.\n\n"
           "The width runs along y, z, x and the height along z, x, y for directions along x, y, z. "
           "Opaque quads come first.")
       .def_property_readonly(
-          "opaque", [](const PythonMesh& self) { return quad_rows({self.mesh.opaque.quads}); },
+          "opaque",
+          [](const Self<PythonMesh>& self) { return quad_rows({self->mesh.opaque.quads}); },
           "The opaque quads, in the form of quads.")
       .def_property_readonly(
           "transparent",
-          [](const PythonMesh& self) { return quad_rows({self.mesh.transparent.quads}); },
+          [](const Self<PythonMesh>& self) { return quad_rows({self->mesh.transparent.quads}); },
           "The transparent quads, in the form of quads.")
       .def_property_readonly(
           "opaque_packed",
           [](const py::object& self) {
-            return packed_quads(self, self.cast<const PythonMesh&>().mesh.opaque);
+            return packed_quads(self, self.cast<Self<PythonMesh>>()->mesh.opaque);
           },
           "The opaque quads as they are drawn: an array of uint64 without a copy "
           "(common/mesh/quad.hpp has the bits).")
       .def_property_readonly(
           "transparent_packed",
           [](const py::object& self) {
-            return packed_quads(self, self.cast<const PythonMesh&>().mesh.transparent);
+            return packed_quads(self, self.cast<Self<PythonMesh>>()->mesh.transparent);
           },
           "The transparent quads as they are drawn, in the form of opaque_packed.")
       .def(
-          "vertices", [](const PythonMesh& self) { return vertices_of(self.mesh); },
+          "vertices", [](const Self<PythonMesh>& self) { return vertices_of(self->mesh); },
           "Return the corners and triangles of all quads. Opaque quads come first.")
-      .def("__repr__", [](const PythonMesh& self) {
-        return "<runstone.Mesh of " + std::to_string(self.mesh.opaque.quads.size()) +
-               " opaque and " + std::to_string(self.mesh.transparent.quads.size()) +
+      .def("__repr__", [](const Self<PythonMesh>& self) {
+        return "<runstone.Mesh of " + std::to_string(self->mesh.opaque.quads.size()) +
+               " opaque and " + std::to_string(self->mesh.transparent.quads.size()) +
                " transparent quads>";
       });
 }

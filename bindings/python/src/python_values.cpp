@@ -40,6 +40,14 @@ VoxelPos position_of(const Triple& at) {
           static_cast<std::int32_t>(at[2])};
 }
 
+std::int64_t whole_number(const py::handle& number, const std::string& subject) {
+  try {
+    return number.cast<std::int64_t>();
+  } catch (const py::cast_error&) {
+    refuse(subject + " is no whole number of 64 bits: " + std::string(py::repr(number)));
+  }
+}
+
 Material material_of(std::int64_t id) {
   if (id < 0 || id >= static_cast<std::int64_t>(kMaterialCountMax))
     refuse("a material is a number from 0 to 65535, got " + std::to_string(id));

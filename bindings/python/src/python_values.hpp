@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
@@ -31,6 +34,21 @@ struct RunstoneError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The object on which Python calls a method. Unlike a reference, it refuses None and an object whose
+/// constructor did not run, with a TypeError. Requires a class that is kept by std::shared_ptr.
+template <class T>
+class Self {
+ public:
+  Self() = default;
+  explicit Self(std::shared_ptr<T> held) : held_(std::move(held)) {}
+  T& operator*() const { return *held_; }
+  T* operator->() const { return held_.get(); }
+  const std::shared_ptr<T>& pointer() const { return held_; }
+
+ private:
+  std::shared_ptr<T> held_;
+};
+
 /// Throws a ValueError with this text.
 [[noreturn]] void refuse(const std::string& text);
 /// Throws a ValueError with the text of an error. `subject` says what was read or checked. The
@@ -40,6 +58,8 @@ struct RunstoneError : std::runtime_error {
 
 /// Returns a position of three numbers, each of them in the range of a world.
 VoxelPos position_of(const Triple& at);
+/// Returns a whole number. `subject` begins the error if it is none, or has more than 64 bits.
+std::int64_t whole_number(const py::handle& number, const std::string& subject);
 Material material_of(std::int64_t id);
 std::string text_of(const Triple& numbers);
 py::tuple tuple_of(VoxelPos at);
@@ -74,3 +94,23 @@ py::array read_only(py::array array);
 MaterialArray array_of(const RunChunk& chunk);
 
 }  // namespace runstone::python
+
+template <class T>
+class pybind11::detail::type_caster<runstone::python::Self<T>> {
+  using Held = make_caster<std::shared_ptr<T>>;
+
+ public:
+  PYBIND11_TYPE_CASTER(runstone::python::Self<T>, Held::name);
+
+  bool load(handle source, bool convert) {
+    if (source.is_none()) return false;
+    Held held;
+    try {
+      if (!held.load(source, convert)) return false;
+    } catch (const cast_error&) {
+      return false;  // its constructor did not run
+    }
+    value = runstone::python::Self<T>(cast_op<std::shared_ptr<T>&>(held));
+    return true;
+  }
+};

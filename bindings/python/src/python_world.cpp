@@ -1,7 +1,9 @@
 #include "python_world.hpp"
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -93,7 +95,7 @@ NamedMoment moment_of(const py::object& moment) {
   if (py::isinstance(moment, py::module_::import("datetime").attr("datetime")))
     return AtTime{time_of(moment)};
   if (py::hasattr(moment, "__index__")) {
-    const auto sequence = moment.cast<std::int64_t>();
+    const std::int64_t sequence = whole_number(moment, "the sequence");
     if (sequence < 0) refuse("a sequence is 0 or greater, got " + std::to_string(sequence));
     return static_cast<Sequence>(sequence);
   }
@@ -119,13 +121,13 @@ AxisIndex axis_index(const py::handle& index, char axis) {
                      step = index.attr("step");
     if (start.is_none() || stop.is_none())
       wrong("needs both ends, such as 0:256, because a world has no edges");
-    if (!step.is_none() && step.cast<std::int64_t>() != 1)
+    if (!step.is_none() && whole_number(step, "a step") != 1)
       wrong("has a step; take steps in the array");
-    out.first = start.cast<std::int64_t>();
-    out.last = stop.cast<std::int64_t>();
+    out.first = whole_number(start, "the first end of a slice");
+    out.last = whole_number(stop, "the second end of a slice");
     if (out.last <= out.first) wrong("is empty: the second end must be greater than the first one");
   } else if (py::hasattr(index, "__index__")) {
-    out.first = index.cast<std::int64_t>();
+    out.first = whole_number(index, "an index");
     out.last = out.first == std::numeric_limits<std::int64_t>::max() ? out.first : out.first + 1;
     out.is_range = false;
   } else {
@@ -135,7 +137,7 @@ AxisIndex axis_index(const py::handle& index, char axis) {
   return out;
 }
 
-py::object world_voxels(OpenWorldView& self, const py::object& index) {
+py::object world_voxels(const Self<OpenWorldView>& self, const py::object& index) {
   if (!py::isinstance<py::tuple>(index) || py::len(index) != 3)
     refuse("a world is read by three indices, such as world[0:256, 0:256, 0:256]");
   const py::tuple parts = index;
@@ -158,7 +160,7 @@ py::object world_voxels(OpenWorldView& self, const py::object& index) {
   const VoxelBox box{corner(&AxisIndex::first), corner(&AxisIndex::last)};
   MaterialArray array(sides);
   const std::span<Material> out(array.mutable_data(), volume);
-  read_world([&] { return self.voxels(box, out); });
+  read_world([&] { return self->voxels(box, out); });
   py::tuple rest(3);
   for (std::size_t i = 0; i < 3; ++i)
     rest[i] = axes[i].is_range ? py::object(py::slice(py::none(), py::none(), py::none()))
@@ -166,28 +168,28 @@ py::object world_voxels(OpenWorldView& self, const py::object& index) {
   return array.attr("__getitem__")(rest);
 }
 
-std::shared_ptr<PythonChunk> world_chunk(OpenWorldView& self, const Triple& key) {
-  const std::int64_t edge = self.meta().chunk_edge;
+std::shared_ptr<PythonChunk> world_chunk(const Self<OpenWorldView>& self, const Triple& key) {
+  const std::int64_t edge = self->meta().chunk_edge;
   for (const std::int64_t number : key) {
     if (number < -kWorldLimit / edge || number >= kWorldLimit / edge)
       refuse("the chunk " + text_of(key) + " is outside the world");
   }
   const ChunkCoord at{static_cast<std::int32_t>(key[0]), static_cast<std::int32_t>(key[1]),
                       static_cast<std::int32_t>(key[2])};
-  Chunk chunk = read_world([&] { return self.chunk(at); });
+  Chunk chunk = read_world([&] { return self->chunk(at); });
   return std::make_shared<PythonChunk>(PythonChunk{std::move(chunk.voxels), chunk.digest});
 }
 
-std::vector<PythonMaterial> world_materials(OpenWorldView& self) {
-  const MaterialTable table = read_world([&] { return self.materials(); });
+std::vector<PythonMaterial> world_materials(const Self<OpenWorldView>& self) {
+  const MaterialTable table = read_world([&] { return self->materials(); });
   std::vector<PythonMaterial> out;
   for (const MaterialInfo& row : table.rows())
     out.push_back({static_cast<std::int64_t>(out.size()), row.name, row.colour, row.visibility});
   return out;
 }
 
-py::array world_visibility(OpenWorldView& self) {
-  const MaterialTable table = read_world([&] { return self.materials(); });
+py::array world_visibility(const Self<OpenWorldView>& self) {
+  const MaterialTable table = read_world([&] { return self->materials(); });
   const std::vector<Visibility> rows = visibilities(table);
   py::array_t<std::uint8_t> out(static_cast<py::ssize_t>(rows.size()));
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -195,9 +197,9 @@ py::array world_visibility(OpenWorldView& self) {
   return out;
 }
 
-py::dict world_players(OpenWorldView& self) {
+py::dict world_players(const Self<OpenWorldView>& self) {
   py::dict out;
-  for (const PlayerRow& row : read_world([&] { return self.players(); }))
+  for (const PlayerRow& row : read_world([&] { return self->players(); }))
     out[py::int_(row.author)] = row.name;
   return out;
 }
@@ -214,6 +216,7 @@ class PythonLog {
       : world_(std::move(world)), next_(first), last_(last) {}
 
   PythonRecord next() {
+    read_world([&] { return world_->require_open(); });
     if (at_ == block_.size()) {
       if (next_ > last_) throw py::stop_iteration();
       block_ = read_world([&] { return world_->records(next_, last_, kBlockRecords); });
@@ -232,17 +235,19 @@ class PythonLog {
   std::size_t at_ = 0;  // in block_
 };
 
-PythonLog world_log(const WorldObject& self, std::int64_t first, std::optional<std::int64_t> last) {
+PythonLog world_log(const Self<OpenWorldView>& self, std::int64_t first,
+                    std::optional<std::int64_t> last) {
   if (first < 1) refuse("the first sequence is 1, got " + std::to_string(first));
   if (last && *last < 0) refuse("a sequence is 0 or greater, got " + std::to_string(*last));
   const LogEnd end = read_world([&] { return self->end(); });
   const Sequence until =
       last ? std::min(static_cast<Sequence>(*last), end.version.seq) : end.version.seq;
-  return {self, static_cast<Sequence>(first), until};
+  return {self.pointer(), static_cast<Sequence>(first), until};
 }
 
 void define_material(py::module_& module) {
-  py::class_<PythonMaterial>(module, "Material", "A material: a row of a material table.")
+  py::class_<PythonMaterial, std::shared_ptr<PythonMaterial>>(
+      module, "Material", "A material: a row of a material table.")
       .def(py::init([](std::int64_t id, std::string name, const std::vector<std::int64_t>& colour,
                        const std::string& visibility) {
              PythonMaterial out{material_of(id), std::move(name), {}, visibility_of(visibility)};
@@ -261,67 +266,77 @@ void define_material(py::module_& module) {
            }),
            py::arg("id"), py::arg("name"), py::arg("colour"), py::arg("visibility") = "opaque",
            "Make a material for write_build(). The colour is sRGB with or without alpha, 0 to 255.")
-      .def_readonly("id", &PythonMaterial::id, "The number that voxels have, 0 to 65535.")
-      .def_readonly("name", &PythonMaterial::name, "The name, unique in a material table.")
+      .def_property_readonly(
+          "id", [](const Self<PythonMaterial>& self) { return self->id; },
+          "The number that voxels have, 0 to 65535.")
+      .def_property_readonly(
+          "name", [](const Self<PythonMaterial>& self) { return self->name; },
+          "The name, unique in a material table.")
       .def_property_readonly(
           "colour",
-          [](const PythonMaterial& self) {
-            const MaterialColour& c = self.colour;
+          [](const Self<PythonMaterial>& self) {
+            const MaterialColour& c = self->colour;
             return py::make_tuple(c[0], c[1], c[2], c[3]);
           },
           "Red, green, blue and alpha, 0 to 255.")
       .def_property_readonly(
-          "visibility", [](const PythonMaterial& self) { return python::word_of(self.visibility); },
+          "visibility",
+          [](const Self<PythonMaterial>& self) { return python::word_of(self->visibility); },
           "\"empty\", \"opaque\" or \"transparent\".")
-      .def("__repr__", [](const PythonMaterial& self) {
-        return "<runstone.Material " + std::to_string(self.id) + " \"" + self.name + "\">";
+      .def("__repr__", [](const Self<PythonMaterial>& self) {
+        return "<runstone.Material " + std::to_string(self->id) + " \"" + self->name + "\">";
       });
 }
 
 void define_log(py::module_& module) {
-  py::class_<PythonRecord>(module, "LogRecord", "A record of a world's log.")
+  py::class_<PythonRecord, std::shared_ptr<PythonRecord>>(module, "LogRecord",
+                                                          "A record of a world's log.")
       .def_property_readonly(
-          "sequence", [](const PythonRecord& self) { return self.record.version.seq; },
+          "sequence", [](const Self<PythonRecord>& self) { return self->record.version.seq; },
           "The place in the log, from 1, without gaps.")
       .def_property_readonly(
-          "epoch", [](const PythonRecord& self) { return self.record.version.epoch; },
+          "epoch", [](const Self<PythonRecord>& self) { return self->record.version.epoch; },
           "The number of the server's start.")
       .def_property_readonly(
-          "time", [](const PythonRecord& self) { return datetime_of(self.record.time_us); },
+          "time", [](const Self<PythonRecord>& self) { return datetime_of(self->record.time_us); },
           "The time as a datetime in UTC.")
       .def_property_readonly(
-          "time_us", [](const PythonRecord& self) { return self.record.time_us; },
+          "time_us", [](const Self<PythonRecord>& self) { return self->record.time_us; },
           "The time in microseconds since 1970, UTC.")
       .def_property_readonly(
-          "author", [](const PythonRecord& self) { return self.record.op.author; },
+          "author", [](const Self<PythonRecord>& self) { return self->record.op.author; },
           "The number of the player, a key of World.players. 0 is the server.")
       .def_property_readonly(
-          "cause", [](const PythonRecord& self) { return word_of(self.record.cause); },
+          "cause", [](const Self<PythonRecord>& self) { return word_of(self->record.cause); },
           "Why the record is in the log: player, console, rollback, undo, redo, import, rights, "
           "materials, library, clock, textures or gap.")
       .def_property_readonly(
-          "kind", [](const PythonRecord& self) { return name_of(kind_of(self.record.edit)); },
+          "kind",
+          [](const Self<PythonRecord>& self) { return name_of(kind_of(self->record.edit)); },
           "The kind of the edit: voxel, box, sphere, stroke or paste, or a kind without voxels.")
       .def_property_readonly(
           "box",
-          [](const PythonRecord& self) { return box_object(bounding_box(self.record.edit)); },
+          [](const Self<PythonRecord>& self) {
+            return box_object(bounding_box(self->record.edit));
+          },
           "The smallest box that holds the edit, as ((x, y, z), (x, y, z)), or None. The second "
           "corner is not in the box.")
       .def_property_readonly(
-          "edit", [](const PythonRecord& self) { return object_of(self.record.edit); },
+          "edit", [](const Self<PythonRecord>& self) { return object_of(self->record.edit); },
           "The edit. Chunk.apply() takes it.")
       .def_property_readonly(
-          "subject", [](const PythonRecord& self) { return self.record.subject; },
+          "subject", [](const Self<PythonRecord>& self) { return self->record.subject; },
           "The record that this one takes back or makes again, or the first record of its action. "
           "0 if there is none.")
-      .def("__repr__", [](const PythonRecord& self) {
-        return "<runstone.LogRecord " + std::to_string(self.record.version.seq) + ": " +
-               name_of(kind_of(self.record.edit)) + " by " + std::to_string(self.record.op.author) +
-               ">";
+      .def("__repr__", [](const Self<PythonRecord>& self) {
+        return "<runstone.LogRecord " + std::to_string(self->record.version.seq) + ": " +
+               name_of(kind_of(self->record.edit)) + " by " +
+               std::to_string(self->record.op.author) + ">";
       });
-  py::class_<PythonLog>(module, "Log", "An iterator over records of a log, in order.")
+  py::class_<PythonLog, std::shared_ptr<PythonLog>>(module, "Log",
+                                                    "An iterator over records of a log, in order.")
       .def("__iter__", [](py::object self) { return self; })
-      .def("__next__", &PythonLog::next);
+      .def("__next__", [](const Self<PythonLog>& self) { return self->next(); });
 }
 
 }  // namespace
@@ -346,9 +361,9 @@ void define_world(py::module_& module) {
           "Raise Error if there is no world or it cannot be read.")
       .def(
           "at",
-          [](OpenWorldView& self, const py::object& moment) {
+          [](const Self<OpenWorldView>& self, const py::object& moment) {
             const NamedMoment at = moment_of(moment);
-            return read_world([&] { return self.at(at); });
+            return read_world([&] { return self->at(at); });
           },
           py::arg("moment"),
           "Return the world of a moment, as a world of its own.\n\n"
@@ -356,20 +371,25 @@ void define_world(py::module_& module) {
           "datetime with a time zone, or a text as runstone-replay takes it: "
           "\"2026-11-21T23:05:00Z\", \"-2h30m\".\n"
           "Raise ValueError if the log does not have the moment.")
-      .def("close", &OpenWorldView::close, py::call_guard<py::gil_scoped_release>(),
-           "Close the world. Closing it twice does nothing.")
+      .def(
+          "close",
+          [](const Self<OpenWorldView>& self) {
+            const py::gil_scoped_release released;
+            self->close();
+          },
+          "Close the world. Closing it twice does nothing.")
       .def_property_readonly(
           "closed",
-          [](OpenWorldView& self) {
+          [](const Self<OpenWorldView>& self) {
             const py::gil_scoped_release released;
-            return self.is_closed();
+            return self->is_closed();
           },
           "True after close().")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__",
-           [](OpenWorldView& self, const py::args&) {
+           [](const Self<OpenWorldView>& self, const py::args&) {
              const py::gil_scoped_release released;
-             self.close();
+             self->close();
            })
       .def("__getitem__", &world_voxels, py::arg("box"),
            "Return the voxels of a box as an array of uint16 with the axes x, y, z.\n\n"
@@ -384,31 +404,34 @@ void define_world(py::module_& module) {
            "compaction took out of the log are left out.")
       .def_property_readonly(
           "sequence",
-          [](OpenWorldView& self) { return read_world([&] { return self.end(); }).version.seq; },
+          [](const Self<OpenWorldView>& self) {
+            return read_world([&] { return self->end(); }).version.seq;
+          },
           "The sequence of the last edit that the world shows, 0 before the first one.")
       .def_property_readonly(
           "time",
-          [](OpenWorldView& self) -> py::object {
-            const LogEnd end = read_world([&] { return self.end(); });
+          [](const Self<OpenWorldView>& self) -> py::object {
+            const LogEnd end = read_world([&] { return self->end(); });
             return end.version.seq == 0 ? py::none() : datetime_of(end.time_us);
           },
           "The time of that edit as a datetime in UTC, or None before the first one.")
-      .def_property_readonly("pinned", &OpenWorldView::is_pinned,
-                             "True for the world of a moment, which at() gives.")
       .def_property_readonly(
-          "place", [](const OpenWorldView& self) { return place_name(self.place()); },
+          "pinned", [](const Self<OpenWorldView>& self) { return self->is_pinned(); },
+          "True for the world of a moment, which at() gives.")
+      .def_property_readonly(
+          "place", [](const Self<OpenWorldView>& self) { return place_name(self->place()); },
           "The place that was opened. An address of a database is shown without its password.")
       .def_property_readonly(
-          "edge", [](const OpenWorldView& self) { return self.meta().chunk_edge; },
+          "edge", [](const Self<OpenWorldView>& self) { return self->meta().chunk_edge; },
           "The edge of the chunks: 16, 32, 64 or 128 voxels.")
       .def_property_readonly(
-          "world_id", [](const OpenWorldView& self) { return to_hex(self.meta().world_id); },
+          "world_id", [](const Self<OpenWorldView>& self) { return to_hex(self->meta().world_id); },
           "The identity of the world as 32 hexadecimal digits.")
       .def_property_readonly(
-          "generator", [](const OpenWorldView& self) { return self.meta().generator.name; },
+          "generator", [](const Self<OpenWorldView>& self) { return self->meta().generator.name; },
           "The name of the generator.")
       .def_property_readonly(
-          "seed", [](const OpenWorldView& self) { return self.meta().generator.seed; },
+          "seed", [](const Self<OpenWorldView>& self) { return self->meta().generator.seed; },
           "The seed of the generator.")
       .def_property_readonly("materials", &world_materials,
                              "The material table as a list. A voxel is an index of it.")
@@ -417,13 +440,13 @@ void define_world(py::module_& module) {
       .def_property_readonly("players", &world_players, "The names of the players by their number.")
       .def_property_readonly(
           "loss",
-          [](OpenWorldView& self) -> py::object {
-            const std::string text = read_world([&] { return self.loss(); });
+          [](const Self<OpenWorldView>& self) -> py::object {
+            const std::string text = read_world([&] { return self->loss(); });
             return text.empty() ? py::none() : py::object(py::str(text));
           },
           "What the world has lost of its durable edits, as a text, or None.")
-      .def("__repr__", [](const OpenWorldView& self) {
-        return "<runstone.World at " + place_name(self.place()) + ">";
+      .def("__repr__", [](const Self<OpenWorldView>& self) {
+        return "<runstone.World at " + place_name(self->place()) + ">";
       });
 }
 

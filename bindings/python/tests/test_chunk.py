@@ -180,9 +180,23 @@ def test_objects_without_content_cannot_be_made_and_used():
         with pytest.raises(TypeError):
             kind()
     empty = runstone.Chunk.__new__(runstone.Chunk)
-    for use in [lambda: empty.to_numpy(), lambda: empty.runs(), lambda: empty.mesh(), lambda: empty == empty]:
+    for use in [lambda: empty.to_numpy(), lambda: empty.runs(), lambda: empty.mesh(), lambda: empty.digest, lambda: repr(empty)]:
         with pytest.raises((TypeError, RuntimeError)):
             use()
+    for kind in [runstone.SetVoxel, runstone.Material, runstone.World, runstone.LogRecord, runstone.Log, runstone.Mesh, runstone.Vertices]:
+        blank = kind.__new__(kind)
+        for name in dir(kind):
+            member = getattr(kind, name)
+            if name.startswith("__") and name not in ("__repr__", "__len__", "__iter__", "__next__", "__enter__", "__hash__"):
+                continue
+            if isinstance(member, property):
+                with pytest.raises((TypeError, RuntimeError)):
+                    getattr(blank, name)
+            elif name not in ("__hash__", "__repr__", "__iter__", "__enter__", "decode", "open"):
+                with pytest.raises((TypeError, RuntimeError)):
+                    getattr(blank, name)(*[0] * (name in ("at", "chunk", "chunks")))
+    with pytest.raises(TypeError):
+        runstone.Chunk.to_numpy(None)
     with pytest.raises(IndexError):
         runstone.Chunk.uniform((8, 8, 8))[8, 0, 0]
     with pytest.raises(TypeError):

@@ -142,8 +142,7 @@ def test_after_close_every_use_raises(history):
             use()
     assert world.edge == EDGE and history.place in repr(world)
     with pytest.raises(ValueError, match="the world is closed"):
-        for _ in range(1000):  # what was read already may come first
-            next(log)
+        next(log)
 
 
 @pytest.mark.parametrize("index, words", [
