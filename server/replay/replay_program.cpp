@@ -27,6 +27,8 @@ std::vector<Subcommand> subcommands() {
                       declare_diff, run_diff),
       make_subcommand("copy", "write the world of a moment as a new world", declare_copy, run_copy),
       make_subcommand("export", "write the log to an .rlog file", declare_export, run_export),
+      make_subcommand("dump", "write the materials of a box of the world to an .npy file",
+                      declare_dump, run_dump),
       make_subcommand("import", "append an .rlog file to the log of a world", declare_import,
                       run_import),
       make_subcommand("play", "play the log into a live server", declare_play, run_play),
