@@ -13,6 +13,9 @@ for name in server client tools web dev; do
   [ -f "${package[0]}" ] || fail "$packages has no package runstone-$name"
   mkdir -p "$work/$name"
   dpkg-deb -R "${package[0]}" "$work/$name"
+  for file in copyright changelog.gz CHANGELOG.md.gz; do
+    [ -f "$work/$name/usr/share/doc/runstone-$name/$file" ] || fail "runstone-$name has no $file"
+  done
 done
 
 # Three tags are left out: the default address of the maintainer is no real one, and the libraries are in
@@ -47,6 +50,15 @@ expect "--world" runstone-server backup --wor
 expect "luanti" runstone-server import lu
 expect "default none" runstone-server import --palette ""
 expect "" runstone-server backup --world ""  # bash goes on with names of files
+
+# What fish offers, which knows the description of each as well.
+fish_offers() {
+  fish --no-config -c 'source $argv[1]; complete -C $argv[2]' \
+    "$work/server/usr/share/fish/vendor_completions.d/runstone-server.fish" "$1" | cut -f 1 | tr '\n' ' '
+}
+[[ " $(fish_offers 'runstone-server ')" == *" backup "* ]] || fail "fish offers no backup: $(fish_offers 'runstone-server ')"
+[[ " $(fish_offers 'runstone-server backup --')" == *" --world "* ]] || fail "fish offers no option of backup"
+[ "$(fish_offers 'runstone-server import --palette ')" = "default none " ] || fail "fish offers no values of --palette"
 
 units=("$work"/{server,web}/usr/lib/systemd/system/*.service)
 [ ${#units[@]} -eq 3 ] || fail "there are ${#units[@]} services, not 3"
