@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/command_line/help_options.hpp"
 #include "common/core/coords_text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
@@ -232,6 +233,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   // it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_flags(app, out);
+  add_help_options(app, "runstone-server");
   const CLI::App* const import = add_import(app, import_request);
   const CLI::App* const compact = add_compact(app, compact_request);
   const CLI::App* const copy = add_copy(app, copy_request);
