@@ -133,6 +133,54 @@ TEST_CASE("a mistyped address of a database is no folder", "[server_options]") {
   CHECK(parse({"restore", "--from", "a", "--world", kDatabase}).exit_code == 2);
 }
 
+TEST_CASE("a backup is a new folder, or one of a folder of backups", "[server_options]") {
+  using Action = BackupFolderRequest::Action;
+  const auto copy = parse({"backup", "--world", "w", "--to", "b"});
+  REQUIRE(copy.options);
+  REQUIRE(copy.options->backup);
+  CHECK(copy.options->backup->world == "w");
+  CHECK(copy.options->backup->to == "b");
+  CHECK_FALSE(copy.options->backup_folder);
+  const auto added = parse({"backup", "add", "--world", "w", "--folder", "b", "--keep-daily", "7"});
+  REQUIRE(added.options);
+  CHECK_FALSE(added.options->backup);
+  REQUIRE(added.options->backup_folder);
+  CHECK(added.options->backup_folder->action == Action::add);
+  CHECK(added.options->backup_folder->world == "w");
+  CHECK(added.options->backup_folder->folder == "b");
+  CHECK(added.options->backup_folder->policy == BackupPolicy{0, 7, 0});
+  const auto list = parse({"backup", "list", "--folder", "b", "--json"});
+  REQUIRE(list.options->backup_folder);
+  CHECK(list.options->backup_folder->action == Action::list);
+  CHECK(list.options->backup_folder->json);
+  const auto prune = parse({"backup", "prune", "--folder", "b", "--keep-hourly", "2", "--dry-run"});
+  REQUIRE(prune.options->backup_folder);
+  CHECK(prune.options->backup_folder->action == Action::prune);
+  CHECK(prune.options->backup_folder->is_rehearsal);
+  CHECK(prune.options->backup_folder->policy == BackupPolicy{2, 0, 0});
+  const auto verify = parse({"backup", "verify", "--folder", "b", "--backup", "20261118T110640Z"});
+  REQUIRE(verify.options->backup_folder);
+  CHECK(verify.options->backup_folder->action == Action::verify);
+  CHECK(verify.options->backup_folder->backup == "20261118T110640Z");
+  const auto restored =
+      parse({"restore", "--from", "b", "--backup", "20261118T110640Z", "--world", "w"});
+  REQUIRE(restored.options->restore);
+  CHECK(restored.options->restore->backup == "20261118T110640Z");
+  for (const std::vector<const char*>& line : std::vector<std::vector<const char*>>{
+           {"backup"},
+           {"backup", "--world", "w"},
+           {"backup", "--to", "b"},
+           {"backup", "add", "--folder", "b"},
+           {"backup", "add", "--world", "w"},
+           {"backup", "list"},
+           {"backup", "--world", "w", "list", "--folder", "b"},
+           {"backup", "prune", "--folder", "b", "--keep-daily", "-1"},
+           {"backup", "list", "--folder", "b", "prune", "--folder", "b"}}) {
+    CAPTURE(line);
+    CHECK(parse(line).exit_code == 2);
+  }
+}
+
 TEST_CASE("losses are accepted on request", "[server_options]") {
   CHECK_FALSE(parse({"--world", "a"}).options->accept_losses);
   CHECK(parse({"--world", "a", "--accept-losses"}).options->accept_losses);
