@@ -94,9 +94,20 @@ CLI::App* add_backup(CLI::App& app, BackupOptions& out) {
   return backup;
 }
 
+CLI::App* add_pack(CLI::App& app, PackRequest& out) {
+  CLI::App* const pack = app.add_subcommand(
+      "pack", "make one file that holds all of a world, also while a server runs it");
+  pack->add_option("WORLD", out.world, "folder of the world")->required()->check(folder_refusal);
+  pack->add_option("FILE", out.file, "the new file, such as valley.tar")->required();
+  pack->add_flag("--progress", out.progress, kProgressHelp);
+  return pack;
+}
+
 CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
   CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
-  restore->add_option("--from", out.from, "folder of the backup, or folder that `backup add` fills")
+  restore
+      ->add_option("--from", out.from,
+                   "folder of the backup, folder that `backup add` fills, or file of `pack`")
       ->required()
       ->check(folder_refusal);
   restore->add_option("--backup", out.backup,

@@ -1,5 +1,5 @@
-// runstone-server: runs a world, imports, compacts, backs up, restores or repairs one, or gives a
-// running server a command.
+// runstone-server: runs a world, imports, compacts, backs up, packs, restores or repairs one, or
+// gives a running server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
 // while running, 2 could not start, 3 control: the command is in force and not on disk yet
 // (docs/server-reference.md).
@@ -315,6 +315,7 @@ int server_program(int argc, char** argv) {
   if (options->backup_folder)
     return exit_code_of(run_backup_folder(*options->backup_folder, now_us, std::cout));
   if (options->backup) return exit_code_of(back_up(*options->backup, now_us, std::cout));
+  if (options->pack) return exit_code_of(pack_world(*options->pack, now_us, std::cout));
   if (options->restore) return exit_code_of(restore(*options->restore, now_us, std::cout));
   if (options->repair) return exit_code_of(repair(*options->repair, now_us, std::cout));
   if (options->control) {

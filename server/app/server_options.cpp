@@ -197,7 +197,7 @@ void print_unknown_argument(const CLI::App& app) {
   const std::string argument = app.remaining(true).front();
   std::cerr
       << "runstone-server: \"" << argument
-      << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
+      << "\" is no subcommand (import, compact, copy, backup, pack, restore, repair, control) and no flag"
       << nearest_flag(*innermost, argument) << "; --help lists the flags\n";
 }
 
@@ -209,6 +209,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   CompactRequest compact_request;
   CopyRequest copy_request;
   BackupOptions backup_options;
+  PackRequest pack_request;
   RestoreRequest restore_request;
   RepairRequest repair_request;
   ControlRequest control_request;
@@ -221,6 +222,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   const CLI::App* const compact = add_compact(app, compact_request);
   const CLI::App* const copy = add_copy(app, copy_request);
   const CLI::App* const backup = add_backup(app, backup_options);
+  const CLI::App* const pack = add_pack(app, pack_request);
   const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const repair = add_repair(app, repair_request);
   const CLI::App* const control = add_control(app, control_request);
@@ -240,6 +242,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
     out.backup = backup_options.copy;
     out.backup_folder = backup_options.folder;
   }
+  if (pack->parsed()) out.pack = pack_request;
   if (restore->parsed()) out.restore = restore_request;
   if (repair->parsed()) out.repair = repair_request;
   if (control->parsed()) {

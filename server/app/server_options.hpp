@@ -9,6 +9,7 @@
 #include "server/admin/copy_program.hpp"
 #include "server/backup/backup_program.hpp"
 #include "server/backup/folder_program.hpp"
+#include "server/backup/world_pack.hpp"
 #include "server/import/import_program.hpp"
 #include "server/repair/repair_program.hpp"
 #include "server/store/world_folder.hpp"
@@ -27,6 +28,7 @@ struct ServerOptions {
   std::optional<CopyRequest> copy;                   // the copy subcommand
   std::optional<BackupRequest> backup;               // the backup subcommand without one of its own
   std::optional<BackupFolderRequest> backup_folder;  // backup add, list, prune, verify
+  std::optional<PackRequest> pack;                   // the pack subcommand
   std::optional<RestoreRequest> restore;             // the restore subcommand
   std::optional<RepairRequest> repair;               // the repair subcommand
   bool console = false;          // read commands from standard input even if it is no terminal

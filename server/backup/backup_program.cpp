@@ -11,6 +11,7 @@
 #include "server/backup/copy_text.hpp"
 #include "server/backup/folder_backup.hpp"
 #include "server/backup/world_backup.hpp"
+#include "server/backup/world_pack.hpp"
 
 namespace runstone {
 namespace {
@@ -53,6 +54,19 @@ Result<WorldBackup, std::string> copy_of_backup(const RestoreRequest& request, T
   return backup;
 }
 
+/// Makes the new folder `request.world` of a pack.
+Result<WorldBackup, std::string> copy_of_pack(const RestoreRequest& request, TimeUs now_us,
+                                              std::ostream& out) {
+  if (!request.backup.empty())
+    return failure(request.from + ": is a pack of one world, so no backup of it can be chosen");
+  auto folder = NewFolder::make(request.world, out);
+  if (!folder) return failure(folder.error());
+  auto backup = unpack_world(request.from, folder->path(), now_us);
+  if (!backup) return backup;
+  if (auto finished = folder->finish("world.sqlite"); !finished) return failure(finished.error());
+  return backup;
+}
+
 /// Makes the new folder `request.world` of a folder that is a copy of a world.
 Result<WorldBackup, std::string> copy_of_folder(const RestoreRequest& request, TimeUs now_us,
                                                 std::ostream& out) {
@@ -81,8 +95,11 @@ Result<void, std::string> back_up(const BackupRequest& request, TimeUs now_us, s
 }
 
 Result<void, std::string> restore(const RestoreRequest& request, TimeUs now_us, std::ostream& out) {
-  const auto backup = BackupFolder::is_one(request.from) ? copy_of_backup(request, now_us, out)
-                                                         : copy_of_folder(request, now_us, out);
+  std::error_code ignored;
+  const auto backup = std::filesystem::is_regular_file(request.from, ignored)
+                          ? copy_of_pack(request, now_us, out)
+                      : BackupFolder::is_one(request.from) ? copy_of_backup(request, now_us, out)
+                                                           : copy_of_folder(request, now_us, out);
   if (!backup) return failure(backup.error());
   out << "restored    " << request.from << " to " << request.world << '\n';
   print_copy(*backup, out);

@@ -15,7 +15,7 @@ struct BackupRequest {
 };
 
 struct RestoreRequest {
-  std::string from;   // folder of a backup, or of several backups (BackupFolder)
+  std::string from;   // folder of a backup or of several ones (BackupFolder), or a pack
   std::string world;  // the new folder
   bool progress = false;
   std::string backup = {};  // of a folder of several backups, by name; empty: the newest one

@@ -2,42 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <system_error>
 #include <utility>
 
 #include "common/os/file_writer.hpp"
 #include "common/os/new_folder.hpp"
+#include "server/backup/file_blocks.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::string_view kCopyLock = "partial.lock";
 constexpr int kBlocksAtOnce = 16;  // between two rests
-
-using StoreBlock = std::function<Result<BlockHash, std::string>(ByteView)>;
-
-/// Cuts a file into blocks, and passes them to `store`.
-Result<BackedUpFile, std::string> store_file(const std::filesystem::path& path,
-                                             const StoreBlock& store) {
-  BackedUpFile file;
-  file.name = path.filename().string();
-  std::ifstream in(path, std::ios::binary);
-  Bytes block(kBlockBytes);
-  while (in) {
-    in.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()));
-    const auto count = static_cast<std::size_t>(in.gcount());
-    if (count == 0) break;
-    const auto hash = store(ByteView(block).first(count));
-    if (!hash) return failure(hash.error());
-    file.blocks.push_back(*hash);
-    file.bytes += count;
-  }
-  if (!in.eof()) return failure(path.string() + ": cannot be read");
-  return file;
-}
 
 /// Returns the bytes of the next block of a file of which `left` bytes are left.
 std::size_t bytes_of_block(std::uint64_t left) {
@@ -85,7 +59,7 @@ Result<AddedBackup, std::string> add_backup(const std::string& from, BackupFolde
   added.manifest.seq = added.copy.moment.seq;
   int stored_blocks = 0;
   auto part_begun = begun;
-  const StoreBlock store = [&](ByteView block) -> Result<BlockHash, std::string> {
+  const TakeBlock store = [&](ByteView block) -> Result<BlockHash, std::string> {
     const auto stored = into.blocks().put(block);
     if (!stored) return failure(stored.error());
     added.manifest.new_bytes += stored->written;
@@ -95,15 +69,13 @@ Result<AddedBackup, std::string> add_backup(const std::string& from, BackupFolde
     }
     return stored->hash;
   };
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder->path(), error)) {
-    if (entry.path().filename() == kCopyLock) continue;
-    auto file = store_file(entry.path(), store);
+  const auto files = files_of_copy(folder->path());
+  if (!files) return failure(files.error());
+  for (const auto& path : *files) {
+    auto file = cut_file(path, store);
     if (!file) return failure(file.error());
     added.manifest.files.push_back(*std::move(file));
   }
-  if (error) return failure(folder->path() + ": cannot be read: " + error.message());
-  std::ranges::sort(added.manifest.files, {}, &BackedUpFile::name);
   if (auto made = into.add(added.manifest); !made) return failure(made.error());
   added.store_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return added;

@@ -93,7 +93,7 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
   CHECK(parsed.exit_code == 2);
   CHECK(
       text.str() ==
-      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag; "
+      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, pack, restore, repair, control) and no flag; "
       "--help lists the flags\n");
 }
 
@@ -166,7 +166,13 @@ TEST_CASE("a backup is a new folder, or one of a folder of backups", "[server_op
       parse({"restore", "--from", "b", "--backup", "20261118T110640Z", "--world", "w"});
   REQUIRE(restored.options->restore);
   CHECK(restored.options->restore->backup == "20261118T110640Z");
+  const auto packed = parse({"pack", "w", "w.tar"});
+  REQUIRE(packed.options->pack);
+  CHECK(packed.options->pack->world == "w");
+  CHECK(packed.options->pack->file == "w.tar");
   for (const std::vector<const char*>& line : std::vector<std::vector<const char*>>{
+           {"pack", "w"},
+           {"pack", "postgresql://h/d", "w.tar"},
            {"backup"},
            {"backup", "--world", "w"},
            {"backup", "--to", "b"},
