@@ -7,6 +7,7 @@
 #include "common/names/folded_name.hpp"
 #include "common/rights/restriction_text.hpp"
 #include "server/admin/address_range_text.hpp"
+#include "server/admin/amount_text.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/rights_change_text.hpp"
 #include "server/admin/rights_lists.hpp"
@@ -18,13 +19,6 @@ namespace {
 constexpr const char* kAddressWord = "address";
 constexpr const char* kWidened = " [a single IPv6 address means its /64]";
 
-/// Returns a count of bytes in the largest unit of which there is at least one.
-std::string memory_text(std::size_t bytes) {
-  if (bytes < 1024) return std::to_string(bytes) + " bytes";
-  if (bytes < 1024 * 1024) return std::to_string(bytes / 1024) + " KiB";
-  return std::to_string(bytes / (1024 * 1024)) + " MiB";
-}
-
 /// Returns a line with what to do about damaged rows, or an empty text if none is known.
 std::string damage_text(const OperatorActions& actions) {
   const std::uint64_t faults = actions.row_faults ? actions.row_faults() : 0;
@@ -35,20 +29,26 @@ std::string damage_text(const OperatorActions& actions) {
          "if there is one";
 }
 
+/// Returns a line about the backups that the server makes by itself, or an empty text.
+std::string backups_text(const OperatorActions& actions) {
+  return actions.backup_state ? "\n" + backup_state_text(actions.backup_state()) : "";
+}
+
 void show_status(const CommandCall& call) {
   const WorldServer& world = call.world();
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer(
-      "sessions " + std::to_string(world.session_count()) + ", edits " +
-      std::to_string(world.order().head()) + " (on disk " +
-      std::to_string(world.order().durable()) + "), since the start " +
-      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
-      " (" + memory_text(memory.voxels) + "), waiting edits " +
-      memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
-      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-      std::to_string(call.services.rollback.running()) + damage_text(call.services.actions));
+  call.answer("sessions " + std::to_string(world.session_count()) + ", edits " +
+              std::to_string(world.order().head()) + " (on disk " +
+              std::to_string(world.order().durable()) + "), since the start " +
+              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+              " rejected\nchunks in memory " +
+              std::to_string(world.order().chunks().resident_count()) + " (" +
+              memory_text(memory.voxels) + "), waiting edits " +
+              memory_text(memory.stacked + memory.queued) + ", damaged chunks " +
+              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+              std::to_string(call.services.rollback.running()) +
+              damage_text(call.services.actions) + backups_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

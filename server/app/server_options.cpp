@@ -5,13 +5,13 @@
 #include <iostream>
 #include <map>
 #include <string_view>
-#include <vector>
 
 #include "common/command_line/help_options.hpp"
 #include "common/core/coords_text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
+#include "server/app/backup_options.hpp"
 #include "server/convert/model_options.hpp"
 #include "server/store/place_rule.hpp"
 #include "server/store/world_schema.hpp"
@@ -146,24 +146,6 @@ CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
   return copy;
 }
 
-CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
-  CLI::App* const backup = app.add_subcommand(
-      "backup", "copy a world, also while a server runs it, and verify the copy");
-  add_required(*backup, "--world", out.world, "folder of the world", folder_refusal);
-  add_required(*backup, "--to", out.to, "the new folder; empty, or not there", folder_refusal);
-  add_progress(*backup, out.progress);
-  return backup;
-}
-
-CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
-  CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
-  add_required(*restore, "--from", out.from, "folder of the backup", folder_refusal);
-  add_required(*restore, "--world", out.world, "folder of the new world; empty, or not there",
-               folder_refusal);
-  add_progress(*restore, out.progress);
-  return restore;
-}
-
 CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
   CLI::App* const repair =
       app.add_subcommand("repair", "make a sound world of a damaged one, and say what is gone");
@@ -208,13 +190,13 @@ int arguments_before_command(int argc, const char* const* argv) {
 /// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
 /// order.
 void print_unknown_argument(const CLI::App& app) {
-  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  const CLI::App* innermost = &app;
+  while (!innermost->get_subcommands().empty()) innermost = innermost->get_subcommands().front();
   const std::string argument = app.remaining(true).front();
   std::cerr
       << "runstone-server: \"" << argument
-      << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
-      << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
-      << "; --help lists the flags\n";
+      << "\" is no subcommand (import, compact, copy, backup, pack, restore, repair, control) and no flag"
+      << nearest_flag(*innermost, argument) << "; --help lists the flags\n";
 }
 
 }  // namespace
@@ -224,7 +206,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   ImportRequest import_request;
   CompactRequest compact_request;
   CopyRequest copy_request;
-  BackupRequest backup_request;
+  BackupOptions backup_options;
+  PackRequest pack_request;
   RestoreRequest restore_request;
   RepairRequest repair_request;
   ControlRequest control_request;
@@ -237,7 +220,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   const CLI::App* const import = add_import(app, import_request);
   const CLI::App* const compact = add_compact(app, compact_request);
   const CLI::App* const copy = add_copy(app, copy_request);
-  const CLI::App* const backup = add_backup(app, backup_request);
+  const CLI::App* const backup = add_backup(app, backup_options);
+  const CLI::App* const pack = add_pack(app, pack_request);
   const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const repair = add_repair(app, repair_request);
   const CLI::App* const control = add_control(app, control_request);
@@ -253,7 +237,11 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   if (import->parsed()) out.import = import_request;
   if (compact->parsed()) out.compact = compact_request;
   if (copy->parsed()) out.copy = copy_request;
-  if (backup->parsed()) out.backup = backup_request;
+  if (backup->parsed()) {
+    out.backup = backup_options.copy;
+    out.backup_folder = backup_options.folder;
+  }
+  if (pack->parsed()) out.pack = pack_request;
   if (restore->parsed()) out.restore = restore_request;
   if (repair->parsed()) out.repair = repair_request;
   if (control->parsed()) {

@@ -337,8 +337,9 @@ void ServerCore::log_counters() {
 }
 
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
-  const RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000,
-                                memory_bytes, dropped_log_lines(), log_ ? log_->row_faults() : 0};
+  RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000, memory_bytes,
+                          dropped_log_lines(), log_ ? log_->row_faults() : 0};
+  if (actions_.backup_state) runtime.backups = actions_.backup_state();
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
 }
 
