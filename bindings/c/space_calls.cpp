@@ -103,7 +103,10 @@ runstone_status runstone_space_set(runstone_space* space, runstone_pos at,
 
 runstone_status runstone_space_set_solid(runstone_space* space, const uint8_t* solid, size_t count,
                                          uint32_t others) {
-  return answer([&] { live(space, "space").solid = solid_set(solid, count, others); });
+  return answer([&] {
+    runstone_space& changed = live(space, "space");
+    changed.solid = solid_set(solid, count, others);
+  });
 }
 
 runstone_status runstone_space_sweep(const runstone_space* space, runstone_body body,

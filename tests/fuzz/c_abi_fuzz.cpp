@@ -183,8 +183,8 @@ class CallScript {
         std::vector<std::uint16_t> voxels;
         for (const std::uint8_t byte : in_.take(16)) voxels.push_back(byte % 4);
         const std::size_t volume = x <= 32 && y <= 32 ? std::size_t{x} * y * x : 1;
-        while (voxels.size() < volume) voxels.push_back(voxels[voxels.size() / 3]);
         if (voxels.empty()) voxels.push_back(0);
+        while (voxels.size() < volume) voxels.push_back(voxels[voxels.size() / 3]);
         const std::uint32_t order = in_.byte() % 7U;
         return renew_chunk([&](auto** out) {
           return runstone_chunk_create_from_array(x, y, x, order, voxels.data(), voxels.size(),
