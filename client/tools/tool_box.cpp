@@ -639,7 +639,8 @@ void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
   for (const BuildPaste& paste : made.pastes)
     builds.push_back({paste.build, paste.at, false, paste.is_difference});
   // Voxels that are only copied are shown where they are.
-  if (made.copied && made.empty()) builds.push_back({made.copied->build, made.copied->at});
+  previews_copy_ = made.copied && made.empty();
+  if (previews_copy_) builds.push_back({made.copied->build, made.copied->at});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {
     const auto* const fill = std::get_if<FillBox>(&edit.shape);

@@ -143,6 +143,8 @@ class ToolBox {
   const BuildPreview& build_preview() const { return build_preview_; }
   /// Returns the ghosts of both.
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
+  /// Returns true if the preview shows voxels that the next click only copies.
+  bool previews_copy() const { return previews_copy_; }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
@@ -210,6 +212,7 @@ class ToolBox {
   EditPreview preview_;
   BuildPreview build_preview_;
   std::vector<GhostChunk> ghosts_;
+  bool previews_copy_ = false;
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   ReplicaMark planned_on_;      // the replica when the preview was last planned

@@ -1,6 +1,5 @@
 #include "client/ui/tool_window.hpp"
 
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "client/tools/build_words.hpp"
+#include "client/tools/preview_words.hpp"
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
 #include "common/core/text.hpp"
@@ -126,13 +126,7 @@ void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
   } else if (!preview.is_complete() || !builds.is_complete()) {
     ImGui::TextDisabled("...");
   } else {
-    const std::uint64_t set = preview.placed_voxels() + builds.placed_voxels();
-    const std::uint64_t removed = preview.removed_voxels() + builds.removed_voxels();
-    // Builds are not compared with the world: unless they are differences, their numbers are upper
-    // bounds.
-    ImGui::TextUnformatted(fmt::format("sets {}{} and removes {} voxels",
-                                       builds.is_exact() ? "" : "up to ", set, removed)
-                               .c_str());
+    ImGui::TextUnformatted(preview_words(box).c_str());
   }
   if (builds.cell_voxels() > 1)
     ImGui::TextDisabled("shown in cells of %d voxels", int{builds.cell_voxels()});
