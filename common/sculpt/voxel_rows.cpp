@@ -174,10 +174,7 @@ Result<PlacedBuild> build_of_voxels(const VoxelRows& rows, std::int32_t edge,
   if (std::max({sides.x, sides.y, sides.z}) > kBuildSideMax)
     return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   const ChunkCoord first = chunk_of(box.min, edge);
-  const VoxelPos origin = origin_of(first, edge);
-  auto out = BuildBuilder::of({grid_cuts(sides.x, edge, box.min.x - origin.x),
-                               grid_cuts(sides.y, edge, box.min.y - origin.y),
-                               grid_cuts(sides.z, edge, box.min.z - origin.z)});
+  auto out = BuildBuilder::of(world_cuts(box, edge));
   if (!out) return failure(out.error());
   for (const auto& [at, stretches] : by_chunk(rows, edge)) {
     auto chunk = chunk_at(at);
