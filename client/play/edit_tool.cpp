@@ -38,6 +38,7 @@ const char* name_of(SymmetryKind kind) {
 
 /// Returns what an action does, as a verb.
 std::string name_of(const ToolAction& action) {
+  if (action.pattern) return "mix";
   if (clears_at_end(action)) return "move";
   if (action.edits.empty() || std::holds_alternative<Paste>(action.edits.front().shape))
     return "paste";
@@ -156,6 +157,12 @@ bool EditTool::stop_building() {
   if (sender_ == nullptr) return false;
   sender_->cancel();
   return true;
+}
+
+bool EditTool::has_built() const {
+  if (sender_ == nullptr) return false;
+  const ActionProgress& progress = sender_->progress();
+  return sender_->under_way() > 0 || progress.edits_done > 0;
 }
 
 std::string EditTool::build_text() const {

@@ -1,12 +1,25 @@
 #include "client/tools/mix_tool.hpp"
 
+#include <cstdint>
+#include <utility>
+
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
+#include "client/tools/pattern_work.hpp"
 #include "client/tools/typed_pattern.hpp"
 #include "common/patterns/replaced.hpp"
 
 namespace runstone {
 namespace {
+
+/// The voxels of a box that is worked out at the click, which takes some 15 ms. A larger one is worked
+/// out in steps.
+constexpr std::uint64_t kAtOnceVoxelsMax = std::uint64_t{1} << 18;
+
+bool is_worked_out_at_once(const VoxelPos& sides) {
+  const auto area = static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.z);
+  return area <= kAtOnceVoxelsMax && area * static_cast<std::uint64_t>(sides.y) <= kAtOnceVoxelsMax;
+}
 
 class MixTool final : public Tool {
  public:
@@ -21,6 +34,7 @@ class MixTool final : public Tool {
   std::string_view place_name(std::size_t) const override {
     return is_selected() ? "any place" : "corner";
   }
+  bool spans_box() const override { return !is_selected(); }
   bool is_costly() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 
@@ -41,14 +55,17 @@ ToolEdits MixTool::plan(const ToolInput& input) const {
   if (!typed) return failure(typed.error());
   if (!typed->mix) return failure("type a pattern first, such as 70% stone, 30% gravel");
   BoundMix mix = input.button == ToolButton::clear ? BoundMix::of(kEmpty) : *std::move(typed->mix);
+  if (!is_worked_out_at_once(sides)) {
+    auto work = pattern_work(input.replica, box, std::move(mix), std::move(typed->filter));
+    if (!work) return failure(work.error());
+    ToolAction out;
+    out.pattern = *std::move(work);
+    return out;
+  }
   const auto placed =
       replaced(box, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
                [&](ChunkCoord at) { return input.replica.shown({0, at}); });
-  if (!placed) {
-    return failure(
-        std::string(placed.error().what) +
-        (placed.error().code == ErrorCode::limit_exceeded ? ": choose a smaller box" : ""));
-  }
+  if (!placed) return failure(pattern_failure(placed.error()));
   if (!placed->build) return failure("the pattern changes no voxel there");
   return paste_of_build({placed->build, placed->at, {}, EmptyCells::pasted, true},
                         input.replica.edit_limits());

@@ -5,6 +5,7 @@
 namespace runstone {
 
 std::string preview_words(const ToolBox& box) {
+  if (box.is_preview_too_large()) return "too large for a preview: a click makes all of it";
   const EditPreview& edits = box.preview();
   const BuildPreview& builds = box.build_preview();
   const std::uint64_t set = edits.placed_voxels() + builds.placed_voxels();

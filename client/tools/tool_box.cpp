@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -591,6 +592,7 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
   }
   if (is_plan_due_ && (!is_costly || ++rested_calls_ > kRestCalls))
     plan_preview(replica, aim, button, target);
+  step_pattern(chunks_max == std::numeric_limits<std::size_t>::max());
   const bool has_edits_changed = preview_.step(replica, chunks_max);
   // A cube of 64 cells is as much work as several chunks.
   const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
@@ -634,7 +636,19 @@ ToolBox::ReplicaMark ToolBox::mark_of(const Replica& replica) {
           replica.confirmed_count(), replica.local_edits().bytes()};
 }
 
+void ToolBox::step_pattern(bool is_whole) {
+  const auto made = pattern_.step(mirrored_, is_whole);
+  if (!made) return;
+  if (made->empty() && !pattern_.is_too_large())
+    preview_refusal_ = "the pattern changes no voxel there";
+  std::vector<ShownBuild> builds;
+  for (const BuildPaste& paste : *made)
+    builds.push_back({paste.build, paste.at, false, paste.is_difference});
+  build_preview_.set(std::move(builds));
+}
+
 void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
+  pattern_.set(std::move(made.pattern));
   std::vector<ShownBuild> builds;
   for (const BuildPaste& paste : made.pastes)
     builds.push_back({paste.build, paste.at, false, paste.is_difference});

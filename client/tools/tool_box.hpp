@@ -15,6 +15,7 @@
 #include "client/tools/build_preview.hpp"
 #include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
+#include "client/tools/pattern_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
 #include "common/builds/rotated_build.hpp"
@@ -133,14 +134,21 @@ class ToolBox {
   bool is_preview_shown() const { return is_preview_shown_; }
   /// Makes the preview of the next click: at most `chunks_max` chunks in this call. Returns true if
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
-  /// aim, the tool or the chunks changed, and EditPreview::step(). The plan of a costly tool
-  /// (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls calls, and
-  /// not again while it is refused and the replica is as it was.
+  /// aim, the tool or the chunks changed, EditPreview::step(), and a step of a pattern that is too
+  /// large to be worked out at once (all of it if chunks_max is the largest number). The plan of a
+  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls
+  /// calls, and not again while it is refused and the replica is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.
   const EditPreview& preview() const { return preview_; }
   const BuildPreview& build_preview() const { return build_preview_; }
+  /// Returns true if the preview of the next click shows all of it.
+  bool is_preview_complete() const {
+    return preview_.is_complete() && build_preview_.is_complete() && !pattern_.is_under_way();
+  }
+  /// Returns true if the next click makes more than a preview can show. It is not refused.
+  bool is_preview_too_large() const { return pattern_.is_too_large(); }
   /// Returns the ghosts of both.
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns true if the preview shows voxels that the next click only copies.
@@ -172,6 +180,8 @@ class ToolBox {
   /// Gives the clipboard the materials of this world, by the names in its rows.
   std::string fit_clipboard();
   void show(ToolAction made, std::int32_t chunk_edge);
+  /// Goes on with the preview of a pattern, and shows its builds when they are made.
+  void step_pattern(bool is_whole);
   /// Plans the next click, and shows what it makes or keeps why it would be refused.
   void plan_preview(const Replica& replica, const Aim& aim, ToolButton button,
                     const Result<VoxelPos, std::string>& target);
@@ -211,6 +221,7 @@ class ToolBox {
   MaterialTable materials_;
   EditPreview preview_;
   BuildPreview build_preview_;
+  PatternPreview pattern_;
   std::vector<GhostChunk> ghosts_;
   bool previews_copy_ = false;
   std::string preview_refusal_;

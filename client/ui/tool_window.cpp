@@ -123,7 +123,7 @@ void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
     ImGui::TextColored(kToolWarning, "%s", box.preview_refusal().c_str());
   } else if (box.tool().selects()) {
     ImGui::TextDisabled("changes no voxel");
-  } else if (!preview.is_complete() || !builds.is_complete()) {
+  } else if (!box.is_preview_complete()) {
     ImGui::TextDisabled("...");
   } else {
     ImGui::TextUnformatted(preview_words(box).c_str());
