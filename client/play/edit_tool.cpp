@@ -73,10 +73,10 @@ Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
-  const auto selected = box_.selection();
+  const BoxSet selected = box_.selected_boxes();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
-  if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
+  if (!done) box_.select(selected);  // it did not move
   return done;
 }
 

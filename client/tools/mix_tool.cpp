@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
@@ -12,9 +13,13 @@
 namespace runstone {
 namespace {
 
-/// The voxels of a box that is worked out at the click, which takes some 15 ms. A larger one is worked
-/// out in steps.
+/// The voxels of a box that is worked out at the click, which takes some 15 ms. A larger one, and
+/// several boxes, are worked out in steps.
 constexpr std::uint64_t kAtOnceVoxelsMax = std::uint64_t{1} << 18;
+
+VoxelPos sides_of(const VoxelBox& box) {
+  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+}
 
 bool is_worked_out_at_once(const VoxelPos& sides) {
   const auto area = static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.z);
@@ -43,27 +48,30 @@ class MixTool final : public Tool {
 };
 
 ToolEdits MixTool::plan(const ToolInput& input) const {
-  if (is_selected() && !input.selection) return failure("nothing is selected");
-  const VoxelBox box =
-      is_selected()
-          ? *input.selection
-          : box_between(input.points.empty() ? input.target : input.points.front(), input.target);
-  const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-  if (!is_in_world(box.min, sides)) return failure("the box reaches outside the world there");
-  const PatternFrame frame{static_cast<std::uint64_t>(value("seed")), middle2_of(box)};
+  std::vector<VoxelBox> boxes(input.selection.begin(), input.selection.end());
+  if (!is_selected()) {
+    boxes = {box_between(input.points.empty() ? input.target : input.points.front(), input.target)};
+  }
+  if (boxes.empty()) return failure("nothing is selected");
+  VoxelBox around;
+  for (const VoxelBox& box : boxes) around = bounding_box(around, box);
+  if (!is_in_world(around.min, sides_of(around)))
+    return failure("the box reaches outside the world there");
+  const PatternFrame frame{static_cast<std::uint64_t>(value("seed")), middle2_of(around)};
   auto typed = typed_pattern(text("pattern"), input.materials, frame);
   if (!typed) return failure(typed.error());
   if (!typed->mix) return failure("type a pattern first, such as 70% stone, 30% gravel");
   BoundMix mix = input.button == ToolButton::clear ? BoundMix::of(kEmpty) : *std::move(typed->mix);
-  if (!is_worked_out_at_once(sides)) {
-    auto work = pattern_work(input.replica, box, std::move(mix), std::move(typed->filter));
+  ToolAction out;
+  if (boxes.size() > 1 || !is_worked_out_at_once(sides_of(around))) {
+    auto work =
+        pattern_work(input.replica, std::move(boxes), std::move(mix), std::move(typed->filter));
     if (!work) return failure(work.error());
-    ToolAction out;
     out.pattern = *std::move(work);
     return out;
   }
   const auto placed =
-      replaced(box, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
+      replaced(around, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
                [&](ChunkCoord at) { return input.replica.shown({0, at}); });
   if (!placed) return failure(pattern_failure(placed.error()));
   if (!placed->build) return failure("the pattern changes no voxel there");

@@ -1,5 +1,6 @@
 // PatternPreview: works out a PatternWork for its preview, in steps. One thread.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -26,9 +27,17 @@ class PatternPreview {
   std::optional<std::vector<BuildPaste>> step(MirroredBuilds& mirrored, bool is_whole);
 
  private:
+  /// Begins with the box of the number box_.
+  void begin();
+  /// Takes what was made in the present box, with its copies.
+  void take(MirroredBuilds& mirrored);
+
   std::uint64_t decided_max_;
   PatternWorkPtr work_;                 // null unless it is under way
-  std::optional<Replacing> replacing_;  // in the box of work_
+  std::size_t box_ = 0;                 // number of the box of work_ that replacing_ works on
+  std::optional<Replacing> replacing_;  // nullopt: not under way
+  std::uint64_t decided_ = 0;           // in the boxes before
+  std::vector<BuildPaste> made_;        // of the boxes before
   bool is_too_large_ = false;
 };
 

@@ -23,33 +23,28 @@ PatternSource::PatternSource(PatternWorkPtr work, const EditLimits& limits,
       limits_(paste_limits(limits)),
       steps_(steps),
       copies_(copies_of(work_->symmetry.kind)) {
-  part_ = {work_->box.min, work_->box.min};
-  advance();
+  begin(work_->boxes.front().min);
 }
 
-void PatternSource::advance() {
-  const VoxelBox& box = work_->box;
+void PatternSource::begin(VoxelPos min) {
+  const VoxelBox& box = work_->boxes[box_];
   const VoxelPos& sides = steps_.part_sides;
-  // The part before ends where this one begins, along x first, then along z, then along y.
-  VoxelPos min = part_.min;
-  if (!part_.empty()) {
-    min.x = part_.max.x;
-    if (min.x == box.max.x) {
-      min.x = box.min.x;
-      min.z = part_.max.z;
-    }
-    if (min.z == box.max.z) {
-      min.z = box.min.z;
-      min.y = part_.max.y;
-    }
-    if (min.y == box.max.y) {
-      min.y = box.min.y;
-      ++pass_;
-    }
-  }
   part_ = {min,
            {next_border(min.x, sides.x, box.max.x), next_border(min.y, sides.y, box.max.y),
             next_border(min.z, sides.z, box.max.z)}};
+}
+
+void PatternSource::advance() {
+  const VoxelBox& box = work_->boxes[box_];
+  // The next part lies along x first, then along z, then along y.
+  if (part_.max.x < box.max.x) return begin({part_.max.x, part_.min.y, part_.min.z});
+  if (part_.max.z < box.max.z) return begin({box.min.x, part_.min.y, part_.max.z});
+  if (part_.max.y < box.max.y) return begin({box.min.x, part_.max.y, box.min.z});
+  if (++box_ == work_->boxes.size()) {
+    box_ = 0;
+    ++pass_;
+  }
+  begin(work_->boxes[box_].min);
 }
 
 std::optional<std::string> PatternSource::take(PlacedBuild placed) {

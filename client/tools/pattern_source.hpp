@@ -1,6 +1,6 @@
 // PatternSource: the edits of a PatternWork, worked out part by part while they are sent. So a box of
 // any size takes the memory of one part, and a turn the time of one step. First come the edits of all
-// parts of the box, then those of each mirrored copy. One thread.
+// parts of the boxes, then those of each mirrored copy. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -33,8 +33,11 @@ class PatternSource final : public EditSource {
   std::uint64_t voxels() const override { return 0; }
 
  private:
-  /// Moves to the next part, to the first part of the next copy, or behind the last copy.
+  /// Moves to the next part, to the first part of the next box or of the next copy, or behind the
+  /// last copy.
   void advance();
+  /// Begins the part of the present box with this lowest corner.
+  void begin(VoxelPos min);
   /// Makes the edits of a build that was replaced in a part. Returns why there are none, if so.
   std::optional<std::string> take(PlacedBuild placed);
 
@@ -42,8 +45,9 @@ class PatternSource final : public EditSource {
   const PasteLimits limits_;
   const PatternSteps steps_;
   const std::vector<MirrorAxes> copies_;
-  std::size_t pass_ = 0;  // 0: the box itself; otherwise one more than the number of the copy
-  VoxelBox part_;         // that is worked out, empty behind the last one
+  std::size_t pass_ = 0;  // 0: the boxes themselves; otherwise one more than the copy's number
+  std::size_t box_ = 0;   // number of the box of part_
+  VoxelBox part_;         // that is worked out
   std::optional<Replacing> replacing_;  // in part_; nullopt: not begun
   std::optional<PasteSource> edits_;    // of the part before part_
   MirroredBuilds mirrored_;

@@ -6,32 +6,51 @@
 
 namespace runstone {
 
-Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica, const VoxelBox& box,
-                                                 BoundMix mix, std::optional<BoundFilter> filter) {
-  const std::int32_t edge = replica.chunk_edge();
-  auto out = std::make_shared<PatternWork>(
-      PatternWork{box, std::move(mix), std::move(filter), edge, {}, {}, {}});
-  const ChunkCoord first = chunk_of(box.min, edge);
-  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
+namespace {
+
+/// Keeps the shown chunks that meet a box. Returns false if one of them is not shown.
+bool keep_inside(const Replica& replica, const VoxelBox& box, PatternWork& work) {
+  const ChunkCoord first = chunk_of(box.min, work.chunk_edge);
+  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, work.chunk_edge);
   for (ChunkCoord at = first; at.z <= last.z; ++at.z) {
     for (at.y = first.y; at.y <= last.y; ++at.y) {
       for (at.x = first.x; at.x <= last.x; ++at.x) {
         ShownPtr chunk = replica.shown({0, at});
-        // All chunks of the box must be shown, so the loop ends early in a box of the whole world.
-        if (!chunk) return failure("a chunk of the box is not loaded");
-        out->chunks.emplace(at, std::move(chunk));
+        // In a box of the whole world the first chunk that is not shown ends the loop.
+        if (!chunk) return false;
+        work.chunks.emplace(at, std::move(chunk));
       }
     }
   }
-  if (out->filter && out->filter->reads_neighbours()) {
-    for (ChunkCoord at{first.x - 1, 0, first.z - 1}; at.z <= last.z + 1; ++at.z) {
-      for (at.y = first.y - 1; at.y <= last.y + 1; ++at.y) {
-        for (at.x = first.x - 1; at.x <= last.x + 1; ++at.x) {
-          if (out->chunks.contains(at)) continue;
-          if (ShownPtr chunk = replica.shown({0, at})) out->chunks.emplace(at, std::move(chunk));
-        }
+  return true;
+}
+
+/// Keeps the shown chunks around those that meet a box. Requires keep_inside().
+void keep_around(const Replica& replica, const VoxelBox& box, PatternWork& work) {
+  const ChunkCoord first = chunk_of(box.min, work.chunk_edge);
+  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, work.chunk_edge);
+  for (ChunkCoord at{first.x - 1, 0, first.z - 1}; at.z <= last.z + 1; ++at.z) {
+    for (at.y = first.y - 1; at.y <= last.y + 1; ++at.y) {
+      for (at.x = first.x - 1; at.x <= last.x + 1; ++at.x) {
+        if (work.chunks.contains(at)) continue;
+        if (ShownPtr chunk = replica.shown({0, at})) work.chunks.emplace(at, std::move(chunk));
       }
     }
+  }
+}
+
+}  // namespace
+
+Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica,
+                                                 std::vector<VoxelBox> boxes, BoundMix mix,
+                                                 std::optional<BoundFilter> filter) {
+  auto out = std::make_shared<PatternWork>(PatternWork{
+      std::move(boxes), std::move(mix), std::move(filter), replica.chunk_edge(), {}, {}, {}});
+  for (const VoxelBox& box : out->boxes) {
+    if (!keep_inside(replica, box, *out)) return failure("a chunk of the box is not loaded");
+  }
+  if (out->filter && out->filter->reads_neighbours()) {
+    for (const VoxelBox& box : out->boxes) keep_around(replica, box, *out);
   }
   return PatternWorkPtr(std::move(out));
 }
@@ -39,11 +58,12 @@ Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica, const V
 Result<PatternWorkPtr, std::string> with_symmetry(PatternWorkPtr work, const Symmetry& symmetry,
                                                   const MaterialTable& materials) {
   if (symmetry.kind == SymmetryKind::none) return work;
-  const VoxelBox& box = work->box;
-  const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-  for (const MirrorAxes axes : copies_of(symmetry.kind)) {
-    if (!is_in_world(mirrored_corner(box.min, sides, axes, symmetry), sides))
-      return failure("a mirrored copy reaches outside the world");
+  for (const VoxelBox& box : work->boxes) {
+    const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+    for (const MirrorAxes axes : copies_of(symmetry.kind)) {
+      if (!is_in_world(mirrored_corner(box.min, sides, axes, symmetry), sides))
+        return failure("a mirrored copy reaches outside the world");
+    }
   }
   auto out = std::make_shared<PatternWork>(*work);
   out->symmetry = symmetry;

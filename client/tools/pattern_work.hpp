@@ -1,4 +1,4 @@
-// PatternWork: a pattern for a box of the shown world that is too large to be worked out at once. It
+// PatternWork: a pattern for boxes of the shown world that are too large to be worked out at once. It
 // keeps the chunks as they were at the click, so that steps that come later read one and the same
 // world. It never changes after it was made.
 #pragma once
@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/replica/replica.hpp"
 #include "client/tools/symmetry.hpp"
@@ -23,29 +24,30 @@ namespace runstone {
 inline constexpr std::uint64_t kPatternTurnWork = std::uint64_t{1} << 18;
 
 struct PatternWork {
-  VoxelBox box;
+  std::vector<VoxelBox> boxes;  // they do not overlap; at least one
   BoundMix mix;
   std::optional<BoundFilter> filter;
   std::int32_t chunk_edge = 0;
-  /// The chunks that meet the box, and those around it that were shown.
+  /// The chunks that meet the boxes, and those around them that were shown.
   std::map<ChunkCoord, ShownPtr> chunks;
-  /// The copies besides the box itself, and the materials by which they are mirrored.
+  /// The copies besides the boxes themselves, and the materials by which they are mirrored.
   Symmetry symmetry;
   MaterialTable materials;
 };
 using PatternWorkPtr = std::shared_ptr<const PatternWork>;
 
-/// Returns the work without copies. Fails with words for the player if a chunk of the box is not
-/// shown. Requires an open replica. Cost: O(chunks that meet the box or lie around it).
-Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica, const VoxelBox& box,
-                                                 BoundMix mix, std::optional<BoundFilter> filter);
+/// Returns the work without copies. Fails with words for the player if a chunk of a box is not shown.
+/// Requires an open replica. Cost: O(chunks that meet the boxes or lie around them).
+Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica,
+                                                 std::vector<VoxelBox> boxes, BoundMix mix,
+                                                 std::optional<BoundFilter> filter);
 
 /// Returns the work with the copies of a symmetry. Fails with words for the player if a copy reaches
 /// outside the world.
 Result<PatternWorkPtr, std::string> with_symmetry(PatternWorkPtr work, const Symmetry& symmetry,
                                                   const MaterialTable& materials);
 
-/// Returns the steps that replace in a part of the box. Fails as Replacing::of() does.
+/// Returns the steps that replace in a part of a box. Fails as Replacing::of() does.
 Result<Replacing> replacing_in(const PatternWorkPtr& work, const VoxelBox& part);
 
 /// Returns the words for a failure of Replacing.

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/tools/box_set.hpp"
 #include "client/tools/build_preview.hpp"
 #include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
@@ -69,13 +70,30 @@ class ToolBox {
   /// too few or too many. Requires an open replica.
   ToolEdits apply_typed(const Replica& replica, Material held);
 
+  /// Returns the smallest box around the selected voxels, or nullopt if there are none.
   const std::optional<VoxelBox>& selection() const { return selection_; }
+  /// Returns the selection if it is one box.
+  std::optional<VoxelBox> selected_box() const {
+    return boxes_.boxes().size() == 1 ? selection_ : std::nullopt;
+  }
+  /// Returns the selected voxels.
+  const BoxSet& selected_boxes() const { return boxes_; }
   /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
   void select(std::optional<VoxelBox> box);
+  /// Selects these voxels.
+  void select(BoxSet boxes);
+  /// Selects a box, adds it to the selection or removes it from there. Fails with words for the
+  /// player if the selection would have too many parts.
+  Result<void, std::string> select(const VoxelBox& box, SelectMode mode);
+  /// Sets the mode that a held key gives; nullopt: the mode of the chosen tool counts.
+  void hold_select_mode(std::optional<SelectMode> mode) { held_mode_ = mode; }
   /// Moves the side of the selection that faces `side` by `steps` voxels outward. A negative number
-  /// shrinks the selection, but never below one voxel. Fails if nothing is selected.
+  /// shrinks the selection; a selection of one box keeps one voxel. Fails if nothing is selected or
+  /// nothing would be left, and as select() does.
   Result<void, std::string> grow(Direction side, std::int32_t steps);
-  /// Moves the selected box, not its voxels.
+  /// Moves all sides of the selection outward, or inward with a negative number. Fails as grow() does.
+  Result<void, std::string> grow_all(std::int32_t steps);
+  /// Moves the selected boxes, not their voxels.
   Result<void, std::string> shift(Direction direction, std::int32_t steps);
 
   /// Copies the selected voxels, of a box of any size. With `is_solid`, a paste changes no voxel where
@@ -162,7 +180,11 @@ class ToolBox {
   ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
                  std::span<const VoxelPos> points, VoxelPos target);
   ToolEdits plan_typed(const Replica& replica, Material held);
-  Result<VoxelBox, std::string> selected() const;
+  /// Returns the selection, or words if there is none.
+  Result<BoxSet, std::string> selected() const;
+  /// Returns the selected voxels, with the empty ones, as a build whose corner is that of
+  /// selection(). Its other cells are untouched. Fails with words for the player.
+  Result<BuildPtr, std::string> selected_build(const Replica& replica) const;
   ToolEdits filled(const Replica& replica, const Mask& mask, Material material) const;
   Result<void, std::string> turn(const Orientation& orientation);
   /// Makes the voxels that an action copies the clipboard.
@@ -211,7 +233,9 @@ class ToolBox {
   std::vector<VoxelPos> points_;
   ToolButton button_ = ToolButton::place;  // of the first point
   std::optional<TypedPlaces> typed_;
-  std::optional<VoxelBox> selection_;
+  BoxSet boxes_;                       // selected
+  std::optional<VoxelBox> selection_;  // around boxes_
+  std::optional<SelectMode> held_mode_;
   ToolClipboard clipboard_;
   std::vector<MaterialRow> clipboard_rows_;  // by palette entry of the clipboard
   std::uint64_t clipboard_changes_ = 0;

@@ -301,6 +301,8 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   } else if (state.sight) {
     corner = numbers_of(*state.sight);
   }
+  if (const std::size_t parts = box.selected_boxes().boxes().size(); parts > 1)
+    ImGui::TextDisabled("%zu boxes; the numbers are those of the box around them", parts);
   bool is_changed = place_fields("lowest corner", corner);
   if (const auto seen = sight_button(state)) {
     corner = numbers_of(*seen);

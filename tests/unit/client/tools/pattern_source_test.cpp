@@ -61,7 +61,7 @@ struct PatternBench : ToolBench {
     std::optional<BoundFilter> filter;
     if (pattern->filter)
       filter = BoundFilter::of(*pattern->filter, default_material_table(), 5).value();
-    auto made = pattern_work(replica, where, *std::move(bound), std::move(filter));
+    auto made = pattern_work(replica, {where}, *std::move(bound), std::move(filter));
     REQUIRE(made);
     return *made;
   }
