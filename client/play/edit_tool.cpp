@@ -38,6 +38,7 @@ const char* name_of(SymmetryKind kind) {
 
 /// Returns what an action does, as a verb.
 std::string name_of(const ToolAction& action) {
+  if (action.pattern) return "mix";
   if (clears_at_end(action)) return "move";
   if (action.edits.empty() || std::holds_alternative<Paste>(action.edits.front().shape))
     return "paste";
@@ -72,10 +73,10 @@ Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
-  const auto selected = box_.selection();
+  const BoxSet selected = box_.selected_boxes();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
-  if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
+  if (!done) box_.select(selected);  // it did not move
   return done;
 }
 
@@ -156,6 +157,12 @@ bool EditTool::stop_building() {
   if (sender_ == nullptr) return false;
   sender_->cancel();
   return true;
+}
+
+bool EditTool::has_built() const {
+  if (sender_ == nullptr) return false;
+  const ActionProgress& progress = sender_->progress();
+  return sender_->under_way() > 0 || progress.edits_done > 0;
 }
 
 std::string EditTool::build_text() const {

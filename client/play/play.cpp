@@ -237,10 +237,14 @@ bool Play::act(Action action, TimeUs now_us) {
       notify(tool_.stop_building() ? "it stops when the server has answered what was sent"
                                    : "no fill, paste or move is under way");
       return true;
-    case Action::undo:
+    case Action::undo: {
+      // An action of which nothing was sent yet is only stopped: an undo would take back the one
+      // before it.
+      const bool is_unsent = tool_.is_building() && !tool_.has_built();
       tool_.stop_building();
-      chat_.send("/undo");  // the answer is shown
+      if (!is_unsent) chat_.send("/undo");  // the answer is shown
       return true;
+    }
     case Action::redo:
       chat_.send("/redo");
       return true;

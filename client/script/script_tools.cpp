@@ -112,8 +112,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::Select& c) {
   const auto a = resolve_voxel(*c.from);
   const auto b = resolve_voxel(*c.to);
   if (!a || !b) return Progress::stop;
-  host_.tool_box().select(box_between(*a, *b));
-  return Progress::done;
+  const auto done = host_.tool_box().select(box_between(*a, *b), c.mode);
+  return done ? Progress::done : give_up(done.error());
 }
 
 ToolEdits ScriptRunner::carry_out(const ToolCommand& command) {

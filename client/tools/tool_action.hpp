@@ -1,6 +1,7 @@
 // ToolAction: what a click or a command of the tools makes. All of it is one action. It is a value:
 // a preview shows it, and source_of() (action_source.hpp) makes its edits.
 #pragma once
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,6 +29,8 @@ struct BuildPaste {
   }
 };
 
+struct PatternWork;
+
 struct ToolAction {
   ToolAction() = default;
   ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
@@ -35,6 +38,8 @@ struct ToolAction {
   /// The voxels that become the clipboard, and where they are in the world. No edit is made of them.
   std::optional<BuildPaste> copied;
   std::vector<BuildPaste> pastes;
+  /// A pattern for a box that is too large to be worked out at once (pattern_work.hpp), or null.
+  std::shared_ptr<const PatternWork> pattern;
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
@@ -43,7 +48,7 @@ struct ToolAction {
   bool has_followers = false;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 
-  bool empty() const { return pastes.empty() && edits.empty(); }
+  bool empty() const { return pastes.empty() && !pattern && edits.empty(); }
 };
 
 }  // namespace runstone

@@ -29,9 +29,10 @@ struct PlacesChange {
 };
 /// Makes the edits of the typed places.
 struct TypedApply {};
-/// Selects a box; nullopt selects nothing.
+/// Selects a box, adds it to the selection or removes it from there; nullopt selects nothing.
 struct SelectionChange {
   std::optional<VoxelBox> box;
+  SelectMode mode = SelectMode::fresh;
 };
 /// Changes the selection, or the voxels in it.
 struct SelectionCommand {
@@ -41,6 +42,7 @@ struct SelectionCommand {
   Material material = kEmpty;              // fill: the new one; replace: the old one
   Material other = kEmpty;                 // replace: the new one
   Direction direction = Direction::pos_y;  // stack, move, grow, shift
+  bool is_all_around = false;              // grow: all sides move
   std::int32_t count = 1;                  // stack, move, grow, shift
 };
 /// Turns the clipboard by quarter turns, and then mirrors it.
