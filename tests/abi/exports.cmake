@@ -1,5 +1,7 @@
 # Compares what LIBRARY exports with the list SYMBOLS, and names what it loads. A function that is missing breaks
 # programs. One that is not listed was not meant to be exported, or lacks its line.
+cmake_minimum_required(VERSION 3.25)
+
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE error)
   if(NOT result EQUAL 0)

@@ -9,13 +9,13 @@
 namespace runstone::test {
 namespace {
 
-constexpr Material kGlass = 7;
+constexpr Material kPane = 7;
 
 /// A single voxel in a known chunk at the origin; nothing else is known.
 class OneKnownChunk final : public VoxelSpace {
  public:
   OneKnownChunk() : VoxelSpace(16) {
-    fill(chunk_, index_of({5, 6, 7}, chunk_.extent, chunk_.order), 1, kGlass);
+    fill(chunk_, index_of({5, 6, 7}, chunk_.extent, chunk_.order), 1, kPane);
   }
   const RunChunk* chunk(ChunkCoord at) const override {
     return at == ChunkCoord{} ? &chunk_ : nullptr;
@@ -32,7 +32,7 @@ TEST_CASE("a ray through a space meets the voxel in its way", "[collision]") {
   const auto hit = first_hit(space, {}, {5.5, 6.5, 1.0}, {0, 0, 1}, 20);
   REQUIRE(hit.has_value());
   CHECK(hit->voxel == VoxelPos{5, 6, 7});
-  CHECK(hit->material == kGlass);
+  CHECK(hit->material == kPane);
   CHECK(hit->face == Direction::neg_z);
   CHECK(hit->distance == Approx(6));
   // Too short, beside it, and from inside it.
