@@ -132,8 +132,17 @@ struct PlaneView {
   }
 };
 
-/// A plant on the floor, seen from above: its shadow lies at -x of it.
-Camera above_shadow() { return camera_at({8, 1, 8.5}, 0, -M_PI / 2, 4); }
+/// The camera above a plant on the floor, whose shadow lies at -x of it. It is so near that the floor
+/// is in the inner shadow map.
+Camera above_shadow() {
+  Camera out;
+  out.x = 8;
+  out.y = 9;
+  out.z = 8.5;
+  out.pitch = -M_PI / 2;
+  out.fov_y = 0.5;
+  return out;
+}
 
 /// Returns a texture for all sides of the plant, whose left half is a hole.
 DrawnTexturesPtr half_a_picture() {
