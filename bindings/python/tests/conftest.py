@@ -32,7 +32,7 @@ class Server:
             [f"{BIN}/runstone-server", "--world", self.place, "--listen", "127.0.0.1:0", "--insecure", "true", "--port-file", port],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         deadline = time.monotonic() + TIMEOUT_S
-        while not port.exists():
+        while not (port.exists() and Path(f"{self.place}/control.sock").exists()):
             assert self.process.poll() is None and time.monotonic() < deadline, "the server does not listen"
             time.sleep(0.02)
         return self

@@ -27,7 +27,8 @@ def gltf_of(data):
 
 
 def area_of(gltf, buffer):
-    """Returns the area of all triangles."""
+    """Returns the area of all triangles in square metres. The scale stands at the root."""
+    scale = gltf["nodes"][gltf["scenes"][0]["nodes"][0]]["scale"][0]
     def numbers(index):
         accessor = gltf["accessors"][index]
         view = gltf["bufferViews"][accessor["bufferView"]]
@@ -44,7 +45,7 @@ def area_of(gltf, buffer):
             at = numbers(primitive["attributes"]["POSITION"]).astype(float)
             a, b, c = at[numbers(primitive["indices"]).reshape(-1, 3).astype(int)].transpose(1, 0, 2)
             area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-    return area
+    return area * scale ** 2
 
 
 @pytest.mark.parametrize("layout", [np.ascontiguousarray, np.asfortranarray])
