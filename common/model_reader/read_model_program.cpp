@@ -124,11 +124,14 @@ int read_model_program(int argc, const char* const* argv) {
       ->check(CLI::Range(std::size_t{1}, kModelTrianglesMax));
   app.add_option("--up", options.up, "axis of the file that points up; default: z in .stl and .ply")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ModelUp>{{"y", ModelUp::y}, {"z", ModelUp::z}}));
+          std::map<std::string, ModelUp>{{"y", ModelUp::y}, {"z", ModelUp::z}}))
+      ->option_text("y|z");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr);
+    const int code = app.exit(error, std::cout, std::cerr);
+    std::cout.flush();  // the program ends without destructors
+    return code;
   }
   memory_line() = printable_line(options.file, kErrorBytesMax) + ": needs more than " +
                   memory_text(options.memory_mib) + " of memory\n";
