@@ -1,6 +1,7 @@
-// TOML files of settings: one line a setting, perhaps under a header with the first word of its name. A program may also have sections, such as
-// [server.valley], with settings of their own. Reads their values as text, and writes
-// such lines. Which settings there are is known to SettingsTable. Thread: any.
+// TOML files of settings: one line a setting, perhaps under a header with the first word of its name.
+// A program may also have sections, such as [server.valley], with settings of their own. Reads their
+// values as text, and writes such lines. Which settings there are is known to SettingsTable. Thread:
+// any.
 #pragma once
 #include <cstdint>
 #include <optional>
