@@ -54,6 +54,29 @@ KeyAnswer next_symmetry(EditTool& tool) {
   return next.kind == SymmetryKind::none ? "no symmetry" : tool.text();
 }
 
+/// Returns the direction of the world into which an arrow key points for the player.
+Direction nudge_direction(const LookDirection& look, Action action) {
+  switch (action) {
+    case Action::nudge_left:
+      return opposite(horizontal_right(look));
+    case Action::nudge_right:
+      return horizontal_right(look);
+    case Action::nudge_away:
+      return horizontal_look(look);
+    case Action::nudge_near:
+      return opposite(horizontal_look(look));
+    case Action::nudge_up:
+      return Direction::pos_y;
+    default:
+      return Direction::neg_y;
+  }
+}
+
+KeyAnswer nudge(EditTool& tool, Action action, TimeUs now_us) {
+  const Direction direction = nudge_direction(tool.aim().look, action);
+  return words(tool.propose(tool.box().nudge(tool.replica(), direction), now_us), "moved");
+}
+
 KeyAnswer turn_preview(EditTool& tool) {
   const bool is_shown = !tool.box().is_preview_shown();
   tool.box().show_preview(is_shown);
@@ -90,6 +113,14 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
       return choose_tool(tool, "paste");
     case Action::clear_selection:
       return words(tool.propose(box.fill(replica, kEmpty), now_us), "cleared");
+    case Action::nudge_left:
+    case Action::nudge_right:
+    case Action::nudge_away:
+    case Action::nudge_near:
+    case Action::nudge_up:
+    case Action::nudge_down:
+      if (!replica.opened()) return KeyAnswer(failure("no world is open"));
+      return nudge(tool, action, now_us);
     case Action::rotate:
       return turn_words(box, box.rotate(1), "the clipboard is turned");
     case Action::mirror:
