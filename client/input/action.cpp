@@ -62,6 +62,8 @@ constexpr std::array<ActionInfo, kActionCount> kTable = {{
     {Action::mirror, "mirror", "mirror the clipboard along x", building, "X"},
     {Action::symmetry, "symmetry", "choose the next symmetry, about the voxel in sight", building,
      "Y"},
+    {Action::half_symmetry, "half_symmetry",
+     "mirror at the border of a voxel, or in its middle again", building, "shift+Y"},
     {Action::preview, "preview", "show or hide what the next click does", building, "P"},
     {Action::stop_building, "stop_building", "stop the fill, paste or move under way", building,
      "backspace"},

@@ -62,6 +62,7 @@ enum class Action : std::uint8_t {
   rotate,
   mirror,
   symmetry,
+  half_symmetry,
   preview,
   stop_building,
   library,

@@ -54,6 +54,22 @@ KeyAnswer next_symmetry(EditTool& tool) {
   return next.kind == SymmetryKind::none ? "no symmetry" : tool.text();
 }
 
+/// Moves the mirror planes from the middle of their voxel to its border, or back.
+KeyAnswer half_symmetry(EditTool& tool) {
+  Symmetry next = tool.box().symmetry();
+  if (next.kind == SymmetryKind::none) return failure("choose a symmetry first");
+  // An odd number is the border behind a voxel.
+  const bool is_middle = next.centre2_x % 2 == 0;
+  const auto moved_plane = [&](std::int32_t& centre2) {
+    if ((centre2 % 2 == 0) == is_middle) centre2 += is_middle ? 1 : -1;
+  };
+  moved_plane(next.centre2_x);
+  moved_plane(next.centre2_z);
+  tool.box().set_symmetry(next);
+  return std::string(is_middle ? "the mirror planes lie between voxels"
+                               : "the mirror planes lie in the middle of voxels");
+}
+
 /// Returns the direction of the world into which an arrow key points for the player.
 Direction nudge_direction(const LookDirection& look, Action action) {
   switch (action) {
@@ -127,6 +143,8 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
       return turn_words(box, box.mirror(Axis::x), "the clipboard is mirrored");
     case Action::symmetry:
       return next_symmetry(tool);
+    case Action::half_symmetry:
+      return half_symmetry(tool);
     case Action::preview:
       return turn_preview(tool);
     default:

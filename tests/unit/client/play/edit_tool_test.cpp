@@ -175,6 +175,10 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
   CHECK(act(Action::symmetry) == "tool: paste, mask everything, mirrored along x");
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie between voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 9, 15});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
   CHECK(act(Action::preview) == "previews are hidden");
   CHECK(act(Action::select) == "tool: select");
   CHECK(act(Action::larger) == "tool: select, mode add, mirrored along x");
