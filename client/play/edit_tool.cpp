@@ -104,7 +104,7 @@ Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us
   if (session_.replica().opened() && needs_build(*made)) return build(*made);
   const std::vector<EditDescriptor>& edits = made->edits;
   for (std::size_t i = 0; i < edits.size(); ++i) {
-    const ActionPart part = part_of_action(i, edits.size());
+    const ActionPart part = part_of(*made, i);
     if (made->has_followers && i > 0) {
       follow(edits[i], now_us);
     } else if (auto done = propose(edits[i], now_us, now_us, part); !done) {
@@ -127,6 +127,7 @@ Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<Edit
                                           OnRefusal on_refusal) {
   if (sender_ != nullptr)
     return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  box_.begin_action();
   sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
   build_name_ = std::move(name);
   return {};
@@ -240,6 +241,7 @@ std::string EditTool::measure_text() const {
 
 Result<void, std::string> EditTool::propose(const EditDescriptor& edit, TimeUs due_us,
                                             TimeUs now_us, ActionPart part) {
+  if (part != ActionPart::next) box_.begin_action();
   if (part == ActionPart::first) action_ = 0;
   ClientSequence action = 0;
   if (part != ActionPart::alone) action = action_ != 0 ? action_ : kBeginsAction;

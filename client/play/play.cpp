@@ -240,6 +240,7 @@ bool Play::act(Action action, TimeUs now_us) {
     case Action::undo: {
       // An action of which nothing was sent yet is only stopped: an undo would take back the one
       // before it.
+      tool_.box().begin_action();  // a paste that is taken back cannot be moved
       const bool is_unsent = tool_.is_building() && !tool_.has_built();
       tool_.stop_building();
       if (!is_unsent) chat_.send("/undo");  // the answer is shown

@@ -40,7 +40,7 @@ ScriptRunner::Progress ScriptRunner::propose_edits() {
       static_cast<void>(host_.propose(edit, now_us_, now_us_, ActionPart::next));
       continue;
     }
-    const Progress progress = propose(edit, part_of_action(state_.count, edits.size()));
+    const Progress progress = propose(edit, part_of(made_, state_.count));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;

@@ -213,6 +213,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
   if (verb == "release") return script::UseTool{Part::release, {}};
   if (verb == "select") return select_step(words);
   if (verb == "selection") return selection_step(words);
+  if (verb == "nudge") return script::RunToolCommand{PasteNudge{read_direction(words)}};
   if (verb == "rotate")
     return script::RunToolCommand{
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};

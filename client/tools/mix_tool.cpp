@@ -17,10 +17,6 @@ namespace {
 /// several boxes, are worked out in steps.
 constexpr std::uint64_t kAtOnceVoxelsMax = std::uint64_t{1} << 18;
 
-VoxelPos sides_of(const VoxelBox& box) {
-  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-}
-
 bool is_worked_out_at_once(const VoxelPos& sides) {
   const auto area = static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.z);
   return area <= kAtOnceVoxelsMax && area * static_cast<std::uint64_t>(sides.y) <= kAtOnceVoxelsMax;

@@ -190,6 +190,7 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
   ToolAction out(with_copies(std::move(action.edits), symmetry, materials));
   out.copied = std::move(action.copied);
   out.has_followers = action.has_followers && symmetry.kind == SymmetryKind::none;
+  out.chain = action.chain;
   if (action.pattern) {
     auto pattern = with_symmetry(std::move(action.pattern), symmetry, materials);
     if (!pattern) return failure(pattern.error());

@@ -1,11 +1,14 @@
 // ToolAction: what a click or a command of the tools makes. All of it is one action. It is a value:
 // a preview shows it, and source_of() (action_source.hpp) makes its edits.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "client/tools/action_part.hpp"
 #include "common/builds/build.hpp"
 #include "common/builds/paste_source.hpp"
 #include "common/core/coords.hpp"
@@ -31,6 +34,13 @@ struct BuildPaste {
 
 struct PatternWork;
 
+/// How the edits of a ToolAction belong to an action.
+enum class ActionChain : std::uint8_t {
+  closed,   // they are an action
+  begins,   // they are an action to which later edits may be added
+  goes_on,  // they belong to the action before
+};
+
 struct ToolAction {
   ToolAction() = default;
   ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
@@ -46,9 +56,17 @@ struct ToolAction {
   /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one
   /// is refused, it is left out without a word.
   bool has_followers = false;
+  ActionChain chain = ActionChain::closed;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 
   bool empty() const { return pastes.empty() && !pattern && edits.empty(); }
 };
+
+/// Returns the part of edit i of an action.
+inline ActionPart part_of(const ToolAction& action, std::size_t i) {
+  if (action.chain == ActionChain::goes_on) return ActionPart::next;
+  if (action.chain == ActionChain::begins && i == 0) return ActionPart::first;
+  return part_of_action(i, action.edits.size());
+}
 
 }  // namespace runstone

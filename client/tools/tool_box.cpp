@@ -66,10 +66,6 @@ Unexpected<std::string> cannot_copy(const Error& error) {
   return failure("cannot copy: " + words_of(error));
 }
 
-VoxelPos sides_of(const VoxelBox& box) {
-  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-}
-
 template <class T>
 void append(std::vector<T>& to, std::vector<T> from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -186,6 +182,7 @@ ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton butt
     if (!done) edits = failure(done.error());
   }
   hold_copied(edits);
+  keep_pasted(replica, edits);
   points_.clear();
   return edits;
 }
@@ -256,6 +253,7 @@ ToolEdits ToolBox::apply_typed(const Replica& replica, Material held) {
     if (!done) return failure(done.error());
   }
   hold_copied(edits);
+  keep_pasted(replica, edits);
   return edits;
 }
 
@@ -355,6 +353,19 @@ Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
   if (is_solid && (*copied)->solid() == 0) return failure("the selection is empty");
   hold_voxels(*std::move(copied), empty_cells(is_solid));
   return {};
+}
+
+void ToolBox::keep_pasted(const Replica& replica, ToolEdits& made) {
+  if (!made || made->empty() || tool().name() != "paste") return;
+  pasted_ = PastedBuild::of(*made, clipboard_, replica);
+  is_paste_fresh_ = pasted_.has_value();
+  if (pasted_) made->chain = ActionChain::begins;
+}
+
+ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
+  if (!pasted_) return failure("the arrows move what you have just pasted: up to 262,144 voxels");
+  ++revision_;
+  return pasted_->move(direction, replica);
 }
 
 void ToolBox::hold_copied(const ToolEdits& made) {
@@ -561,6 +572,7 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
 std::string ToolBox::set_materials(const MaterialTable& materials, const MeshMaterialsPtr& meshed) {
   materials_ = materials;
   mirrored_.forget();
+  pasted_.reset();
   preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
   points_.clear();

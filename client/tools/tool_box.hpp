@@ -10,12 +10,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/tools/box_set.hpp"
 #include "client/tools/build_preview.hpp"
 #include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
+#include "client/tools/pasted_build.hpp"
 #include "client/tools/pattern_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
@@ -112,6 +114,15 @@ class ToolBox {
   /// and leave empty ones behind.
   ToolEdits move(const Replica& replica, Direction direction, std::int32_t steps);
 
+  /// Returns the edit that moves the build that was just pasted by one voxel, as a part of the action
+  /// that pasted it. Fails with words for the player if there is none. Requires an open replica.
+  ToolEdits nudge(const Replica& replica, Direction direction);
+  /// Tells the tools that an action begins: it is that of the last paste, or the paste can not be
+  /// moved any more.
+  void begin_action() {
+    if (!std::exchange(is_paste_fresh_, false)) pasted_.reset();
+  }
+
   const ToolClipboard& clipboard() const { return clipboard_; }
   /// Returns the rows of the materials of the clipboard, by palette entry, as the world from which they
   /// were copied has them.
@@ -187,6 +198,8 @@ class ToolBox {
   Result<BuildPtr, std::string> selected_build(const Replica& replica) const;
   ToolEdits filled(const Replica& replica, const Mask& mask, Material material) const;
   Result<void, std::string> turn(const Orientation& orientation);
+  /// Keeps what the paste tool is about to put down, and lets the action go on.
+  void keep_pasted(const Replica& replica, ToolEdits& made);
   /// Makes the voxels that an action copies the clipboard.
   void hold_copied(const ToolEdits& made);
   /// Sets clipboard_rows_ to the rows that the materials of a build have in this world.
@@ -237,6 +250,8 @@ class ToolBox {
   std::optional<VoxelBox> selection_;  // around boxes_
   std::optional<SelectMode> held_mode_;
   ToolClipboard clipboard_;
+  std::optional<PastedBuild> pasted_;        // may be moved by nudge()
+  bool is_paste_fresh_ = false;              // its action has not begun yet
   std::vector<MaterialRow> clipboard_rows_;  // by palette entry of the clipboard
   std::uint64_t clipboard_changes_ = 0;
   std::string turn_notice_;

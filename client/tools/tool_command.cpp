@@ -61,6 +61,10 @@ struct Carrier {
     }
     return without_edits({});
   }
+  ToolEdits operator()(const PasteNudge& c) const {
+    if (!replica.opened()) return failure("no world is open");
+    return box.nudge(replica, c.direction);
+  }
   ToolEdits operator()(const ClipboardTurn& c) const {
     if (const auto done = box.rotate(c.quarters); !done || !c.mirror) return without_edits(done);
     return without_edits(box.mirror(*c.mirror));

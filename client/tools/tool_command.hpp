@@ -45,6 +45,10 @@ struct SelectionCommand {
   bool is_all_around = false;              // grow: all sides move
   std::int32_t count = 1;                  // stack, move, grow, shift
 };
+/// Moves the build that was just pasted by one voxel.
+struct PasteNudge {
+  Direction direction = Direction::pos_y;
+};
 /// Turns the clipboard by quarter turns, and then mirrors it.
 struct ClipboardTurn {
   int quarters = 0;
@@ -61,9 +65,9 @@ struct PreviewChange {
   bool is_shown = true;
 };
 
-using ToolCommand =
-    std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply, SelectionChange,
-                 SelectionCommand, ClipboardTurn, ClipboardReshape, SymmetryChange, PreviewChange>;
+using ToolCommand = std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply,
+                                 SelectionChange, SelectionCommand, PasteNudge, ClipboardTurn,
+                                 ClipboardReshape, SymmetryChange, PreviewChange>;
 
 /// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the
 /// player, for example if there is no world yet. `held` is the material in the hand.
