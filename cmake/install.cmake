@@ -26,12 +26,6 @@ function(runstone_installed library)
   runstone_target_name(${ARG_MODULE} target)
   add_library(runstone::${library} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${library} OUTPUT_NAME runstone_${library})
-  # So that a shared object can hold the library. g++ would otherwise call each function of such code as if
-  # another object could replace it, and inline none.
-  if(NOT EMSCRIPTEN)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
-  endif()
   if(NOT RUNSTONE_INSTALL)
     return()
   endif()
