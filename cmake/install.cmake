@@ -12,24 +12,42 @@ cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY
            ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig OUTPUT_VARIABLE runstone_prefix_from_pc)
 
 # runstone_installed(runs REQUIRES core DESCRIPTION "...")
-# makes runstone::runs of the module common/runs, installed or not. REQUIRES are the pkg-config
-# names it needs, where a name without a dash is one of these libraries.
+# makes runstone::runs of the module common/runs, or of MODULE, installed or not. REQUIRES are the pkg-config
+# names it needs. EXPORT is the file of targets that names it: a library with a dependency of its own has its
+# own file, so that programs without that dependency can use the others.
 function(runstone_installed library)
-  cmake_parse_arguments(ARG "" "DESCRIPTION" "REQUIRES" ${ARGN})
-  set(target runstone_common_${library})
+  cmake_parse_arguments(ARG "" "DESCRIPTION;MODULE;EXPORT" "REQUIRES" ${ARGN})
+  if(NOT ARG_MODULE)
+    set(ARG_MODULE common/${library})
+  endif()
+  if(NOT ARG_EXPORT)
+    set(ARG_EXPORT runstone)
+  endif()
+  runstone_target_name(${ARG_MODULE} target)
   add_library(runstone::${library} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${library} OUTPUT_NAME runstone_${library})
   if(NOT RUNSTONE_INSTALL)
     return()
   endif()
-  install(TARGETS ${target} EXPORT runstone COMPONENT runstone
+  install(TARGETS ${target} EXPORT ${ARG_EXPORT} COMPONENT runstone
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runstone
           FILE_SET HEADERS DESTINATION ${runstone_includes} COMPONENT runstone)
-  list(JOIN ARG_REQUIRES ", " requires)
-  set(description "${ARG_DESCRIPTION}")
+  runstone_install_pc(${library} "${ARG_DESCRIPTION}" "-I\${prefix}/${runstone_includes}" runstone_${library}
+                      ${ARG_REQUIRES})
+endfunction()
+
+# Installs runstone-LIBRARY.pc, for a library file and the pkg-config names that it needs.
+function(runstone_install_pc library description flags file)
+  list(JOIN ARGN ", " requires)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/runstone.pc.in runstone-${library}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/runstone-${library}.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT runstone)
+endfunction()
+
+# Installs the targets of an export as runstone::NAME.
+function(runstone_install_export export)
+  install(EXPORT ${export} NAMESPACE runstone:: DESTINATION ${runstone_package} COMPONENT runstone
+          FILE ${export}-targets.cmake)
 endfunction()
 
 runstone_installed(core DESCRIPTION "positions, bytes, digests and results")
@@ -39,10 +57,28 @@ runstone_installed(edits REQUIRES runstone-rights runstone-runs libhwy DESCRIPTI
 runstone_installed(shapes REQUIRES runstone-core DESCRIPTION "voxels that are no cubes: boxes and their surface")
 runstone_installed(collision REQUIRES runstone-runs runstone-shapes DESCRIPTION "boxes that move through run chunks")
 runstone_installed(mesh REQUIRES runstone-runs runstone-shapes libhwy DESCRIPTION "quads from run chunks")
+runstone_installed(tiles REQUIRES runstone-mesh DESCRIPTION "levels of detail of run chunks")
+if(TARGET runstone_protocol_chunks)
+  runstone_installed(codec MODULE protocol/chunks EXPORT runstone-codec REQUIRES runstone-runs libzstd
+                     DESCRIPTION "bytes of run chunks on wire and disk")
+endif()
+if(TARGET runstone_bindings_c)
+  add_library(runstone::c ALIAS runstone_bindings_c)
+  set_target_properties(runstone_bindings_c PROPERTIES EXPORT_NAME c)
+endif()
 
 if(RUNSTONE_INSTALL)
-  install(EXPORT runstone NAMESPACE runstone:: DESTINATION ${runstone_package} COMPONENT runstone
-          FILE runstone-targets.cmake)
+  runstone_install_export(runstone)
+  if(TARGET runstone_protocol_chunks)
+    runstone_install_export(runstone-codec)
+  endif()
+  if(TARGET runstone_bindings_c)
+    install(TARGETS runstone_bindings_c EXPORT runstone-c
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runstone NAMELINK_COMPONENT runstone
+            FILE_SET c_headers DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT runstone)
+    runstone_install_pc(c "the C interface" "-I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" runstone)
+    runstone_install_export(runstone-c)
+  endif()
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/runstone-config.cmake.in runstone-config.cmake
                                 INSTALL_DESTINATION ${runstone_package})
   write_basic_package_version_file(runstone-config-version.cmake COMPATIBILITY SameMinorVersion)

@@ -3,6 +3,7 @@
 # root; DEPS are the other modules whose headers it may include (tests/unit/house checks it).
 # EXCLUDE is a regular expression of paths that are left out.
 # A module inside another one's folder is declared first and keeps its sources to itself.
+# SHARED makes a shared object, which holds the code of its DEPS and gives others none of their headers.
 #
 # With CMAKE_UNITY_BUILD, as in the presets release, asan, fuzz and tsan, the sources of a module are
 # compiled together, because their headers cost most of the time. SINGLE keeps them apart: in the
@@ -47,7 +48,7 @@ function(runstone_use_precompiled target libraries)
 endfunction()
 
 function(runstone_module folder)
-  cmake_parse_arguments(ARG "SINGLE" "EXCLUDE;COMMAND_LINE" "DEPS;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SHARED;SINGLE" "EXCLUDE;COMMAND_LINE" "DEPS;LIBS" ${ARGN})
   runstone_target_name(${folder} name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
@@ -93,8 +94,13 @@ function(runstone_module folder)
     list(APPEND sources $<TARGET_OBJECTS:${name}_command_line>)
   endif()
   if(sources)
-    add_library(${name} STATIC ${sources})
-    set(scope PUBLIC)
+    if(ARG_SHARED)
+      add_library(${name} SHARED ${sources})
+      set(scope PRIVATE)
+    else()
+      add_library(${name} STATIC ${sources})
+      set(scope PUBLIC)
+    endif()
     if(ARG_SINGLE)
       set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
     elseif(CMAKE_UNITY_BUILD AND TARGET runstone_precompiled_std)
@@ -106,7 +112,7 @@ function(runstone_module folder)
   endif()
   target_include_directories(${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_compile_features(${name} ${scope} cxx_std_20)
-  if(headers)
+  if(headers AND NOT ARG_SHARED)
     target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
     set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
   endif()

@@ -6,6 +6,7 @@ if(EMSCRIPTEN)
 endif()
 find_package(hwy REQUIRED CONFIG)
 if(RUNSTONE_LIBRARY_ONLY)
+  find_package(zstd CONFIG QUIET)
   return()
 endif()
 enable_language(C)  # the OpenGL loader

@@ -1,27 +1,29 @@
-# Headless runstone-client (software rendering, no X server). Build from the repository root:
+# Headless runstone-client (software rendering, no X server), of its Debian packages (docs/packages.md). Build from the repository root:
 #   docker build -f docker/client.Dockerfile -t runstone-client .
 FROM debian:bookworm-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends \
-      ca-certificates cmake ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
+      ca-certificates cmake dpkg-dev file ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
       flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libpq-dev libzstd-dev libxxhash-dev libhwy-dev libsodium-dev libssl-dev libutf8proc-dev libicu-dev \
       libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libboost-dev prometheus-cpp-dev libegl-dev libgl-dev libosmesa6-dev libglfw3-dev libglm-dev \
       libimgui-dev libfreetype-dev libdeflate-dev liblz4-dev libleveldb-dev libpng-dev zlib1g-dev python3-glad libstb-dev libassimp-dev && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
-COPY CMakeLists.txt CMakePresets.json ./
+COPY CMakeLists.txt CMakePresets.json LICENSE CHANGELOG.md ./
 COPY cmake cmake
 COPY common common
+COPY packaging packaging
 COPY protocol protocol
 COPY server server
 COPY client client
-RUN cmake --preset release -DRUNSTONE_TESTS=OFF && cmake --build --preset release --target runstone-client runstone-read-model && \
-    strip build/release/bin/runstone-client build/release/bin/runstone-read-model
+RUN cmake --preset release -DRUNSTONE_TESTS=OFF && \
+    cmake --build --preset release --target package_files && \
+    cd build/release && cpack -B /packages
 
 FROM debian:bookworm-slim
-RUN apt-get update && apt-get install -y --no-install-recommends \
-      libspdlog1.10 libfmt9 libsqlite3-0 libxxhash0 liblz4-1 libpng16-16 libzstd1 libhwy1 libsodium23 libssl3 libutf8proc2 libtomlplusplus3 libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 libglfw3 libfreetype6 libstb0 libassimp5 fonts-dejavu-core \
-      && rm -rf /var/lib/apt/lists/* && \
-    groupadd --gid 10001 runstone && useradd --uid 10001 --gid 10001 runstone && install -d -o runstone -g runstone /out
-COPY --from=build /src/build/release/bin/runstone-client /src/build/release/bin/runstone-read-model /usr/local/bin/
+COPY --from=build /packages/*.deb /packages/
+RUN groupadd --gid 10001 runstone && useradd --uid 10001 --gid 10001 runstone && \
+    apt-get update && apt-get install -y --no-install-recommends \
+      /packages/runstone-client_*.deb /packages/runstone-tools_*.deb libgl1-mesa-dri libegl-mesa0 fonts-dejavu-core && \
+    rm -rf /packages /var/lib/apt/lists/* && install -d -o runstone -g runstone /out
 USER runstone
 WORKDIR /out
 VOLUME /out

@@ -1,8 +1,8 @@
 // The limits of messages and frames. The decoder, the verifier and the queues take them from here.
 // Limits of what messages carry are defined with their types: descriptors in
 // common/edits/descriptor/edit_descriptor.hpp, materials in common/materials/material_table.hpp,
-// chunk volumes in common/runs/extent.hpp, levels of detail in common/core/tile_keys.hpp, world
-// coordinates in common/core/coords.hpp.
+// chunk volumes in common/runs/extent.hpp, chunk bytes in protocol/chunks/chunk_size.hpp, levels of
+// detail in common/core/tile_keys.hpp, world coordinates in common/core/coords.hpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +10,8 @@
 #include "common/core/texture.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
-#include "common/runs/extent.hpp"
 #include "common/shapes/shape_bytes.hpp"
+#include "protocol/chunks/chunk_size.hpp"
 
 namespace runstone {
 
@@ -77,9 +77,6 @@ inline constexpr std::size_t kServerControlBytesMax = 8 * 1024 * 1024;  // the m
 inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;         // one commit
 inline constexpr std::size_t kServerChunkBytesMax = 16 * 1024 * 1024;   // one raw chunk
 
-// Chunk bytes. The worst case is raw noise of 128^3 voxels.
-inline constexpr std::size_t kChunkHeaderBytes = 12;
-inline constexpr std::size_t kChunkBytesMax = kChunkHeaderBytes + 6ULL * kVolumeMax;
 static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax,
               "the largest raw chunk fits a message");
 

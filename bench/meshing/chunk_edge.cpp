@@ -11,7 +11,7 @@
 #include "bench/harness/statistics.hpp"
 #include "bench/worlds/measured_worlds.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone::bench {
 namespace {

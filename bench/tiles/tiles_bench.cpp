@@ -20,7 +20,7 @@
 #include "common/tiles/tile_builder.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "common/tiles/veil.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -16,7 +16,7 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/reorder.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/dense_bytes.hpp"
 

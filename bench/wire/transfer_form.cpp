@@ -12,7 +12,7 @@
 #include "bench/wire/palette_form.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -14,8 +14,6 @@
 #include "client/app/connection_words.hpp"
 #include "client/app/player_defaults.hpp"
 #include "client/report/exit_code.hpp"
-#include "client/settings/hotbars_file.hpp"
-#include "common/core/hex.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/view_tiles.hpp"
@@ -51,7 +49,8 @@ KeyMap keys_of(const ClientSettings& settings) {
   return out;
 }
 
-PlayConfig play_config(const ClientOptions& options, const Script* script, bool is_watched) {
+PlayConfig play_config(const ClientOptions& options, const Script* script, bool is_watched,
+                       const PlayerFiles& files) {
   PlayConfig out;
   out.wishes = {options.memory_mib != 0 ? options.memory_mib : automatic_memory_mib(),
                 {options.view_radius, options.view_radius_v},
@@ -63,10 +62,7 @@ PlayConfig play_config(const ClientOptions& options, const Script* script, bool 
   out.workers = options.workers;
   out.started_us = steady_now_us();
   out.time_of_day = options.time_of_day;
-  out.kit_of = [file = options.kits_file](const WorldId& world) -> std::optional<WorldKit> {
-    const auto line = load_kit(file, to_hex(world));
-    return line ? parse_kit(*line) : std::nullopt;
-  };
+  out.kit_of = [&files](const WorldId& world) { return files.kit_of(world); };
   out.hotbars = load_hotbars(options.hotbars_file);
   return out;
 }
@@ -81,8 +77,10 @@ Client::Client(ClientOptions options, const Script* script, ClientDisplay& displ
       clipboard_(display.clipboard.get()),
       window_(display.window.get()),
       menu_(menu),
+      player_files_(options_.kits_file, options_.hotbars_file),
       play_(session_, display.tools, display.draw_thread.get(), log_,
-            play_config(options_, script, window_ != nullptr), [this] { wake_.notify(); }),
+            play_config(options_, script, window_ != nullptr, player_files_),
+            [this] { wake_.notify(); }),
       pipeline_(play_.pipeline()),
       chat_(play_.chat(), terminal_of(script)),
       hud_(play_, options_.name, options_.settings.interface_scale),
@@ -121,10 +119,6 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     const TimeUs now_us = steady_now_us();
     // Changes are passed on before the script asks whether all of them are drawn.
     play_.begin_turn(is_opened, hud_.shown_panels(), now_us);
-    if (is_opened) {
-      keep_kits();
-      keep_hotbars();
-    }
     if (now_us >= horizon_due_us_) look_at_horizon(now_us);
     poll_window();
     handle_input(now_us);
@@ -137,6 +131,9 @@ ClientEnd Client::run_turns(const volatile std::sig_atomic_t& stop) {
     }
     log_.log_players(session_.others(), now_us);
     step_files(now_us);
+    keep_player(now_us);
+    if (const std::string warning = player_files_.step(now_us); !warning.empty())
+      spdlog::warn("{}", warning);
     show_news();
     if (runner_) runner_->step(now_us);
     if (benchmark_ && session_.is_open()) benchmark_->step(play_.player(), pipeline_, play_.view());
@@ -265,20 +262,9 @@ void Client::pause() {
   menu_->feed(play_.input().take_waiting());
 }
 
-void Client::keep_kits() {
-  if (options_.kits_file.empty()) return;
-  for (const KeptKit& kept : play_.take_kits())
-    unsaved_kits_.add(to_hex(kept.world), to_text(kept.kit));
-  if (const auto saved = unsaved_kits_.save(options_.kits_file); !saved)
-    spdlog::warn("{}", saved.error());
-}
-
-void Client::keep_hotbars() {
-  if (options_.hotbars_file.empty()) return;
-  const auto kept = play_.take_hotbars();
-  if (!kept) return;
-  const auto saved = save_hotbars(options_.hotbars_file, *kept);
-  if (!saved) spdlog::warn("{}", saved.error());
+void Client::keep_player(TimeUs now_us) {
+  for (const KeptKit& kept : play_.take_kits()) player_files_.keep(kept.world, kept.kit, now_us);
+  if (auto hotbars = play_.take_hotbars()) player_files_.keep(*std::move(hotbars), now_us);
 }
 
 void Client::look_at_horizon(TimeUs now_us) {
@@ -409,8 +395,8 @@ ClientReport Client::report() const {
 
 int Client::finish(int code) {
   look_at_horizon(steady_now_us());
-  keep_kits();
-  keep_hotbars();
+  keep_player(steady_now_us());
+  if (const auto written = player_files_.finish(); !written) spdlog::warn("{}", written.error());
   network_.finish();
   if (runner_) {
     for (const std::string& failure : runner_->failures())

@@ -18,13 +18,13 @@
 #include "client/app/clipboard_transfer.hpp"
 #include "client/app/game_menu.hpp"
 #include "client/app/options.hpp"
+#include "client/app/player_files.hpp"
 #include "client/app/script_actions.hpp"
 #include "client/app/terminal_chat.hpp"
 #include "client/app/threaded_session.hpp"
 #include "client/play/play.hpp"
 #include "client/report/report.hpp"
 #include "client/script/script_runner.hpp"
-#include "client/settings/world_kits.hpp"
 
 namespace runstone {
 
@@ -58,11 +58,8 @@ class Client {
   void pause();
   /// Records how much of the distant ground is here.
   void look_at_horizon(TimeUs now_us);
-  /// Writes the kits of the worlds that have changed, and those that could not be written before.
-  /// Waits for the disk: call it when a world opens and at the end, not in other turns.
-  void keep_kits();
-  /// Writes the hotbars if one was kept or forgotten, at the same times.
-  void keep_hotbars();
+  /// Gives what the player holds, and the kept hotbars, to player_files_ if they have changed.
+  void keep_player(TimeUs now_us);
   /// Sends what is queued, and meshes what changed.
   void flush();
   /// Shows the notices and the new lines of the chat.
@@ -102,11 +99,11 @@ class Client {
   Window* const window_;            // of the display; null off screen
   GameMenu* const menu_;            // may be null
   ClientLog log_;
+  PlayerFiles player_files_;  // play_ reads it
   Play play_;
   MeshPipeline& pipeline_;  // of play_
   HorizonRecorder horizon_;
   TimeUs horizon_due_us_ = 0;  // when it looks again
-  UnsavedKits unsaved_kits_;
   TerminalChat chat_;
   ClientHud hud_;
   ClipboardTransfer files_;

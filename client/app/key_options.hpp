@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "common/command_line/command_help.hpp"
 #include "common/os/host_port.hpp"
 #include "common/tls/tls_context.hpp"
 #include "protocol/default_port.hpp"
@@ -28,5 +29,7 @@ struct ParsedKeyCommand {
 };
 /// Parses the words from "key" on.
 ParsedKeyCommand parse_key_command(int argc, const char* const* argv);
+/// Returns the subcommand `key` as the help of the program has it.
+CommandHelp key_command_help();
 
 }  // namespace runstone

@@ -5,14 +5,16 @@
 #include <iterator>
 #include <thread>
 
+#include "client/app/key_options.hpp"
 #include "client/display/look_control.hpp"
 #include "client/render/antialiasing.hpp"
 #include "client/session/join_check.hpp"
+#include "common/command_line/help_options.hpp"
 #include "common/core/day_time.hpp"
 #include "common/core/tile_keys.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/text_file.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/codec/view_tiles.hpp"
 #include "protocol/limits.hpp"
@@ -254,6 +256,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   add_session_options(app, out, raw);
   add_output_options(app, out, raw);
   add_modes(app, out);
+  add_help_options(app, "runstone-client", [] { return std::vector{key_command_help()}; });
   try {
     app.parse(argc, argv);
     finish(app, raw, out);

@@ -87,8 +87,8 @@ const EditDescriptor* ActionSender::next(TimeUs now_us) {
       case SourceStep::Kind::edit:
         return &ahead_->edit;
       case SourceStep::Kind::wait:
+        progress_.waits_for = std::move(ahead_->why);
         ahead_.reset();
-        progress_.waits_for = "ground that is not here yet";
         return nullptr;
       case SourceStep::Kind::barrier:
         if (!under_way_.empty()) return nullptr;

@@ -14,17 +14,18 @@ namespace runstone {
 struct SourceStep {
   enum class Kind : std::uint8_t {
     edit,     // `edit` is the next one
-    wait,     // the next edit is not known yet, for example because a chunk is not here: ask later
+    wait,     // the next edit is not known yet: ask later. `why` says for what it waits
     barrier,  // the edits that follow are sent when all before it are answered and none is refused
     end,      // there are no more edits
     failed,   // there are no more edits, although some are missing: `why` says why
   };
   Kind kind = Kind::end;
   EditDescriptor edit{};
-  std::string why{};  // for the player
+  std::string why{};  // for the player, of `wait` and `failed`
 
   static SourceStep of(EditDescriptor edit) { return {Kind::edit, std::move(edit), {}}; }
-  static SourceStep later() { return {Kind::wait, {}, {}}; }
+  /// `what` says for what the edit waits.
+  static SourceStep later(std::string what) { return {Kind::wait, {}, std::move(what)}; }
   static SourceStep after_all() { return {Kind::barrier, {}, {}}; }
   static SourceStep done() { return {}; }
   static SourceStep failure(std::string why) { return {Kind::failed, {}, std::move(why)}; }

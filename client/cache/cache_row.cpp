@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone {
 namespace {

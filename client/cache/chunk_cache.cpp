@@ -8,7 +8,7 @@
 #include "client/cache/cache_drops.hpp"
 #include "client/cache/cache_row.hpp"
 #include "common/os/user_folders.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/command_line/help_options.hpp"
 #include "common/core/text.hpp"
 #include "common/os/output_file.hpp"
 #include "common/os/text_file.hpp"
@@ -83,6 +84,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   // The last value wins, as in the other programs.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version", program_version("runstone-bot"));
+  add_help_options(app, "runstone-bot");
   std::string address, role = "build", mix, password_file;
   unsigned view = out.view_radius, far_levels = out.far_levels;
   std::uint64_t edits = 0;

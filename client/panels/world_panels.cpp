@@ -100,7 +100,7 @@ void WorldPanels::fill_rollback(RollbackState& state) const {
   const auto& permissions = session_.replica().ground().permissions();
   // A server without the feature checks the right when it gets the command.
   state.is_allowed = !permissions || RightSet::of_bits(permissions->rights).has(Right::roll_back);
-  state.has_selection = tools_.selection().has_value();
+  state.has_selection = tools_.selected_box().has_value();
   std::map<AuthorId, std::string> authors;
   for (const auto& [author, other] : session_.others())
     authors[author] = with_unseen_replaced(other.name);

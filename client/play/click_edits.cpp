@@ -1,5 +1,7 @@
 #include "client/play/click_edits.hpp"
 
+#include <optional>
+
 namespace runstone {
 
 std::vector<std::string> ClickEdits::step(const WindowInput& input, bool releases, TimeUs now_us) {
@@ -7,6 +9,10 @@ std::vector<std::string> ClickEdits::step(const WindowInput& input, bool release
   const auto note = [&refused](const Result<void, std::string>& done) {
     if (!done) refused.push_back(done.error());
   };
+  std::optional<SelectMode> mode;
+  if (input.fast) mode = SelectMode::add;
+  if (input.resizes) mode = SelectMode::remove;
+  tool_.box().hold_select_mode(mode);
   const bool repeats = tool_.repeats();
   int acts = remove_button_.acts(input.remove_clicks, input.remove_held && repeats, now_us);
   while (acts-- > 0) note(tool_.press(ToolButton::clear, now_us));

@@ -41,8 +41,9 @@ class ClickEdits {
   explicit ClickEdits(EditTool& tool) : tool_(tool) {}
 
   /// Carries out presses of the left and the right button. `releases`: a button that is not held
-  /// counts as released, so a tool that waits for the release acts. Returns for each refused edit
-  /// the reason, in words for the player.
+  /// counts as released, so a tool that waits for the release acts. While the player holds the key
+  /// that moves fast, a chosen box is added to the selection; with the key that resizes it is removed
+  /// from the selection. Returns for each refused edit the reason, in words for the player.
   std::vector<std::string> step(const WindowInput& input, bool releases, TimeUs now_us);
 
  private:

@@ -38,6 +38,7 @@ const char* name_of(SymmetryKind kind) {
 
 /// Returns what an action does, as a verb.
 std::string name_of(const ToolAction& action) {
+  if (action.pattern) return "mix";
   if (clears_at_end(action)) return "move";
   if (action.edits.empty() || std::holds_alternative<Paste>(action.edits.front().shape))
     return "paste";
@@ -72,10 +73,10 @@ Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
-  const auto selected = box_.selection();
+  const BoxSet selected = box_.selected_boxes();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
-  if (!done && box_.selection() != selected) box_.select(selected);  // it did not move
+  if (!done) box_.select(selected);  // it did not move
   return done;
 }
 
@@ -103,7 +104,7 @@ Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us
   if (session_.replica().opened() && needs_build(*made)) return build(*made);
   const std::vector<EditDescriptor>& edits = made->edits;
   for (std::size_t i = 0; i < edits.size(); ++i) {
-    const ActionPart part = part_of_action(i, edits.size());
+    const ActionPart part = part_of(*made, i);
     if (made->has_followers && i > 0) {
       follow(edits[i], now_us);
     } else if (auto done = propose(edits[i], now_us, now_us, part); !done) {
@@ -126,6 +127,7 @@ Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<Edit
                                           OnRefusal on_refusal) {
   if (sender_ != nullptr)
     return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  box_.begin_action();
   sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
   build_name_ = std::move(name);
   return {};
@@ -156,6 +158,12 @@ bool EditTool::stop_building() {
   if (sender_ == nullptr) return false;
   sender_->cancel();
   return true;
+}
+
+bool EditTool::has_built() const {
+  if (sender_ == nullptr) return false;
+  const ActionProgress& progress = sender_->progress();
+  return sender_->under_way() > 0 || progress.edits_done > 0;
 }
 
 std::string EditTool::build_text() const {
@@ -233,6 +241,7 @@ std::string EditTool::measure_text() const {
 
 Result<void, std::string> EditTool::propose(const EditDescriptor& edit, TimeUs due_us,
                                             TimeUs now_us, ActionPart part) {
+  if (part != ActionPart::next) box_.begin_action();
   if (part == ActionPart::first) action_ = 0;
   ClientSequence action = 0;
   if (part != ActionPart::alone) action = action_ != 0 ? action_ : kBeginsAction;

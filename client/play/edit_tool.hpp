@@ -83,6 +83,9 @@ class EditTool {
   bool is_building() const { return sender_ != nullptr; }
   /// Sends nothing more of the action under way. Returns false if there is none.
   bool stop_building();
+  /// Returns true if an edit of the action under way was sent and not refused: then an undo takes
+  /// back that action.
+  bool has_built() const;
   /// Returns how far the action under way is, as a line for the player, or an empty text.
   std::string build_text() const;
   /// Returns how the last action ended; an empty stop_reason if all of it was sent.

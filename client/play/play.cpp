@@ -237,10 +237,15 @@ bool Play::act(Action action, TimeUs now_us) {
       notify(tool_.stop_building() ? "it stops when the server has answered what was sent"
                                    : "no fill, paste or move is under way");
       return true;
-    case Action::undo:
+    case Action::undo: {
+      // An action of which nothing was sent yet is only stopped: an undo would take back the one
+      // before it.
+      tool_.box().begin_action();  // a paste that is taken back cannot be moved
+      const bool is_unsent = tool_.is_building() && !tool_.has_built();
       tool_.stop_building();
-      chat_.send("/undo");  // the answer is shown
+      if (!is_unsent) chat_.send("/undo");  // the answer is shown
       return true;
+    }
     case Action::redo:
       chat_.send("/redo");
       return true;
@@ -329,6 +334,7 @@ void Play::step_author(const PlaySettings& settings, TimeUs now_us) {
   author_due_us_ = now_us + kAuthorEveryUs;
   const auto hit = settings.shows_authors ? tool_.pick() : std::nullopt;
   session_.step_voxel_author(hit ? std::optional(hit->voxel) : std::nullopt, now_us);
+  if (!session_.take_voxel_author_changed()) return;
   const VoxelAuthor::Found* const found = session_.voxel_author().found();
   std::string text;
   if (found != nullptr) {

@@ -54,6 +54,45 @@ KeyAnswer next_symmetry(EditTool& tool) {
   return next.kind == SymmetryKind::none ? "no symmetry" : tool.text();
 }
 
+/// Moves the mirror planes from the middle of their voxel to its border, or back.
+KeyAnswer half_symmetry(EditTool& tool) {
+  Symmetry next = tool.box().symmetry();
+  if (next.kind == SymmetryKind::none) return failure("choose a symmetry first");
+  // An odd number is the border behind a voxel.
+  const bool is_middle = next.centre2_x % 2 == 0;
+  const auto moved_plane = [&](std::int32_t& centre2) {
+    if ((centre2 % 2 == 0) == is_middle) centre2 += is_middle ? 1 : -1;
+  };
+  moved_plane(next.centre2_x);
+  moved_plane(next.centre2_z);
+  tool.box().set_symmetry(next);
+  return std::string(is_middle ? "the mirror planes lie between voxels"
+                               : "the mirror planes lie in the middle of voxels");
+}
+
+/// Returns the direction of the world into which an arrow key points for the player.
+Direction nudge_direction(const LookDirection& look, Action action) {
+  switch (action) {
+    case Action::nudge_left:
+      return opposite(horizontal_right(look));
+    case Action::nudge_right:
+      return horizontal_right(look);
+    case Action::nudge_away:
+      return horizontal_look(look);
+    case Action::nudge_near:
+      return opposite(horizontal_look(look));
+    case Action::nudge_up:
+      return Direction::pos_y;
+    default:
+      return Direction::neg_y;
+  }
+}
+
+KeyAnswer nudge(EditTool& tool, Action action, TimeUs now_us) {
+  const Direction direction = nudge_direction(tool.aim().look, action);
+  return words(tool.propose(tool.box().nudge(tool.replica(), direction), now_us), "moved");
+}
+
 KeyAnswer turn_preview(EditTool& tool) {
   const bool is_shown = !tool.box().is_preview_shown();
   tool.box().show_preview(is_shown);
@@ -90,12 +129,22 @@ std::optional<Result<std::string, std::string>> act_on_tool(EditTool& tool, Acti
       return choose_tool(tool, "paste");
     case Action::clear_selection:
       return words(tool.propose(box.fill(replica, kEmpty), now_us), "cleared");
+    case Action::nudge_left:
+    case Action::nudge_right:
+    case Action::nudge_away:
+    case Action::nudge_near:
+    case Action::nudge_up:
+    case Action::nudge_down:
+      if (!replica.opened()) return KeyAnswer(failure("no world is open"));
+      return nudge(tool, action, now_us);
     case Action::rotate:
       return turn_words(box, box.rotate(1), "the clipboard is turned");
     case Action::mirror:
       return turn_words(box, box.mirror(Axis::x), "the clipboard is mirrored");
     case Action::symmetry:
       return next_symmetry(tool);
+    case Action::half_symmetry:
+      return half_symmetry(tool);
     case Action::preview:
       return turn_preview(tool);
     default:

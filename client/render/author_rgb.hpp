@@ -21,7 +21,8 @@ inline std::array<std::uint8_t, 3> author_rgb(AuthorId author) {
   const double hue = 6 * (turn - std::floor(turn));  // in sixths of the circle
   std::array<std::uint8_t, 3> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
-    // How far the channel lies below the greatest one: its hue is 0, 2 or 4.
+    // The pure colours of the three channels have the hues 0, 2 and 4. `below` is the share by
+    // which this channel is less than the greatest one.
     const double from = std::fabs(hue - 2.0 * static_cast<double>(i));
     const double near = std::min(from, 6 - from);
     const double below = std::clamp(near - 1, 0.0, 1.0);

@@ -1,4 +1,5 @@
-// MarkerPainter: draws boxes in one colour, filled or by their edges and diagonals. Thread: the GL thread.
+// MarkerPainter: draws boxes in one colour, filled or by their edges and diagonals. Thread: the GL
+// thread.
 #pragma once
 #include <glm/glm.hpp>
 #include <span>

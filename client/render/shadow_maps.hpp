@@ -4,7 +4,7 @@
 // is drawn again only if
 //   - the eye has moved by a part of its radius (its middle is a multiple of that part, and its
 //     pixels keep their places in the world),
-//   - a chunk within it changed, or
+//   - a chunk within it changed, or the surfaces of all chunks did, or
 //   - the sun moved.
 // A cascade has two maps: one is shown, and the next one is drawn over several frames, a bounded
 // number of quads in each. So an edit or a moving eye makes no frame much longer.
@@ -45,6 +45,10 @@ class ShadowMaps {
   ShadowMaps();
   /// Call it for each chunk that changed: a box in world voxels.
   void changed(const glm::dvec3& min, const glm::dvec3& max);
+  /// Call it if any chunk may cast another shadow than before.
+  void all_changed() {
+    for (Cascade& cascade : cascades_) cascade.is_stale = true;
+  }
   /// Draws the cascades that need it, and leaves another framebuffer bound. If `all` is false, it
   /// draws about kQuadsAFrame quads into the next map of each cascade, and shows that map once it
   /// is complete. A cascade without a map near the eye is drawn at once. The inner cascade has the

@@ -130,7 +130,8 @@ inline constexpr const char* kTerrainFragmentShader =
     "  float tint = 1.0 + detail * (look.r * hash(ivec3(floor(voxel))) - 0.07 * rim);\n"
     "#ifdef RUNSTONE_FINE\n"
     "  float fine = clamp(1.5 - 24.0 * pixel, 0.0, 1.0);\n"
-    // The place across the face is a half, so without the shift its cell would be a matter of rounding.
+    // Across the face, the place lies on the border of two cells. Without the shift, rounding would
+    // choose the cell.
     "  tint += fine * look.g * hash(ivec3(floor(voxel * 8.0 + 0.25)));\n"
     "  tint *= mix(1.0, shade(st, face.y), fine);\n"
     "#endif\n"

@@ -69,11 +69,7 @@ Result<BuildPtr> copy_box(const Replica& replica, const VoxelBox& box, std::size
   const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
   if (!fits_grid(first, last, bytes_max))
     return fail(ErrorCode::limit_exceeded, "build takes too much memory");
-  const VoxelPos origin = origin_of(first, edge);
-  auto out = BuildBuilder::of({grid_cuts(box.max.x - box.min.x, edge, box.min.x - origin.x),
-                               grid_cuts(box.max.y - box.min.y, edge, box.min.y - origin.y),
-                               grid_cuts(box.max.z - box.min.z, edge, box.min.z - origin.z)},
-                              bytes_max);
+  auto out = BuildBuilder::of(world_cuts(box, edge), bytes_max);
   if (!out) return failure(out.error());
   for (ChunkCoord at = first; at.z <= last.z; ++at.z) {
     for (at.y = first.y; at.y <= last.y; ++at.y) {

@@ -236,8 +236,10 @@ struct UseTool {
   Part part = Part::click;
   ToolButton button = ToolButton::place;  // not for drag and release
 };
-/// Selects a box by two corner voxels, both included.
+/// Selects a box by two corner voxels, both included, adds it to the selection or removes it from
+/// there.
 struct Select {
+  SelectMode mode = SelectMode::fresh;
   std::optional<ScriptPosition> from, to;  // nullopt: selects nothing
 };
 /// Changes the selection, or the voxels in it.

@@ -40,7 +40,7 @@ ScriptRunner::Progress ScriptRunner::propose_edits() {
       static_cast<void>(host_.propose(edit, now_us_, now_us_, ActionPart::next));
       continue;
     }
-    const Progress progress = propose(edit, part_of_action(state_.count, edits.size()));
+    const Progress progress = propose(edit, part_of(made_, state_.count));
     if (progress != Progress::done) return progress;
   }
   return Progress::done;
@@ -112,8 +112,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::Select& c) {
   const auto a = resolve_voxel(*c.from);
   const auto b = resolve_voxel(*c.to);
   if (!a || !b) return Progress::stop;
-  host_.tool_box().select(box_between(*a, *b));
-  return Progress::done;
+  const auto done = host_.tool_box().select(box_between(*a, *b), c.mode);
+  return done ? Progress::done : give_up(done.error());
 }
 
 ToolEdits ScriptRunner::carry_out(const ToolCommand& command) {

@@ -46,6 +46,9 @@ script::Step aim_step(ScriptWords& words) {
 script::Step select_step(ScriptWords& words) {
   script::Select select;
   if (takes_word(words, "none")) return select;
+  if (takes_word(words, "add")) select.mode = SelectMode::add;
+  if (select.mode == SelectMode::fresh && takes_word(words, "remove"))
+    select.mode = SelectMode::remove;
   select.from = read_position(words);
   select.to = read_position(words);
   return select;
@@ -91,7 +94,8 @@ script::Step selection_step(ScriptWords& words) {
     case Kind::move:
     case Kind::grow:
     case Kind::shift:
-      command.direction = read_direction(words);
+      command.is_all_around = command.kind == Kind::grow && takes_word(words, "all");
+      if (!command.is_all_around) command.direction = read_direction(words);
       command.count = read_number<std::int32_t>(words, "N", -kStepsMax, kStepsMax);
       break;
   }
@@ -209,6 +213,7 @@ std::optional<script::Step> tool_step(std::string_view verb, ScriptWords& words)
   if (verb == "release") return script::UseTool{Part::release, {}};
   if (verb == "select") return select_step(words);
   if (verb == "selection") return selection_step(words);
+  if (verb == "nudge") return script::RunToolCommand{PasteNudge{read_direction(words)}};
   if (verb == "rotate")
     return script::RunToolCommand{
         ClipboardTurn{read_number<int>(words, "QUARTERS", -3, 3), std::nullopt}};

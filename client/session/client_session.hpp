@@ -145,6 +145,8 @@ class ClientSession {
   /// is due. Does nothing unless open, in the past, and with servers that cannot say it.
   void step_voxel_author(const std::optional<VoxelPos>& at, TimeUs now_us);
   const VoxelAuthor& voxel_author() const { return voxel_author_; }
+  /// Returns true if voxel_author().found() may return something else than at the last call.
+  bool take_voxel_author_changed() { return voxel_author_.take_changed(); }
 
   /// Returns true if the server has a library of builds that clients use.
   bool has_library() const;

@@ -17,6 +17,8 @@ std::optional<LogMarksRequest> VoxelAuthor::look(const std::optional<Sight>& sig
   if (pending_ && now_us - pending_->sent_us >= kAnswerUsMax) pending_.reset();
   const bool is_same = sight && sight_ && sight->at == sight_->at;
   if (!is_same) rests_since_us_ = now_us;
+  const bool shows_same = is_same && sight->material == sight_->material;
+  if (!shows_same && (sight || sight_)) has_changed_ = true;
   sight_ = sight;
   if (!sight || pending_ || !may_send || now_us - rests_since_us_ < kRestUs) return std::nullopt;
   if (sent_us_ && now_us - *sent_us_ < kEveryUs) return std::nullopt;
@@ -42,6 +44,7 @@ bool VoxelAuthor::receive(const LogMarks& marks) {
   std::erase_if(kept_, [&](const Kept& each) { return each.sight.at == answer.sight.at; });
   kept_.push_front(std::move(answer));
   if (kept_.size() > kKeptMax) kept_.pop_back();
+  has_changed_ = true;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "protocol/codec/messages.hpp"
 
@@ -52,6 +53,8 @@ class VoxelAuthor {
   /// Returns the record for the voxel in sight, or null if it is not known or there is none. An
   /// answer stays while the material does, also if the chunk has a newer version.
   const Found* found() const;
+  /// Returns true if found() may return something else than at the last call.
+  bool take_changed() { return std::exchange(has_changed_, false); }
 
  private:
   struct Kept {
@@ -65,6 +68,7 @@ class VoxelAuthor {
   };
   const Kept* kept(const Sight& sight) const;
 
+  bool has_changed_ = true;
   std::optional<Sight> sight_;
   TimeUs rests_since_us_ = 0;
   std::optional<TimeUs> sent_us_;

@@ -1,31 +1,20 @@
 #include "client/settings/hotbars_file.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
-#include <filesystem>
-#include <optional>
-#include <system_error>
 #include <utility>
 
+#include "client/settings/toml_rows.hpp"
 #include "client/settings/toml_text.hpp"
-#include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
-#include "common/os/text_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::size_t kFileBytesMax = 1 << 18;
-constexpr std::size_t kHotbarsBytesMax = 256;  // of a name
+constexpr std::size_t kHotbarsFileBytesMax = 1 << 18;
+constexpr std::size_t kRowTextBytesMax = 256;  // the name of a hotbar, or that of a material
 constexpr std::size_t kHotbarsMax = 32, kSlotsMax = 9;
-
-std::optional<std::string> text_of(const toml::node* node) {
-  auto text = node == nullptr ? std::nullopt : node->value<std::string>();
-  if (!text || text->size() > kHotbarsBytesMax || !is_printable_utf8(*text)) return std::nullopt;
-  return text;
-}
 
 }  // namespace
 
@@ -36,27 +25,15 @@ std::string default_hotbars_file() {
 
 HotbarRows load_hotbars(const std::string& file) {
   HotbarRows out;
-  std::error_code error;
-  if (file.empty() || !std::filesystem::exists(file, error)) return out;
-  const auto text = read_text_file(file, kFileBytesMax);
-  if (!text) return out;
-  try {
-    const toml::table root = toml::parse(*text);
-    const toml::array* const rows = root["hotbar"].as_array();
-    if (rows == nullptr) return out;
-    for (const toml::node& node : *rows) {
-      const toml::table* const row = node.as_table();
-      const toml::array* const slots = row == nullptr ? nullptr : (*row)["slots"].as_array();
-      const auto name = row == nullptr ? std::nullopt : text_of(row->get("name"));
-      if (!name || slots == nullptr || slots->size() > kSlotsMax || out.size() == kHotbarsMax)
-        continue;
-      std::vector<std::string> materials;
-      for (const toml::node& slot : *slots) materials.push_back(text_of(&slot).value_or(""));
-      out.emplace(*name, std::move(materials));
-    }
-  } catch (const toml::parse_error&) {
-    static_cast<void>(set_aside(file));
-  }
+  each_row_of_file(file, kHotbarsFileBytesMax, "hotbar", [&](const toml::table& row) {
+    const toml::array* const slots = row["slots"].as_array();
+    const auto name = line_of(row.get("name"), kRowTextBytesMax);
+    if (!name || slots == nullptr || slots->size() > kSlotsMax || out.size() == kHotbarsMax) return;
+    std::vector<std::string> materials;
+    for (const toml::node& slot : *slots)
+      materials.push_back(line_of(&slot, kRowTextBytesMax).value_or(""));
+    out.emplace(*name, std::move(materials));
+  });
   return out;
 }
 

@@ -1,7 +1,6 @@
 #include "client/settings/recent_servers.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "client/settings/toml_rows.hpp"
 #include "client/settings/toml_text.hpp"
-#include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
 #include "common/os/text_file.hpp"
 #include "common/os/user_folders.hpp"
@@ -19,19 +18,12 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kServersBytesMax = 1 << 16;
-constexpr std::size_t kTextBytesMax = 512;
-
-/// Returns the text of a field, or nullopt if it is missing or cannot be shown in a line.
-std::optional<std::string> text_of(const toml::table& row, std::string_view key) {
-  auto text = row[key].value<std::string>();
-  if (!text || text->size() > kTextBytesMax || !is_printable_utf8(*text)) return std::nullopt;
-  return text;
-}
+constexpr std::size_t kServerTextBytesMax = 512;
 
 std::optional<RecentServer> read_row(const toml::table& row) {
-  auto address = text_of(row, "address");
-  auto world = text_of(row, "world");
-  auto name = text_of(row, "name");
+  auto address = line_of(row.get("address"), kServerTextBytesMax);
+  auto world = line_of(row.get("world"), kServerTextBytesMax);
+  auto name = line_of(row.get("name"), kServerTextBytesMax);
   const auto joined_us = row["joined_us"].value<std::int64_t>();
   if (!address || address->empty() || !world || !name || !joined_us) return std::nullopt;
   return RecentServer{*std::move(address), *std::move(world), *std::move(name), *joined_us};
@@ -57,19 +49,11 @@ std::string to_toml(const std::vector<RecentServer>& servers) {
 
 Result<std::vector<RecentServer>, std::string> read_recent_servers(std::string_view toml) {
   std::vector<RecentServer> out;
-  try {
-    const toml::table root = toml::parse(toml);
-    const toml::array* const rows = root["server"].as_array();
-    if (rows == nullptr) return out;
-    for (const toml::node& node : *rows) {
-      if (out.size() == kRecentServersMax) break;
-      if (const toml::table* const row = node.as_table()) {
-        if (auto server = read_row(*row)) out.push_back(*std::move(server));
-      }
-    }
-  } catch (const toml::parse_error& bad) {
-    return failure(fmt::format("{}: {}", bad.source().begin.line, bad.description()));
-  }
+  const auto read = each_toml_row(toml, "server", [&](const toml::table& row) {
+    if (out.size() == kRecentServersMax) return;
+    if (auto server = read_row(row)) out.push_back(*std::move(server));
+  });
+  if (!read) return failure(read.error());
   return out;
 }
 

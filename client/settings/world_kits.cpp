@@ -1,23 +1,19 @@
 #include "client/settings/world_kits.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
-#include <filesystem>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "client/settings/toml_rows.hpp"
 #include "client/settings/toml_text.hpp"
-#include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
-#include "common/os/text_file.hpp"
 #include "common/os/user_folders.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::size_t kKitsBytesMax = 1 << 16;
+constexpr std::size_t kKitsFileBytesMax = 1 << 16;
 constexpr std::size_t kKitTextBytesMax = 256;
 
 struct KitRow {
@@ -27,25 +23,12 @@ struct KitRow {
 /// Returns the rows of the file. A missing or broken file has none.
 std::vector<KitRow> read_kits(const std::string& file) {
   std::vector<KitRow> out;
-  const auto text = read_text_file(file, kKitsBytesMax);
-  if (!text) return out;
-  try {
-    const toml::table root = toml::parse(*text);
-    const toml::array* const rows = root["world"].as_array();
-    if (rows == nullptr) return out;
-    for (const toml::node& node : *rows) {
-      const toml::table* const row = node.as_table();
-      if (row == nullptr || out.size() == kWorldKitsMax) continue;
-      auto world = (*row)["id"].value<std::string>();
-      auto line = (*row)["kit"].value<std::string>();
-      const auto is_sound = [](const std::optional<std::string>& value) {
-        return value && value->size() <= kKitTextBytesMax && is_printable_utf8(*value);
-      };
-      if (is_sound(world) && is_sound(line)) out.push_back({*std::move(world), *std::move(line)});
-    }
-  } catch (const toml::parse_error&) {
-    static_cast<void>(set_aside(file));
-  }
+  each_row_of_file(file, kKitsFileBytesMax, "world", [&](const toml::table& row) {
+    auto world = line_of(row.get("id"), kKitTextBytesMax);
+    auto line = line_of(row.get("kit"), kKitTextBytesMax);
+    if (world && line && out.size() < kWorldKitsMax)
+      out.push_back({*std::move(world), *std::move(line)});
+  });
   return out;
 }
 
@@ -57,8 +40,6 @@ std::string default_kits_file() {
 }
 
 std::optional<std::string> load_kit(const std::string& file, const std::string& world) {
-  std::error_code error;
-  if (file.empty() || !std::filesystem::exists(file, error)) return std::nullopt;
   for (KitRow& row : read_kits(file)) {
     if (row.world == world) return std::move(row.line);
   }
@@ -68,9 +49,7 @@ std::optional<std::string> load_kit(const std::string& file, const std::string& 
 Result<void, std::string> save_kit(const std::string& file, const std::string& world,
                                    const std::string& line) {
   if (file.empty()) return failure(std::string("no file for the kits of worlds"));
-  std::error_code error;
-  std::vector<KitRow> rows;
-  if (std::filesystem::exists(file, error)) rows = read_kits(file);
+  std::vector<KitRow> rows = read_kits(file);
   std::erase_if(rows, [&](const KitRow& row) { return row.world == world; });
   rows.insert(rows.begin(), {world, line});
   if (rows.size() > kWorldKitsMax) rows.resize(kWorldKitsMax);
@@ -86,6 +65,17 @@ Result<void, std::string> save_kit(const std::string& file, const std::string& w
 void UnsavedKits::add(std::string world, std::string line) {
   std::erase_if(lines_, [&](const auto& entry) { return entry.first == world; });
   lines_.emplace_back(std::move(world), std::move(line));
+}
+
+void UnsavedKits::add_all(UnsavedKits newer) {
+  for (auto& [world, line] : newer.lines_) add(std::move(world), std::move(line));
+}
+
+std::optional<std::string> UnsavedKits::find(const std::string& world) const {
+  for (const auto& [of, line] : lines_) {
+    if (of == world) return line;
+  }
+  return std::nullopt;
 }
 
 Result<void, std::string> UnsavedKits::save(const std::string& file) {

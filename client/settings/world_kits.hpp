@@ -29,6 +29,10 @@ class UnsavedKits {
  public:
   /// Adds the line of a world, and replaces an earlier one of that world.
   void add(std::string world, std::string line);
+  /// Adds the lines of `newer`, as add() does.
+  void add_all(UnsavedKits newer);
+  /// Returns the line of a world, or nullopt if none is unsaved.
+  std::optional<std::string> find(const std::string& world) const;
   /// Writes all lines with save_kit(). Lines that cannot be written stay for the next call. Fails
   /// as save_kit() does.
   Result<void, std::string> save(const std::string& file);

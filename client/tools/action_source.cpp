@@ -6,6 +6,7 @@
 
 #include "client/build/cut_edit.hpp"
 #include "client/build/joined_source.hpp"
+#include "client/tools/pattern_source.hpp"
 
 namespace runstone {
 namespace {
@@ -44,7 +45,7 @@ ToolAction paste_of_build(BuildPaste paste, const EditLimits& limits) {
 }
 
 bool is_small(const ToolAction& action, const EditLimits& limits) {
-  return action.pastes.empty() &&
+  return action.pastes.empty() && !action.pattern &&
          std::none_of(action.edits.begin(), action.edits.end(),
                       [&](const EditDescriptor& edit) { return needs_cut(edit, limits); });
 }
@@ -56,6 +57,7 @@ bool clears_at_end(const ToolAction& action) {
 
 std::unique_ptr<EditSource> source_of(const ToolAction& action, const EditLimits& limits) {
   auto out = std::make_unique<JoinedSource>();
+  if (action.pattern) out->add(std::make_unique<PatternSource>(action.pattern, limits));
   for (const BuildPaste& paste : action.pastes)
     out->add(std::make_unique<BuildPasteSource>(paste, limits));
   bool needs_barrier = clears_at_end(action);

@@ -19,9 +19,9 @@ bool is_small(const ToolAction& action, const EditLimits& limits);
 /// needed elsewhere first.
 bool clears_at_end(const ToolAction& action);
 
-/// Returns a source of the edits of an action in a world with these limits: those of the pastes, and
-/// then the other edits. If the action clears at its end, a barrier stands before the first edit that
-/// clears. Requires an action that is not empty.
+/// Returns a source of the edits of an action in a world with these limits: those of the pattern,
+/// those of the pastes, and then the other edits. If the action clears at its end, a barrier stands
+/// before the first edit that clears. Requires an action that is not empty.
 std::unique_ptr<EditSource> source_of(const ToolAction& action, const EditLimits& limits);
 
 }  // namespace runstone

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/formats/facing_words.hpp"
 
 namespace runstone {
 
@@ -58,6 +59,12 @@ VoxelPos moved(VoxelPos voxel, Direction direction, std::int32_t steps) {
       break;
   }
   return voxel;
+}
+
+Direction horizontal_right(const LookDirection& look) { return right_of(horizontal_look(look)); }
+
+VoxelPos sides_of(const VoxelBox& box) {
+  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
 }
 
 VoxelBox moved(const VoxelBox& box, Direction direction, std::int32_t steps) {

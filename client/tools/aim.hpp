@@ -51,6 +51,8 @@ std::int32_t stroke_step(VoxelPos from, VoxelPos to);
 
 /// Returns the direction along x or z that is nearest to a look.
 Direction horizontal_look(const LookDirection& look);
+/// Returns the direction to the right of horizontal_look().
+Direction horizontal_right(const LookDirection& look);
 
 /// Fails with words for the player if consecutive places are more than kStrokeStepMax apart: places
 /// that are typed may be anywhere in the world, and a curve has points all along its way.
@@ -58,6 +60,9 @@ Result<void, std::string> check_steps(std::span<const VoxelPos> places);
 
 /// Returns the box with these corners, both included.
 VoxelBox box_between(VoxelPos a, VoxelPos b);
+
+/// Returns the sides of a box.
+VoxelPos sides_of(const VoxelBox& box);
 
 /// Returns the voxel `steps` steps away in a direction.
 VoxelPos moved(VoxelPos voxel, Direction direction, std::int32_t steps);

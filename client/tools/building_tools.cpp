@@ -163,9 +163,12 @@ ToolEdits ReplaceTool::plan(const ToolInput& input) const {
                                         {c.x + radius, c.y + radius, c.z + radius});
       return std::vector{EditDescriptor{FillBox{cube}, mask, material}};
     }
-    case 2:
-      if (!input.selection) return failure("nothing is selected");
-      return std::vector{EditDescriptor{FillBox{*input.selection}, mask, material}};
+    case 2: {
+      if (input.selection.empty()) return failure("nothing is selected");
+      std::vector<EditDescriptor> edits;
+      for (const VoxelBox& box : input.selection) edits.push_back({FillBox{box}, mask, material});
+      return edits;
+    }
     default:
       return std::vector{EditDescriptor{
           FillSphere{input.target, static_cast<std::uint16_t>(radius)}, mask, material}};
@@ -251,10 +254,13 @@ ToolEdits ExtrudeTool::plan(const ToolInput& input) const {
 /// Chooses the box between two voxels as the selection.
 class SelectTool final : public Tool {
  public:
-  SelectTool() : Tool("select", "two corners choose a box", {}) {}
+  SelectTool()
+      : Tool("select", "two corners choose a box",
+             {{"mode", "", 0, kSelectModeCount - 1, 0, {"new", "add", "remove"}}}) {}
   std::size_t points_before() const override { return 1; }
   bool chooses_solid() const override { return true; }
   bool selects() const override { return true; }
+  SelectMode select_mode() const override { return static_cast<SelectMode>(value("mode")); }
   std::string_view place_name(std::size_t) const override { return "corner"; }
   bool spans_box() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;

@@ -1,12 +1,26 @@
 #include "client/tools/mix_tool.hpp"
 
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
+#include "client/tools/pattern_work.hpp"
 #include "client/tools/typed_pattern.hpp"
 #include "common/patterns/replaced.hpp"
 
 namespace runstone {
 namespace {
+
+/// The voxels of a box that is worked out at the click, which takes some 15 ms. A larger one, and
+/// several boxes, are worked out in steps.
+constexpr std::uint64_t kAtOnceVoxelsMax = std::uint64_t{1} << 18;
+
+bool is_worked_out_at_once(const VoxelPos& sides) {
+  const auto area = static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.z);
+  return area <= kAtOnceVoxelsMax && area * static_cast<std::uint64_t>(sides.y) <= kAtOnceVoxelsMax;
+}
 
 class MixTool final : public Tool {
  public:
@@ -21,6 +35,7 @@ class MixTool final : public Tool {
   std::string_view place_name(std::size_t) const override {
     return is_selected() ? "any place" : "corner";
   }
+  bool spans_box() const override { return !is_selected(); }
   bool is_costly() const override { return true; }
   ToolEdits plan(const ToolInput& input) const override;
 
@@ -29,26 +44,32 @@ class MixTool final : public Tool {
 };
 
 ToolEdits MixTool::plan(const ToolInput& input) const {
-  if (is_selected() && !input.selection) return failure("nothing is selected");
-  const VoxelBox box =
-      is_selected()
-          ? *input.selection
-          : box_between(input.points.empty() ? input.target : input.points.front(), input.target);
-  const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-  if (!is_in_world(box.min, sides)) return failure("the box reaches outside the world there");
-  const PatternFrame frame{static_cast<std::uint64_t>(value("seed")), middle2_of(box)};
+  std::vector<VoxelBox> boxes(input.selection.begin(), input.selection.end());
+  if (!is_selected()) {
+    boxes = {box_between(input.points.empty() ? input.target : input.points.front(), input.target)};
+  }
+  if (boxes.empty()) return failure("nothing is selected");
+  VoxelBox around;
+  for (const VoxelBox& box : boxes) around = bounding_box(around, box);
+  if (!is_in_world(around.min, sides_of(around)))
+    return failure("the box reaches outside the world there");
+  const PatternFrame frame{static_cast<std::uint64_t>(value("seed")), middle2_of(around)};
   auto typed = typed_pattern(text("pattern"), input.materials, frame);
   if (!typed) return failure(typed.error());
   if (!typed->mix) return failure("type a pattern first, such as 70% stone, 30% gravel");
   BoundMix mix = input.button == ToolButton::clear ? BoundMix::of(kEmpty) : *std::move(typed->mix);
-  const auto placed =
-      replaced(box, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
-               [&](ChunkCoord at) { return input.replica.shown({0, at}); });
-  if (!placed) {
-    return failure(
-        std::string(placed.error().what) +
-        (placed.error().code == ErrorCode::limit_exceeded ? ": choose a smaller box" : ""));
+  ToolAction out;
+  if (boxes.size() > 1 || !is_worked_out_at_once(sides_of(around))) {
+    auto work =
+        pattern_work(input.replica, std::move(boxes), std::move(mix), std::move(typed->filter));
+    if (!work) return failure(work.error());
+    out.pattern = *std::move(work);
+    return out;
   }
+  const auto placed =
+      replaced(around, mix, typed->filter ? &*typed->filter : nullptr, input.replica.chunk_edge(),
+               [&](ChunkCoord at) { return input.replica.shown({0, at}); });
+  if (!placed) return failure(pattern_failure(placed.error()));
   if (!placed->build) return failure("the pattern changes no voxel there");
   return paste_of_build({placed->build, placed->at, {}, EmptyCells::pasted, true},
                         input.replica.edit_limits());

@@ -7,6 +7,7 @@
 
 #include "client/tools/build_words.hpp"
 #include "client/tools/merge_edits.hpp"
+#include "client/tools/pattern_work.hpp"
 #include "client/tools/turned_materials.hpp"
 #include "common/builds/build_transforms.hpp"
 
@@ -147,31 +148,60 @@ Result<BuildPtr> MirroredBuilds::mirrored(const BuildPtr& build, bool along_x, b
   return form;
 }
 
+std::vector<MirrorAxes> copies_of(SymmetryKind kind) {
+  switch (kind) {
+    case SymmetryKind::none:
+      break;
+    case SymmetryKind::x:
+      return {{true, false}};
+    case SymmetryKind::z:
+      return {{false, true}};
+    case SymmetryKind::both:
+      return {{true, false}, {false, true}, {true, true}};
+    case SymmetryKind::point:
+      return {{true, true}};
+  }
+  return {};
+}
+
+VoxelPos mirrored_corner(VoxelPos at, VoxelPos sides, MirrorAxes axes, const Symmetry& symmetry) {
+  if (axes.x) at.x = symmetry.centre2_x - (at.x + sides.x - 1);
+  if (axes.z) at.z = symmetry.centre2_z - (at.z + sides.z - 1);
+  return at;
+}
+
+Result<BuildPaste, std::string> mirrored(const BuildPaste& paste, MirrorAxes axes,
+                                         const Symmetry& symmetry, MirroredBuilds& builds,
+                                         const MaterialTable& materials) {
+  auto build = builds.mirrored(paste.build, axes.x, axes.z, materials);
+  if (!build) return failure(words_of(build.error()));
+  BuildPaste copy = paste;
+  const VoxelPos sides = paste.build->sides();
+  copy.build = *std::move(build);
+  copy.is_difference = false;
+  copy.at = mirrored_corner(paste.at, sides, axes, symmetry);
+  if (!is_in_world(copy.at, sides)) return failure("a mirrored copy reaches outside the world");
+  return copy;
+}
+
 Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
                                             MirroredBuilds& builds,
                                             const MaterialTable& materials) {
   ToolAction out(with_copies(std::move(action.edits), symmetry, materials));
   out.copied = std::move(action.copied);
   out.has_followers = action.has_followers && symmetry.kind == SymmetryKind::none;
+  out.chain = action.chain;
+  if (action.pattern) {
+    auto pattern = with_symmetry(std::move(action.pattern), symmetry, materials);
+    if (!pattern) return failure(pattern.error());
+    out.pattern = *std::move(pattern);
+  }
   for (const BuildPaste& paste : action.pastes) {
     out.pastes.push_back(paste);
-    using Kind = SymmetryKind;
-    const Kind kind = symmetry.kind;
-    for (const auto& [x, z] :
-         {std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
-      const bool is_made = kind == Kind::both || (kind == Kind::x && x && !z) ||
-                           (kind == Kind::z && !x && z) || (kind == Kind::point && x && z);
-      if (!is_made) continue;
-      auto build = builds.mirrored(paste.build, x, z, materials);
-      if (!build) return failure(words_of(build.error()));
-      BuildPaste copy = paste;
-      const VoxelPos sides = paste.build->sides();
-      copy.build = *std::move(build);
-      copy.is_difference = false;
-      if (x) copy.at.x = symmetry.centre2_x - (paste.at.x + sides.x - 1);
-      if (z) copy.at.z = symmetry.centre2_z - (paste.at.z + sides.z - 1);
-      if (!is_in_world(copy.at, sides)) return failure("a mirrored copy reaches outside the world");
-      out.pastes.push_back(std::move(copy));
+    for (const MirrorAxes axes : copies_of(symmetry.kind)) {
+      auto copy = mirrored(paste, axes, symmetry, builds, materials);
+      if (!copy) return failure(copy.error());
+      out.pastes.push_back(*std::move(copy));
     }
   }
   return out;

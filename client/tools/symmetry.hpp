@@ -58,9 +58,25 @@ class MirroredBuilds {
   std::array<BuildPtr, 4> forms_;  // bit 0: along x; bit 1: along z
 };
 
+/// The axes along which a copy is mirrored.
+struct MirrorAxes {
+  bool x = false, z = false;
+};
+
+/// Returns the axes of each copy that a symmetry makes besides the original.
+std::vector<MirrorAxes> copies_of(SymmetryKind kind);
+
+/// Returns the place of a box with these sides after it was mirrored about the centre.
+VoxelPos mirrored_corner(VoxelPos at, VoxelPos sides, MirrorAxes axes, const Symmetry& symmetry);
+
+/// Returns the copy of a paste, which is no difference. Fails with words for the player if the
+/// mirrored build takes too much memory, or if the copy reaches outside the world.
+Result<BuildPaste, std::string> mirrored(const BuildPaste& paste, MirrorAxes axes,
+                                         const Symmetry& symmetry, MirroredBuilds& builds,
+                                         const MaterialTable& materials);
+
 /// Returns an action with the copies of its edits, as with_copies() above makes them, and with those
-/// of its pastes. Fails with words for the player if a mirrored build takes too much memory, or if a
-/// copy of a paste reaches outside the world.
+/// of its pastes and of its pattern. Fails as mirrored() does.
 Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& symmetry,
                                             MirroredBuilds& builds, const MaterialTable& materials);
 

@@ -1,6 +1,8 @@
 #include "client/tools/text_tool.hpp"
 
 #include <array>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "client/lettering/font_file.hpp"
@@ -59,26 +61,26 @@ class TextTool final : public Tool {
   ToolEdits plan(const ToolInput& input) const override;
 
  private:
-  /// Returns the font, which is read from its file when its name has changed.
-  Result<FontPtr, std::string> font() const;
+  /// Returns what read_font() returns for the name of the font. It is called again only after the
+  /// name has changed, also if it has failed: it lists the folders of fonts.
+  const Result<FontPtr, std::string>& font() const;
 
-  mutable FontPtr font_;
+  mutable std::optional<Result<FontPtr, std::string>> font_;
   mutable std::string font_name_;  // of font_
 };
 
-Result<FontPtr, std::string> TextTool::font() const {
-  if (!font_ || font_name_ != text("font").text) {
-    auto read = read_font(text("font").text);
-    if (!read) return read;
-    font_ = *std::move(read);
-    font_name_ = text("font").text;
+const Result<FontPtr, std::string>& TextTool::font() const {
+  const std::string& name = text("font").text;
+  if (!font_ || font_name_ != name) {
+    font_ = read_font(name);
+    font_name_ = name;
   }
-  return font_;
+  return *font_;
 }
 
 ToolEdits TextTool::plan(const ToolInput& input) const {
   if (const auto ok = check_text(text("text").text); !ok) return failure(ok.error());
-  const auto bytes = font();
+  const Result<FontPtr, std::string>& bytes = font();
   if (!bytes) return failure(bytes.error());
   const auto upright = text_build(**bytes, text("text").text, {value("height"), value("thickness")},
                                   material_of(input));

@@ -53,14 +53,22 @@ struct ToolClipboard {
   std::shared_ptr<const Clipboard> whole;
 };
 
+/// The effect of a chosen box on the selection.
+enum class SelectMode : std::uint8_t {
+  fresh,   // it becomes the selection
+  add,     // its voxels are selected as well
+  remove,  // its voxels are not selected any more
+};
+inline constexpr std::int32_t kSelectModeCount = 3;
+
 /// The facts from which a tool makes its edits.
 struct ToolInput {
   const Replica& replica;  // open
   const Aim& aim;
   ToolButton button = ToolButton::place;
-  std::span<const VoxelPos> points;  // chosen before
-  VoxelPos target;                   // the voxel that this click chooses
-  const std::optional<VoxelBox>& selection;
+  std::span<const VoxelPos> points;     // chosen before
+  VoxelPos target;                      // the voxel that this click chooses
+  std::span<const VoxelBox> selection;  // boxes that do not overlap; none: nothing is selected
   const ToolClipboard& clipboard;
   const MaterialTable& materials;
   bool has_copies = false;  // the symmetry makes copies of the edits
@@ -107,6 +115,8 @@ class Tool {
   virtual bool reaches_air() const { return selects(); }
   /// Returns true if the chosen places become the selection, and no edit is made.
   virtual bool selects() const { return false; }
+  /// Returns what the chosen places do with the selection, if selects().
+  virtual SelectMode select_mode() const { return SelectMode::fresh; }
   /// Returns true if the first two places are opposite corners of the box that the tool works on.
   virtual bool spans_box() const { return false; }
   /// Returns what the place with this number, from 0, is called for the player.

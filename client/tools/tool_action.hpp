@@ -1,10 +1,14 @@
 // ToolAction: what a click or a command of the tools makes. All of it is one action. It is a value:
 // a preview shows it, and source_of() (action_source.hpp) makes its edits.
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "client/tools/action_part.hpp"
 #include "common/builds/build.hpp"
 #include "common/builds/paste_source.hpp"
 #include "common/core/coords.hpp"
@@ -28,6 +32,15 @@ struct BuildPaste {
   }
 };
 
+struct PatternWork;
+
+/// How the edits of a ToolAction belong to an action.
+enum class ActionChain : std::uint8_t {
+  closed,   // they are an action
+  begins,   // they are an action to which later edits may be added
+  goes_on,  // they belong to the action before
+};
+
 struct ToolAction {
   ToolAction() = default;
   ToolAction(std::vector<EditDescriptor> made) : edits(std::move(made)) {}
@@ -35,15 +48,25 @@ struct ToolAction {
   /// The voxels that become the clipboard, and where they are in the world. No edit is made of them.
   std::optional<BuildPaste> copied;
   std::vector<BuildPaste> pastes;
+  /// A pattern for a box that is too large to be worked out at once (pattern_work.hpp), or null.
+  std::shared_ptr<const PatternWork> pattern;
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
   /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one
   /// is refused, it is left out without a word.
   bool has_followers = false;
+  ActionChain chain = ActionChain::closed;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 
-  bool empty() const { return pastes.empty() && edits.empty(); }
+  bool empty() const { return pastes.empty() && !pattern && edits.empty(); }
 };
+
+/// Returns the part of edit i of an action.
+inline ActionPart part_of(const ToolAction& action, std::size_t i) {
+  if (action.chain == ActionChain::goes_on) return ActionPart::next;
+  if (action.chain == ActionChain::begins && i == 0) return ActionPart::first;
+  return part_of_action(i, action.edits.size());
+}
 
 }  // namespace runstone

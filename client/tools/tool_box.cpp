@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -23,6 +24,7 @@
 #include "common/formats/turned_names.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
+#include "common/sculpt/voxel_rows.hpp"
 #include "common/shapes/shape_faces.hpp"
 #include "common/shapes/turned_shape.hpp"
 
@@ -33,6 +35,10 @@ namespace {
 constexpr std::int32_t kStackMax = 4096;
 /// Bounds the steps of one move or growth.
 constexpr std::int32_t kStepsMax = 4096;
+/// Bounds the rows along x of a selection of several boxes that becomes a build.
+constexpr std::int64_t kSelectedRowsMax = std::int64_t{1} << 18;
+/// The words for a selection of more than BoxSet::kBoxesMax boxes.
+constexpr const char* kTooManyParts = "the selection would have more than 256 parts";
 /// A preview that is refused is planned again after so many calls.
 constexpr unsigned kPlanAgainCalls = 32;
 /// That of a costly tool is planned again after so many calls, if the replica has changed.
@@ -52,40 +58,12 @@ std::int32_t side_along(const VoxelBox& box, Axis axis) {
   return box.max.z - box.min.z;
 }
 
-/// The parts of a box that moves along an axis. `entering` moves out of the box, `staying` moves
-/// onto other voxels of it, and `left` is what the box leaves. A part may be empty.
-struct MoveParts {
-  VoxelBox entering, staying, left;
-};
-
-/// Requires 0 < steps.
-MoveParts parts_of_move(const VoxelBox& box, Direction direction, std::int32_t steps) {
-  const Axis axis = axis_of(direction);
-  std::int32_t VoxelPos::* const at = axis == Axis::x   ? &VoxelPos::x
-                                      : axis == Axis::y ? &VoxelPos::y
-                                                        : &VoxelPos::z;
-  const std::int32_t depth = std::min(steps, side_along(box, axis));
-  MoveParts out{box, box, box};
-  if (is_positive(direction)) {
-    out.entering.min.*at = out.staying.max.*at = box.max.*at - depth;
-    out.left.max.*at = box.min.*at + depth;
-  } else {
-    out.entering.max.*at = out.staying.min.*at = box.min.*at + depth;
-    out.left.min.*at = box.max.*at - depth;
-  }
-  return out;
-}
-
 EmptyCells empty_cells(bool is_solid) {
   return is_solid ? EmptyCells::skipped : EmptyCells::pasted;
 }
 
 Unexpected<std::string> cannot_copy(const Error& error) {
   return failure("cannot copy: " + words_of(error));
-}
-
-VoxelPos sides_of(const VoxelBox& box) {
-  return {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
 }
 
 template <class T>
@@ -173,8 +151,8 @@ Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton butt
 
 ToolEdits ToolBox::plan(const Replica& replica, const Aim& aim, ToolButton button,
                         std::span<const VoxelPos> points, VoxelPos target) {
-  auto made = tool().plan({replica, aim, button, points, target, selection_, clipboard_, materials_,
-                           symmetry_.kind != SymmetryKind::none});
+  auto made = tool().plan({replica, aim, button, points, target, boxes_.boxes(), clipboard_,
+                           materials_, symmetry_.kind != SymmetryKind::none});
   if (!made) return made;
   for (const EditDescriptor& edit : made->edits) {
     // A box may be longer than one descriptor has it: then it is cut.
@@ -198,8 +176,13 @@ ToolEdits ToolBox::press(const Replica& replica, const Aim& aim, ToolButton butt
     return std::vector<EditDescriptor>{};
   }
   auto edits = plan(replica, aim, button, points_, *target);
-  if (tool().selects() && !points_.empty()) selection_ = box_between(points_.front(), *target);
+  if (tool().selects() && !points_.empty()) {
+    const auto done =
+        select(box_between(points_.front(), *target), held_mode_.value_or(tool().select_mode()));
+    if (!done) edits = failure(done.error());
+  }
   hold_copied(edits);
+  keep_pasted(replica, edits);
   points_.clear();
   return edits;
 }
@@ -264,9 +247,13 @@ ToolEdits ToolBox::plan_typed(const Replica& replica, Material held) {
 ToolEdits ToolBox::apply_typed(const Replica& replica, Material held) {
   auto edits = plan_typed(replica, held);
   ++revision_;
-  if (edits && tool().selects())
-    selection_ = box_between(typed_->places.front(), typed_->places.back());
+  if (edits && tool().selects()) {
+    const auto done = select(box_between(typed_->places.front(), typed_->places.back()),
+                             held_mode_.value_or(tool().select_mode()));
+    if (!done) return failure(done.error());
+  }
   hold_copied(edits);
+  keep_pasted(replica, edits);
   return edits;
 }
 
@@ -277,44 +264,108 @@ bool ToolBox::cancel() {
   return had_points;
 }
 
-void ToolBox::select(std::optional<VoxelBox> box) {
-  selection_ = box && !box->empty() ? box : std::nullopt;
+void ToolBox::select(std::optional<VoxelBox> box) { select(BoxSet(box.value_or(VoxelBox{}))); }
+
+void ToolBox::select(BoxSet boxes) {
+  boxes_ = std::move(boxes);
+  selection_ = boxes_.empty() ? std::nullopt : std::optional(boxes_.around());
   ++revision_;
 }
 
-Result<VoxelBox, std::string> ToolBox::selected() const {
-  if (!selection_) return failure("nothing is selected");
-  return *selection_;
+Result<void, std::string> ToolBox::select(const VoxelBox& box, SelectMode mode) {
+  std::optional<BoxSet> now(BoxSet{box});
+  if (mode == SelectMode::add) now = BoxSet::united(boxes_, *now);
+  if (mode == SelectMode::remove) now = BoxSet::without(boxes_, *now);
+  if (!now) return failure(kTooManyParts);
+  select(*std::move(now));
+  return {};
+}
+
+Result<BoxSet, std::string> ToolBox::selected() const {
+  if (boxes_.empty()) return failure("nothing is selected");
+  return boxes_;
+}
+
+Result<BuildPtr, std::string> ToolBox::selected_build(const Replica& replica) const {
+  if (boxes_.boxes().size() == 1) {
+    auto copied = copy_box(replica, boxes_.boxes().front());
+    if (!copied) return cannot_copy(copied.error());
+    return *std::move(copied);
+  }
+  std::int64_t count = 0;
+  for (const VoxelBox& box : boxes_.boxes())
+    count += std::int64_t{box.max.y - box.min.y} * (box.max.z - box.min.z);
+  if (count > kSelectedRowsMax) {
+    return failure(
+        "a selection of several boxes is copied up to 262,144 rows along x: select one "
+        "box, or fewer voxels");
+  }
+  VoxelRows rows;
+  for (const VoxelBox& box : boxes_.boxes()) {
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) rows.add(y, z, {box.min.x, box.max.x});
+    }
+  }
+  rows.join();
+  auto placed = build_of_voxels(
+      rows, replica.chunk_edge(), [&](ChunkCoord at) { return replica.shown({0, at}); }, true);
+  if (!placed) return cannot_copy(placed.error());
+  return std::move(placed->build);
 }
 
 Result<void, std::string> ToolBox::grow(Direction side, std::int32_t steps) {
-  const auto box = selected();
-  if (!box) return failure(box.error());
+  const auto now = selected();
+  if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
-  VoxelBox grown = *box;
-  const std::int32_t shrinks_max = side_along(grown, axis_of(side)) - 1;
-  VoxelPos& corner = is_positive(side) ? grown.max : grown.min;
-  corner = moved(corner, side, std::max(steps, -shrinks_max));
-  select(grown);
+  // One box keeps one voxel.
+  if (now->boxes().size() == 1)
+    steps = std::max(steps, 1 - side_along(now->around(), axis_of(side)));
+  auto made = steps > 0 ? now->grown(side, steps) : now->shrunk(side, -steps);
+  if (!made) return failure(kTooManyParts);
+  if (made->empty()) return failure("nothing would be left of the selection");
+  select(*std::move(made));
+  return {};
+}
+
+Result<void, std::string> ToolBox::grow_all(std::int32_t steps) {
+  const BoxSet before = boxes_;
+  for (int side = 0; side < kDirectionCount; ++side) {
+    const auto done = grow(static_cast<Direction>(side), steps);
+    if (done) continue;
+    select(before);
+    return done;
+  }
   return {};
 }
 
 Result<void, std::string> ToolBox::shift(Direction direction, std::int32_t steps) {
-  const auto box = selected();
-  if (!box) return failure(box.error());
+  const auto now = selected();
+  if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
-  select(moved(*box, direction, steps));
+  select(now->moved(direction, steps));
   return {};
 }
 
 Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
-  const auto box = selected();
-  if (!box) return failure(box.error());
-  auto copied = copy_box(replica, *box);
-  if (!copied) return cannot_copy(copied.error());
+  if (const auto now = selected(); !now) return failure(now.error());
+  auto copied = selected_build(replica);
+  if (!copied) return failure(copied.error());
   if (is_solid && (*copied)->solid() == 0) return failure("the selection is empty");
   hold_voxels(*std::move(copied), empty_cells(is_solid));
   return {};
+}
+
+void ToolBox::keep_pasted(const Replica& replica, ToolEdits& made) {
+  if (!made || made->empty() || tool().name() != "paste") return;
+  pasted_ = PastedBuild::of(*made, clipboard_, replica);
+  is_paste_fresh_ = pasted_.has_value();
+  if (pasted_) made->chain = ActionChain::begins;
+}
+
+ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
+  if (!pasted_) return failure("the arrows move what you have just pasted: up to 262,144 voxels");
+  ++revision_;
+  return pasted_->move(direction, replica);
 }
 
 void ToolBox::hold_copied(const ToolEdits& made) {
@@ -369,21 +420,24 @@ ToolEdits ToolBox::replace(const Replica& replica, Material from, Material to) c
 
 ToolEdits ToolBox::filled(const Replica& replica, const Mask& mask, Material material) const {
   if (!replica.opened()) return failure("no world is open");
-  const auto box = selected();
-  if (!box) return failure(box.error());
+  const auto now = selected();
+  if (!now) return failure(now.error());
+  std::vector<EditDescriptor> edits;
+  for (const VoxelBox& box : now->boxes()) edits.push_back({FillBox{box}, mask, material});
+  if (edits.size() > 1) return edits;
   ShownVoxels shown(replica);
-  return joined_box({FillBox{*box}, mask, material}, materials_,
-                    [&](VoxelPos at) { return shown.at(at); });
+  return joined_box(edits.front(), materials_, [&](VoxelPos at) { return shown.at(at); });
 }
 
 ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32_t times) const {
-  const auto box = selected();
-  if (!box) return failure(box.error());
+  const auto now = selected();
+  if (!now) return failure(now.error());
   if (times < 1 || times > kStackMax)
     return failure("a stack has 1 to " + std::to_string(kStackMax) + " copies");
-  const auto copied = copy_box(replica, *box);
-  if (!copied) return cannot_copy(copied.error());
-  const std::int32_t side = side_along(*box, axis_of(direction));
+  const auto copied = selected_build(replica);
+  if (!copied) return failure(copied.error());
+  const VoxelBox box = now->around();
+  const std::int32_t side = side_along(box, axis_of(direction));
   // The first copy lies beside the selection; the selection itself is not pasted.
   const VoxelPos step = moved(VoxelPos{}, direction, side);
   BuildPtr copies = *copied;
@@ -394,37 +448,40 @@ ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32
     corner = stack_corner(step, times - 1);
     copies = *std::move(made);
   }
-  const VoxelPos first = moved(box->min, direction, side);
+  const VoxelPos first = moved(box.min, direction, side);
   const VoxelPos at{first.x + corner.x, first.y + corner.y, first.z + corner.z};
   if (!is_in_world(at, copies->sides())) return failure("the stack reaches outside the world");
   return paste_of_build({std::move(copies), at, {}, EmptyCells::pasted}, replica.edit_limits());
 }
 
 ToolEdits ToolBox::move(const Replica& replica, Direction direction, std::int32_t steps) {
-  const auto box = selected();
-  if (!box) return failure(box.error());
+  const auto now = selected();
+  if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
   if (steps == 0) return failure("the selection moves by one voxel or more");
-  const Direction towards = steps > 0 ? direction : opposite(direction);
-  const MoveParts parts = parts_of_move(*box, towards, std::abs(steps));
-  if (!is_in_world(moved(box->min, direction, steps), sides_of(*box)))
+  const BoxSet target = now->moved(direction, steps);
+  if (!is_in_world(target.around().min, sides_of(target.around())))
     return failure("the selection would reach outside the world");
+  const auto entered = BoxSet::without(target, *now);
+  const auto staying = BoxSet::common(target, *now);
+  const auto left = BoxSet::without(*now, target);
+  if (!entered || !staying || !left) return failure(kTooManyParts);
   // The place that is left is cleared last: if an edit is refused, nothing is lost.
   ToolAction out;
-  for (const auto& [part, empty] : {std::pair{parts.entering, EmptyCells::skipped},
-                                    std::pair{parts.staying, EmptyCells::pasted}}) {
-    if (part.empty()) continue;
-    const auto copied = copy_box(replica, part);
-    if (!copied) return cannot_copy(copied.error());
-    if (empty == EmptyCells::skipped && (*copied)->solid() == 0) continue;  // nothing is in it
-    ToolAction paste = paste_of_build({*copied, moved(part.min, direction, steps), {}, empty},
-                                      replica.edit_limits());
-    append(out.pastes, std::move(paste.pastes));
-    append(out.edits, std::move(paste.edits));
+  for (const auto& [parts, empty] :
+       {std::pair{&*entered, EmptyCells::skipped}, std::pair{&*staying, EmptyCells::pasted}}) {
+    for (const VoxelBox& part : parts->boxes()) {
+      const auto copied = copy_box(replica, moved(part, direction, -steps));
+      if (!copied) return cannot_copy(copied.error());
+      if (empty == EmptyCells::skipped && (*copied)->solid() == 0) continue;  // nothing is in it
+      ToolAction paste = paste_of_build({*copied, part.min, {}, empty}, replica.edit_limits());
+      append(out.pastes, std::move(paste.pastes));
+      append(out.edits, std::move(paste.edits));
+    }
   }
   if (out.empty()) return failure("the selection is empty");
-  out.edits.push_back({FillBox{parts.left}, {}, kEmpty});
-  select(moved(*box, direction, steps));
+  for (const VoxelBox& part : left->boxes()) out.edits.push_back({FillBox{part}, {}, kEmpty});
+  select(target);
   if (out.pastes.empty()) out.edits = merge_edits(std::move(out.edits));
   return out;
 }
@@ -515,6 +572,7 @@ std::string ToolBox::set_materials(const MaterialTable& materials) {
 std::string ToolBox::set_materials(const MaterialTable& materials, const MeshMaterialsPtr& meshed) {
   materials_ = materials;
   mirrored_.forget();
+  pasted_.reset();
   preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
   points_.clear();
@@ -591,6 +649,7 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
   }
   if (is_plan_due_ && (!is_costly || ++rested_calls_ > kRestCalls))
     plan_preview(replica, aim, button, target);
+  step_pattern(chunks_max == std::numeric_limits<std::size_t>::max());
   const bool has_edits_changed = preview_.step(replica, chunks_max);
   // A cube of 64 cells is as much work as several chunks.
   const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
@@ -634,12 +693,25 @@ ToolBox::ReplicaMark ToolBox::mark_of(const Replica& replica) {
           replica.confirmed_count(), replica.local_edits().bytes()};
 }
 
+void ToolBox::step_pattern(bool is_whole) {
+  const auto made = pattern_.step(mirrored_, is_whole);
+  if (!made) return;
+  if (made->empty() && !pattern_.is_too_large())
+    preview_refusal_ = "the pattern changes no voxel there";
+  std::vector<ShownBuild> builds;
+  for (const BuildPaste& paste : *made)
+    builds.push_back({paste.build, paste.at, false, paste.is_difference});
+  build_preview_.set(std::move(builds));
+}
+
 void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
+  pattern_.set(std::move(made.pattern));
   std::vector<ShownBuild> builds;
   for (const BuildPaste& paste : made.pastes)
     builds.push_back({paste.build, paste.at, false, paste.is_difference});
   // Voxels that are only copied are shown where they are.
-  if (made.copied && made.empty()) builds.push_back({made.copied->build, made.copied->at});
+  previews_copy_ = made.copied && made.empty();
+  if (previews_copy_) builds.push_back({made.copied->build, made.copied->at});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {
     const auto* const fill = std::get_if<FillBox>(&edit.shape);

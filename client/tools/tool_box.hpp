@@ -10,11 +10,15 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "client/tools/box_set.hpp"
 #include "client/tools/build_preview.hpp"
 #include "client/tools/building_tools.hpp"
 #include "client/tools/edit_preview.hpp"
+#include "client/tools/pasted_build.hpp"
+#include "client/tools/pattern_preview.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
 #include "common/builds/rotated_build.hpp"
@@ -68,13 +72,30 @@ class ToolBox {
   /// too few or too many. Requires an open replica.
   ToolEdits apply_typed(const Replica& replica, Material held);
 
+  /// Returns the smallest box around the selected voxels, or nullopt if there are none.
   const std::optional<VoxelBox>& selection() const { return selection_; }
+  /// Returns the selection if it is one box.
+  std::optional<VoxelBox> selected_box() const {
+    return boxes_.boxes().size() == 1 ? selection_ : std::nullopt;
+  }
+  /// Returns the selected voxels.
+  const BoxSet& selected_boxes() const { return boxes_; }
   /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
   void select(std::optional<VoxelBox> box);
+  /// Selects these voxels.
+  void select(BoxSet boxes);
+  /// Selects a box, adds it to the selection or removes it from there. Fails with words for the
+  /// player if the selection would have too many parts.
+  Result<void, std::string> select(const VoxelBox& box, SelectMode mode);
+  /// Sets the mode that a held key gives; nullopt: the mode of the chosen tool counts.
+  void hold_select_mode(std::optional<SelectMode> mode) { held_mode_ = mode; }
   /// Moves the side of the selection that faces `side` by `steps` voxels outward. A negative number
-  /// shrinks the selection, but never below one voxel. Fails if nothing is selected.
+  /// shrinks the selection; a selection of one box keeps one voxel. Fails if nothing is selected or
+  /// nothing would be left, and as select() does.
   Result<void, std::string> grow(Direction side, std::int32_t steps);
-  /// Moves the selected box, not its voxels.
+  /// Moves all sides of the selection outward, or inward with a negative number. Fails as grow() does.
+  Result<void, std::string> grow_all(std::int32_t steps);
+  /// Moves the selected boxes, not their voxels.
   Result<void, std::string> shift(Direction direction, std::int32_t steps);
 
   /// Copies the selected voxels, of a box of any size. With `is_solid`, a paste changes no voxel where
@@ -92,6 +113,15 @@ class ToolBox {
   /// Returns the edits that move the selected voxels, and moves the selection. Solid voxels move
   /// and leave empty ones behind.
   ToolEdits move(const Replica& replica, Direction direction, std::int32_t steps);
+
+  /// Returns the edit that moves the build that was just pasted by one voxel, as a part of the action
+  /// that pasted it. Fails with words for the player if there is none. Requires an open replica.
+  ToolEdits nudge(const Replica& replica, Direction direction);
+  /// Tells the tools that an action begins: it is that of the last paste, or the paste can not be
+  /// moved any more.
+  void begin_action() {
+    if (!std::exchange(is_paste_fresh_, false)) pasted_.reset();
+  }
 
   const ToolClipboard& clipboard() const { return clipboard_; }
   /// Returns the rows of the materials of the clipboard, by palette entry, as the world from which they
@@ -133,16 +163,25 @@ class ToolBox {
   bool is_preview_shown() const { return is_preview_shown_; }
   /// Makes the preview of the next click: at most `chunks_max` chunks in this call. Returns true if
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
-  /// aim, the tool or the chunks changed, and EditPreview::step(). The plan of a costly tool
-  /// (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls calls, and
-  /// not again while it is refused and the replica is as it was.
+  /// aim, the tool or the chunks changed, EditPreview::step(), and a step of a pattern that is too
+  /// large to be worked out at once (all of it if chunks_max is the largest number). The plan of a
+  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls
+  /// calls, and not again while it is refused and the replica is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.
   const EditPreview& preview() const { return preview_; }
   const BuildPreview& build_preview() const { return build_preview_; }
+  /// Returns true if the preview of the next click shows all of it.
+  bool is_preview_complete() const {
+    return preview_.is_complete() && build_preview_.is_complete() && !pattern_.is_under_way();
+  }
+  /// Returns true if the next click makes more than a preview can show. It is not refused.
+  bool is_preview_too_large() const { return pattern_.is_too_large(); }
   /// Returns the ghosts of both.
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
+  /// Returns true if the preview shows voxels that the next click only copies.
+  bool previews_copy() const { return previews_copy_; }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
@@ -152,9 +191,15 @@ class ToolBox {
   ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
                  std::span<const VoxelPos> points, VoxelPos target);
   ToolEdits plan_typed(const Replica& replica, Material held);
-  Result<VoxelBox, std::string> selected() const;
+  /// Returns the selection, or words if there is none.
+  Result<BoxSet, std::string> selected() const;
+  /// Returns the selected voxels, with the empty ones, as a build whose corner is that of
+  /// selection(). Its other cells are untouched. Fails with words for the player.
+  Result<BuildPtr, std::string> selected_build(const Replica& replica) const;
   ToolEdits filled(const Replica& replica, const Mask& mask, Material material) const;
   Result<void, std::string> turn(const Orientation& orientation);
+  /// Keeps what the paste tool is about to put down, and lets the action go on.
+  void keep_pasted(const Replica& replica, ToolEdits& made);
   /// Makes the voxels that an action copies the clipboard.
   void hold_copied(const ToolEdits& made);
   /// Sets clipboard_rows_ to the rows that the materials of a build have in this world.
@@ -170,6 +215,8 @@ class ToolBox {
   /// Gives the clipboard the materials of this world, by the names in its rows.
   std::string fit_clipboard();
   void show(ToolAction made, std::int32_t chunk_edge);
+  /// Goes on with the preview of a pattern, and shows its builds when they are made.
+  void step_pattern(bool is_whole);
   /// Plans the next click, and shows what it makes or keeps why it would be refused.
   void plan_preview(const Replica& replica, const Aim& aim, ToolButton button,
                     const Result<VoxelPos, std::string>& target);
@@ -199,8 +246,12 @@ class ToolBox {
   std::vector<VoxelPos> points_;
   ToolButton button_ = ToolButton::place;  // of the first point
   std::optional<TypedPlaces> typed_;
-  std::optional<VoxelBox> selection_;
+  BoxSet boxes_;                       // selected
+  std::optional<VoxelBox> selection_;  // around boxes_
+  std::optional<SelectMode> held_mode_;
   ToolClipboard clipboard_;
+  std::optional<PastedBuild> pasted_;        // may be moved by nudge()
+  bool is_paste_fresh_ = false;              // its action has not begun yet
   std::vector<MaterialRow> clipboard_rows_;  // by palette entry of the clipboard
   std::uint64_t clipboard_changes_ = 0;
   std::string turn_notice_;
@@ -209,7 +260,9 @@ class ToolBox {
   MaterialTable materials_;
   EditPreview preview_;
   BuildPreview build_preview_;
+  PatternPreview pattern_;
   std::vector<GhostChunk> ghosts_;
+  bool previews_copy_ = false;
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   ReplicaMark planned_on_;      // the replica when the preview was last planned

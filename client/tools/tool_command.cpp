@@ -31,7 +31,8 @@ struct Carrier {
     return box.apply_typed(replica, held);
   }
   ToolEdits operator()(const SelectionChange& c) const {
-    box.select(c.box);
+    if (c.box) return without_edits(box.select(*c.box, c.mode));
+    box.select(std::nullopt);
     return without_edits({});
   }
   ToolEdits operator()(const SelectionCommand& c) const {
@@ -53,11 +54,16 @@ struct Carrier {
       case Kind::move:
         return box.move(replica, c.direction, c.count);
       case Kind::grow:
-        return without_edits(box.grow(c.direction, c.count));
+        return without_edits(c.is_all_around ? box.grow_all(c.count)
+                                             : box.grow(c.direction, c.count));
       case Kind::shift:
         return without_edits(box.shift(c.direction, c.count));
     }
     return without_edits({});
+  }
+  ToolEdits operator()(const PasteNudge& c) const {
+    if (!replica.opened()) return failure("no world is open");
+    return box.nudge(replica, c.direction);
   }
   ToolEdits operator()(const ClipboardTurn& c) const {
     if (const auto done = box.rotate(c.quarters); !done || !c.mirror) return without_edits(done);

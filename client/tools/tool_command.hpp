@@ -29,9 +29,10 @@ struct PlacesChange {
 };
 /// Makes the edits of the typed places.
 struct TypedApply {};
-/// Selects a box; nullopt selects nothing.
+/// Selects a box, adds it to the selection or removes it from there; nullopt selects nothing.
 struct SelectionChange {
   std::optional<VoxelBox> box;
+  SelectMode mode = SelectMode::fresh;
 };
 /// Changes the selection, or the voxels in it.
 struct SelectionCommand {
@@ -41,7 +42,12 @@ struct SelectionCommand {
   Material material = kEmpty;              // fill: the new one; replace: the old one
   Material other = kEmpty;                 // replace: the new one
   Direction direction = Direction::pos_y;  // stack, move, grow, shift
+  bool is_all_around = false;              // grow: all sides move
   std::int32_t count = 1;                  // stack, move, grow, shift
+};
+/// Moves the build that was just pasted by one voxel.
+struct PasteNudge {
+  Direction direction = Direction::pos_y;
 };
 /// Turns the clipboard by quarter turns, and then mirrors it.
 struct ClipboardTurn {
@@ -59,9 +65,9 @@ struct PreviewChange {
   bool is_shown = true;
 };
 
-using ToolCommand =
-    std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply, SelectionChange,
-                 SelectionCommand, ClipboardTurn, ClipboardReshape, SymmetryChange, PreviewChange>;
+using ToolCommand = std::variant<ToolChoice, ParameterChange, TextChange, PlacesChange, TypedApply,
+                                 SelectionChange, SelectionCommand, PasteNudge, ClipboardTurn,
+                                 ClipboardReshape, SymmetryChange, PreviewChange>;
 
 /// Carries out a command. Returns the edits to propose, which may be none. Fails with words for the
 /// player, for example if there is no world yet. `held` is the material in the hand.

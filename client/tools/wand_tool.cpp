@@ -39,9 +39,9 @@ Result<VoxelRows, std::string> WandTool::found(const ToolInput& input,
   search.voxels_max = static_cast<std::uint64_t>(value("voxels"));
   const std::int32_t edge = input.replica.chunk_edge();
   const bool is_connected = value("reach") == 0;
-  if (!is_connected && !input.selection) return failure("nothing is selected");
+  if (!is_connected && input.selection.empty()) return failure("nothing is selected");
   auto rows = is_connected ? connected_voxels(search, input.target, edge, chunk_at)
-                           : voxels_of_box(search, *input.selection, edge, chunk_at);
+                           : voxels_of_boxes(search, input.selection, edge, chunk_at);
   if (rows) return *std::move(rows);
   switch (rows.error()) {
     case FloodFault::blocked:

@@ -73,8 +73,8 @@ void name_plates(ImDrawList& list, const HudState& state, float scale) {
   }
 }
 
-/// Draws four bars, of which as many are full as the connection is good. Behind the bars of a slow
-/// one stands the ping.
+/// Draws four bars. The faster the connection is, the more of them are full. If it is slow, the ping
+/// stands behind them.
 void connection_bars(ImDrawList& list, ImVec2 at, double ping_ms, float scale) {
   constexpr std::array<double, 3> kMsMax = {80, 160, 320};  // of 4, 3 and 2 bars
   const auto slower =

@@ -11,10 +11,10 @@ namespace runstone {
 class HelpWindow {
  public:
   void toggle() { is_open_ = !is_open_; }
-  /// Returns false if it was closed.
+  /// Closes the window. Returns false if it was closed before.
   bool close() { return std::exchange(is_open_, false); }
   bool is_open() const { return is_open_; }
-  /// Scrolls by so many pages down when the window is made next; a negative number scrolls up.
+  /// Scrolls by so many pages down when the window is made next. A negative number scrolls up.
   void scroll(int pages) { pages_ += pages; }
   /// Makes the window with ImGui.
   void build(const std::vector<KeyRow>& rows);

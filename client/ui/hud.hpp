@@ -53,7 +53,7 @@ class Hud {
   bool close_top();
   /// Returns true while a text field was opened and does not have the keyboard yet.
   bool takes_focus() const;
-  /// Returns true if a window is open that the keyboard can work.
+  /// Returns true if a window is open in which the keyboard can choose and press buttons.
   bool has_window() const;
 
   KeyMap keys_;

@@ -82,8 +82,8 @@ class LibraryWindow {
   bool is_open() const { return is_open_; }
   /// Returns the selected build, or 0.
   Sequence selected() const { return selected_; }
-  /// Makes the window with ImGui. Returns what the user ordered. When a build has gone to the clipboard,
-  /// the window closes, so that the next click pastes it.
+  /// Makes the window with ImGui. Returns what the user ordered. When a build has been copied to the
+  /// clipboard, the window closes, so that the next click pastes it.
   std::optional<LibraryOrder> build(const LibraryState& state, UiContext& context);
 
  private:

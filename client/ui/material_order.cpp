@@ -19,13 +19,13 @@ int hue_step(const MaterialColour& colour) {
   const int r = colour[0], g = colour[1], b = colour[2];
   const int high = std::max({r, g, b}), span = high - std::min({r, g, b});
   if (span * kGreyPart <= high) return 0;
-  // Sixths of the circle, times `span`.
+  // The hue in sixths of the circle, times `span`.
   int sixths = high == r ? g - b : high == g ? 2 * span + b - r : 4 * span + r - g;
   if (sixths < 0) sixths += 6 * span;
   return 1 + sixths * (kHueSteps / 6) / span % kHueSteps;
 }
 
-/// Returns the brightness as eyes see it, 0 to 255,000.
+/// Returns the luma of a colour (ITU-R BT.601), 0 to 255,000.
 int brightness(const MaterialColour& colour) {
   return 299 * colour[0] + 587 * colour[1] + 114 * colour[2];
 }

@@ -15,7 +15,7 @@ enum class MaterialOrder : std::uint8_t { table, name, colour };
 ///   - name: by their readable names;
 ///   - colour: greys from dark to light, then hues from red over green and blue to pink in steps of
 ///     15 degrees, each from dark to light.
-/// Materials that are equal in that are in the order of their numbers.
+/// Materials with equal names or equal colours are in the order of their numbers.
 void sort_materials(std::vector<Material>& materials, const MaterialTable& table,
                     MaterialOrder order);
 

@@ -19,8 +19,8 @@ class NoticeList {
   /// Lets time pass, and drops notices that have faded.
   void advance(double seconds);
   bool is_fading() const { return !notices_.empty() && notices_.front().age > kShownSeconds; }
-  /// Makes the notices with ImGui, warnings with a mark before them, over all windows, with their lowest line above `bottom` pixels.
-  /// Texts are wrapped to the width of the frame.
+  /// Makes the notices with ImGui, over all windows. Their lowest line is above `bottom` pixels.
+  /// Warnings have a mark before them. Texts are wrapped to the width of the frame.
   void build(double bottom, double scale) const;
 
  private:

@@ -29,8 +29,10 @@ class PaletteWindow {
   bool is_open() const { return is_open_; }
   /// Returns true from open() until the field has the keyboard.
   bool takes_focus() const { return is_open_ && takes_focus_; }
-  /// Makes the window with ImGui, and appends what the user did: HoldMaterial by a click, or by enter
-  /// for the first one, or HotbarOrder. The window closes when a material or a hotbar was taken.
+  /// Makes the window with ImGui, and appends what the user did to `out`:
+  ///   - HoldMaterial for a click on a material, and for enter, which takes the first one;
+  ///   - HotbarOrder for a hotbar.
+  /// The window closes when the user has taken a material or a hotbar.
   void build(const HudState& state, double scale, std::vector<UiAction>& out);
 
  private:
@@ -43,8 +45,8 @@ class PaletteWindow {
   bool is_open_ = false, takes_focus_ = false;
   std::string search_;
   MaterialOrder order_ = MaterialOrder::table;
-  std::string hotbar_;  // in the field for the name of a hotbar
-  /// What matches_ belongs to: the search, the number of materials and the order.
+  std::string hotbar_;  // the text of the field for the name of a hotbar
+  /// The search, the number of materials and the order for which matches_ was made.
   struct Matched {
     std::string search;
     std::size_t count = 0;

@@ -18,10 +18,11 @@ inline void scroll_by(float pixels) {
   if (pixels == 0) return;
   ImGui::SetScrollY(std::clamp(ImGui::GetScrollY() + pixels, 0.0F, ImGui::GetScrollMaxY()));
 }
-/// Scrolls by so many pages, of which each shows some lines of the one before.
+/// Scrolls by so many pages down. A page repeats some lines of the page before.
 inline void scroll_by_pages(int pages) {
   scroll_by(static_cast<float>(pages) * ImGui::GetWindowHeight() * 0.8F);
 }
+/// Scrolls by so many lines of text down.
 inline void scroll_by_lines(int lines) {
   scroll_by(static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing());
 }

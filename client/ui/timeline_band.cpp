@@ -21,8 +21,8 @@ std::string date_text(TimeUs utc_us) {
                      fmt::gmtime(static_cast<std::time_t>(utc_us / 1'000'000)));
 }
 
-/// Draws lines over a rectangle in the colour of an author, so that the form tells authors apart,
-/// too: none, lines that rise, lines that fall, or lines along it.
+/// Draws lines over a rectangle in the colour of an author: none, lines that rise, lines that fall,
+/// or lines along it. So authors with similar colours differ, too.
 void hatch(ImDrawList& list, ImVec2 from, ImVec2 to, AuthorId author) {
   constexpr ImU32 kLine = IM_COL32(0, 0, 0, 150);
   constexpr float kStep = 6;

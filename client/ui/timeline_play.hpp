@@ -19,11 +19,11 @@ class TimelinePlay {
   /// Returns the place that is played now, as a sequence with a fraction. Requires is_playing().
   double at() const { return *at_; }
 
-  /// Goes on by `seconds`, at the speed by which the whole log takes `log_seconds`. `newest` is the
+  /// Goes on by `seconds`, at the speed at which the whole log takes `log_seconds`. `newest` is the
   /// last edit of the log, and `shown` the edit after which the world is shown. Returns the edit
-  /// after which the world is to be shown now, or nullopt; moments that come while another one
-  /// loads are left out. After the newest edit, which is the live world, the play stops. It stops
-  /// also if a moment was not shown, because the server refused it.
+  /// after which the world is to be shown now, or nullopt if it stays. Moments that come while
+  /// another one loads are left out. Stops after the newest edit, which is the live world, and if
+  /// the server has refused to show a moment.
   std::optional<Sequence> step(Sequence newest, Sequence shown, bool is_loading, double seconds,
                                double log_seconds);
 

@@ -1,6 +1,5 @@
 #include "client/ui/tool_window.hpp"
 
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "client/tools/build_words.hpp"
+#include "client/tools/preview_words.hpp"
 #include "client/ui/palette_window.hpp"
 #include "client/ui/ui_draw.hpp"
 #include "common/core/text.hpp"
@@ -123,16 +123,10 @@ void build_next_click(const HudState& state, std::vector<ToolCommand>& out) {
     ImGui::TextColored(kToolWarning, "%s", box.preview_refusal().c_str());
   } else if (box.tool().selects()) {
     ImGui::TextDisabled("changes no voxel");
-  } else if (!preview.is_complete() || !builds.is_complete()) {
+  } else if (!box.is_preview_complete()) {
     ImGui::TextDisabled("...");
   } else {
-    const std::uint64_t set = preview.placed_voxels() + builds.placed_voxels();
-    const std::uint64_t removed = preview.removed_voxels() + builds.removed_voxels();
-    // Builds are not compared with the world: unless they are differences, their numbers are upper
-    // bounds.
-    ImGui::TextUnformatted(fmt::format("sets {}{} and removes {} voxels",
-                                       builds.is_exact() ? "" : "up to ", set, removed)
-                               .c_str());
+    ImGui::TextUnformatted(preview_words(box).c_str());
   }
   if (builds.cell_voxels() > 1)
     ImGui::TextDisabled("shown in cells of %d voxels", int{builds.cell_voxels()});
@@ -307,6 +301,8 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   } else if (state.sight) {
     corner = numbers_of(*state.sight);
   }
+  if (const std::size_t parts = box.selected_boxes().boxes().size(); parts > 1)
+    ImGui::TextDisabled("%zu boxes; the numbers are those of the box around them", parts);
   bool is_changed = place_fields("lowest corner", corner);
   if (const auto seen = sight_button(state)) {
     corner = numbers_of(*seen);

@@ -22,7 +22,7 @@ struct SendLine {
 struct HoldMaterial {
   Material material = 0;
 };
-/// A hotbar is kept under a name, taken, or forgotten.
+/// The user keeps the slots under a name, takes those of a name, or forgets them.
 struct HotbarOrder {
   enum class What : std::uint8_t { keep, take, forget };
   What what = What::take;

@@ -27,10 +27,10 @@ class UiContext {
   UiContext(const UiContext&) = delete;
   UiContext& operator=(const UiContext&) = delete;
 
-  /// Lets arrows, tab, space and enter choose and press buttons, or not any more. Control and tab
-  /// change the window.
+  /// If `is_on`, arrows and tab choose buttons, space and enter press them, and control and tab change
+  /// the window. Otherwise these keys do nothing in windows.
   void set_keyboard(bool is_on);
-  /// Gives the keyboard to the window that was used last, with its first button chosen.
+  /// Gives the keyboard to the window that was used last, and chooses its first button.
   void focus_window();
   /// Queues events for the next frame.
   void feed(const std::vector<InputEvent>& events);

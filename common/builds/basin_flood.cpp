@@ -22,13 +22,10 @@ class BasinBuild {
   Result<FloodedBasin, BasinFault> build() const {
     if (box_.empty()) return failure(BasinFault::full);
     const ChunkCoord first = chunk_of(box_.min, edge_);
-    const VoxelPos origin = origin_of(first, edge_);
     if (std::max({box_.max.x - box_.min.x, box_.max.y - box_.min.y, box_.max.z - box_.min.z}) >
         kBuildSideMax)
       return failure(BasinFault::too_many_voxels);
-    auto out = BuildBuilder::of({grid_cuts(box_.max.x - box_.min.x, edge_, box_.min.x - origin.x),
-                                 grid_cuts(box_.max.y - box_.min.y, edge_, box_.min.y - origin.y),
-                                 grid_cuts(box_.max.z - box_.min.z, edge_, box_.min.z - origin.z)});
+    auto out = BuildBuilder::of(world_cuts(box_, edge_));
     if (!out) return failure(BasinFault::too_many_voxels);
     const std::uint16_t number = *out->number_of(flood_.material);
     for (const auto& [at, lines] : reached_.chunks()) {

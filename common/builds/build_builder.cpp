@@ -39,6 +39,13 @@ RunChunk renumbered(const RunChunk& cells, const std::vector<std::uint16_t>& num
 
 }  // namespace
 
+BuildCuts world_cuts(const VoxelBox& box, std::int32_t edge) {
+  const auto along = [&](std::int32_t min, std::int32_t max) {
+    return grid_cuts(max - min, edge, min - floor_div(min, edge) * edge);
+  };
+  return {along(box.min.x, box.max.x), along(box.min.y, box.max.y), along(box.min.z, box.max.z)};
+}
+
 Result<BuildBuilder> BuildBuilder::of(BuildCuts cuts, std::size_t bytes_max) {
   RUNSTONE_ASSERT(are_cuts(cuts));
   BuildBuilder out(bytes_max);

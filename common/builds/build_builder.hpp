@@ -8,9 +8,15 @@
 #include <vector>
 
 #include "common/builds/build.hpp"
+#include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 
 namespace runstone {
+
+/// Returns the cuts of a build with the place and the sides of a box in the world: they lie on the
+/// borders of a grid of cubes, such as chunks, that begins at the origin of the world. Requires a box
+/// that is not empty, and 1 <= edge <= kSideMax. Cost: O(cubes along the sides).
+BuildCuts world_cuts(const VoxelBox& box, std::int32_t edge);
 
 class BuildBuilder {
  public:

@@ -13,6 +13,7 @@
 #include "common/formats/minecraft_blocks.hpp"
 #include "common/formats/shape_names.hpp"
 #include "common/materials/default_look.hpp"
+#include "common/materials/look_on_shape.hpp"
 
 namespace runstone {
 namespace {
@@ -299,10 +300,11 @@ MaterialInfo written_material(const std::string& name) {
                   static_cast<std::uint8_t>(look.rgb >> 8), static_cast<std::uint8_t>(look.rgb),
                   is_clear ? look.alpha : std::uint8_t{255}};
     out.visibility = is_clear ? Visibility::transparent : Visibility::opaque;
-    out.look = default_look(name, out.body);
   }
   out.name = name;
   out.shape = shape_of_material_name(name).value_or(Shape{});
+  out.look =
+      out.look ? look_on_shape(*out.look, out.shape) : default_look(name, out.body, out.shape);
   return out;
 }
 
@@ -345,7 +347,7 @@ MaterialInfo material_of_node(const ForeignBlock& node, bool keep_all, bool has_
   if (name.ends_with("_source") || name.ends_with("_flowing")) out.body = MaterialBody::liquid;
   if (shape && out.visibility != Visibility::empty) out.shape = *shape;
   // It is stored, so that every client draws the world alike.
-  out.look = default_look(name, out.body);
+  out.look = default_look(name, out.body, out.shape);
   return out;
 }
 

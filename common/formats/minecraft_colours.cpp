@@ -788,7 +788,8 @@ std::uint8_t emission_of(std::string_view name, const StateList& states) {
   return lit != states.end() && lit->second != "true" ? std::uint8_t{0} : light->percent;
 }
 
-MaterialLook surface_of(std::string_view name, MaterialBody body, const StateList& states) {
+MaterialLook surface_of(std::string_view name, MaterialBody body, const Shape& shape,
+                        const StateList& states) {
   std::string_view like = name;
   if (name.ends_with("_wood") || name.ends_with("_hyphae")) like = "log";
   if (name.ends_with("_ore") || name.ends_with("_coral_block")) like = "stone";
@@ -796,7 +797,7 @@ MaterialLook surface_of(std::string_view name, MaterialBody body, const StateLis
   if (wood != nullptr && std::any_of(std::begin(kShapes), std::end(kShapes),
                                      [&](const NameEnd& s) { return name.ends_with(s.end); }))
     like = "planks";
-  MaterialLook look = default_look(like, body);
+  MaterialLook look = default_look(like, body, shape);
   // The words of default_look() do not know which blocks of this game are lit.
   look.emission = emission_of(name, states);
   return look;
@@ -852,7 +853,7 @@ MaterialInfo material_of_minecraft_block(const ForeignBlock& given, bool keep_al
     out.body = MaterialBody::passable;
   if (shape && out.visibility != Visibility::empty) out.shape = *shape;
   // It is stored, so that every client draws the world alike.
-  out.look = surface_of(name, out.body, states);
+  out.look = surface_of(name, out.body, out.shape, states);
   return out;
 }
 

@@ -15,8 +15,8 @@ WrittenBuild model_source(const FileBuild& build) {
   for (const BuildMaterial& material : build.materials) {
     const MaterialRow& row = material.row;
     source.materials.push_back({world_name_of(material), row.colour, row.visibility,
-                                row.look ? *row.look : default_look(row.name, row.body), row.shape,
-                                visibility_as_cube(row)});
+                                row.look ? *row.look : default_look(row.name, row.body, row.shape),
+                                row.shape, visibility_as_cube(row)});
   }
   return source;
 }

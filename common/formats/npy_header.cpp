@@ -176,8 +176,10 @@ Bytes npy_header(const std::string& type, std::span<const std::uint64_t> shape) 
   text.append((kAlign - (kPrefix + text.size() + 1) % kAlign) % kAlign, ' ');
   text += '\n';
   RUNSTONE_ASSERT(text.size() < 65'536);
-  Bytes out(kNpyMark.begin(), kNpyMark.end());
+  Bytes out;
+  out.reserve(kPrefix + text.size());
   ByteWriter w(out);
+  w.bytes(kNpyMark);
   w.u8(1);
   w.u8(0);
   w.u16(static_cast<std::uint16_t>(text.size()));

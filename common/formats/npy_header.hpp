@@ -1,4 +1,4 @@
-// The head of an array of numpy. Internal to npy. Every byte is untrusted.
+// The head of an array of numpy. Every byte that is read is untrusted.
 #pragma once
 #include <cstddef>
 #include <cstdint>

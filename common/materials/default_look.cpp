@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "common/materials/look_on_shape.hpp"
+
 namespace runstone {
 namespace {
 
@@ -103,17 +105,18 @@ constexpr std::array kWords = {
 
 }  // namespace
 
-MaterialLook default_look(std::string_view name, MaterialBody body) {
+MaterialLook default_look(std::string_view name, MaterialBody body, const Shape& shape) {
   const auto found = std::find_if(kWords.begin(), kWords.end(), [&](const WordLook& row) {
     return name.find(row.word) != std::string_view::npos;
   });
   MaterialLook look = found == kWords.end() ? MaterialLook{} : found->look;
   if (body == MaterialBody::liquid) look.pattern = none;
-  return look;
+  return look_on_shape(look, shape);
 }
 
 MaterialLook look_of(const MaterialInfo& material) {
-  return material.look ? *material.look : default_look(material.name, material.body);
+  return material.look ? *material.look
+                       : default_look(material.name, material.body, material.shape);
 }
 
 }  // namespace runstone

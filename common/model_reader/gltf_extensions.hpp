@@ -1,5 +1,5 @@
-// The extensions of glTF that a file requires. Assimp does not look at them, and would make rubbish of a
-// file that is compressed in a way that it does not know. Thread: one.
+// The extensions of glTF that a file requires. Assimp ignores them: it reads wrong numbers from a file
+// that is compressed in a way that it does not know. Thread: one.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,10 +13,10 @@ namespace runstone {
 /// Returns the names in the array "extensionsRequired" of a .gltf, at most 64. Cost: O(bytes).
 std::vector<std::string> required_extensions(std::string_view json);
 
-/// What the extensions of a file ask of its reader.
+/// The required extensions of a file that need work before Assimp reads the file.
 struct Extensions {
-  bool is_quantised =
-      false;  // KHR_mesh_quantization, which Assimp does not read: plain_gltf() does
+  /// The file requires KHR_mesh_quantization. Assimp does not read it; plain_gltf() does.
+  bool is_quantised = false;
 };
 
 /// Fails with one line that does not name the file if the .gltf or .glb requires an extension that is

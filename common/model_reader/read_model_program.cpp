@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/command_line/help_options.hpp"
 #include "common/core/version.hpp"
 #include "common/model_reader/model_file_reader.hpp"
 #include "common/model_reader/process_limits.hpp"
@@ -113,6 +114,7 @@ int read_model_program(int argc, const char* const* argv) {
   CLI::App app("Reads a model from a file and writes it to a pipe. Other programs start it.",
                "runstone-read-model");
   app.set_version_flag("--version", "runstone-read-model " + std::string(version()));
+  add_help_options(app, "runstone-read-model");
   app.add_option("FILE", options.file, "an .obj, .stl, .ply, .gltf or .glb")->required();
   app.add_option("--memory", options.memory_mib, "MiB that the program may take; default 2048")
       ->check(CLI::Range(1, 1 << 20));
@@ -122,11 +124,14 @@ int read_model_program(int argc, const char* const* argv) {
       ->check(CLI::Range(std::size_t{1}, kModelTrianglesMax));
   app.add_option("--up", options.up, "axis of the file that points up; default: z in .stl and .ply")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ModelUp>{{"y", ModelUp::y}, {"z", ModelUp::z}}));
+          std::map<std::string, ModelUp>{{"y", ModelUp::y}, {"z", ModelUp::z}}))
+      ->option_text("y|z");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr);
+    const int code = app.exit(error, std::cout, std::cerr);
+    std::cout.flush();  // the program ends without destructors
+    return code;
   }
   memory_line() = printable_line(options.file, kErrorBytesMax) + ": needs more than " +
                   memory_text(options.memory_mib) + " of memory\n";

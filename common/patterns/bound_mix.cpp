@@ -75,7 +75,7 @@ std::size_t BoundMix::choice_at(Node& node, VoxelPos voxel) const {
   const std::size_t last = node.choices.size() - 1;
   if (node.kind == MixKind::list || node.kind == MixKind::clumps) {
     const std::uint64_t number =
-        node.kind == MixKind::clumps ? node.clumps.at(voxel) : place_hash(node.key, voxel) >> 32;
+        node.kind == MixKind::clumps ? node.clumps.at(voxel) : voxel_hash(node.key, voxel) >> 32;
     const std::uint64_t weight = (number * node.choices[last].end) >> 32;
     const auto found =
         std::upper_bound(node.choices.begin(), node.choices.end(), weight,
@@ -94,7 +94,7 @@ std::size_t BoundMix::choice_at(Node& node, VoxelPos voxel) const {
   }
   const auto part = static_cast<std::size_t>(above_low / kGradientUnit);
   const auto rest = static_cast<std::uint64_t>(above_low % kGradientUnit);
-  return part + ((place_hash(node.key, voxel) >> 48) < rest ? 1 : 0);
+  return part + ((voxel_hash(node.key, voxel) >> 48) < rest ? 1 : 0);
 }
 
 Material BoundMix::at(VoxelPos voxel) {

@@ -9,7 +9,7 @@ constexpr std::int64_t kPointUnit = 512;
 }  // namespace
 
 std::uint32_t ClumpNoise::at(VoxelPos voxel) {
-  if (size_ == 1) return static_cast<std::uint32_t>(place_hash(key_, voxel) >> 32);
+  if (size_ == 1) return static_cast<std::uint32_t>(voxel_hash(key_, voxel) >> 32);
   // The two cells along an axis are those whose middles are nearest.
   const auto lower_cell = [&](std::int32_t v) { return floor_div(2 * v + 1 - size_, 2 * size_); };
   const VoxelPos cell{lower_cell(voxel.x), lower_cell(voxel.y), lower_cell(voxel.z)};
@@ -34,7 +34,7 @@ void ClumpNoise::read_points(VoxelPos cell) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto bit = [&](unsigned axis) { return static_cast<std::int32_t>((i >> axis) & 1U); };
     const VoxelPos at{cell.x + bit(0), cell.y + bit(1), cell.z + bit(2)};
-    const std::uint64_t hash = place_hash(key_, at);
+    const std::uint64_t hash = voxel_hash(key_, at);
     // A byte of the hash chooses one of 256 places in the middle half of the cell.
     const auto place = [&](std::int32_t of, unsigned shift) {
       const auto byte = static_cast<std::int64_t>((hash >> shift) & 0xFF);

@@ -13,8 +13,11 @@
 
 namespace runstone {
 
-/// Returns a number for a voxel that depends on nothing else but the key.
-inline std::uint64_t place_hash(std::uint64_t key, VoxelPos at) {
+/// Returns a number for a voxel that depends on nothing else but the key. Keys may be small numbers:
+/// unlike with place_hash() of a place on the ground, two keys that differ in few bits do not give
+/// the same numbers at other places. The numbers are pinned, so that a mix that is applied again
+/// changes nothing.
+inline std::uint64_t voxel_hash(std::uint64_t key, VoxelPos at) {
   const std::uint64_t xz =
       (std::uint64_t{static_cast<std::uint32_t>(at.x)} << 32) | static_cast<std::uint32_t>(at.z);
   return mix64(mix64(key ^ mix64(xz)) + static_cast<std::uint32_t>(at.y));

@@ -1,30 +1,91 @@
-// replaced(): the voxels of a box that a pattern changes, as a build.
+// Replacing: the voxels of a box that a pattern changes, as a build, made in steps of bounded work.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
+#include "common/builds/build_builder.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 #include "common/patterns/bound_filter.hpp"
 #include "common/patterns/bound_mix.hpp"
+#include "common/runs/run_builder.hpp"
 #include "common/sculpt/column_changes.hpp"
 #include "common/sculpt/ground_columns.hpp"
 
 namespace runstone {
 
-/// The voxels that one call decides one by one: those that get a mix of several materials, and
-/// those that `noise` takes.
-inline constexpr std::uint64_t kPatternVoxelsMax = std::uint64_t{1} << 25;
+/// Makes the build of exactly the voxels of a box that pass a filter and whose material becomes
+/// another one; its other cells are untouched. Reads columns in slices. A filter sees the voxels one
+/// beyond the box as well; where they are not known, they match nothing. One thread.
+class Replacing {
+ public:
+  /// Without a filter all voxels pass. Fails with limit_exceeded if a side of the box is longer than
+  /// kBuildSideMax. Requires a box that is not empty and lies in the world, and a valid chunk edge.
+  static Result<Replacing> of(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
+                              std::int32_t chunk_edge, ChunkLookup chunks);
 
-/// Returns the build of exactly the voxels of the box that pass the filter and whose material
-/// becomes another one; its other cells are untouched. Without a filter (null) all voxels pass.
-/// Reads columns in slices. A filter sees the voxels one beyond the box as well; where they are not
-/// known, they match nothing. Fails with
-///   - not_found if a chunk of the box is not known;
-///   - limit_exceeded if the build takes more than kBuildBytesMax, or more than kPatternVoxelsMax
-///     voxels are decided one by one.
-/// Requires a box that is not empty and lies in the world. Cost: O(runs + columns * chunks above
-/// each other + voxels that are decided one by one).
-Result<PlacedBuild> replaced(const VoxelBox& box, BoundMix& mix, BoundFilter* filter,
+  /// Goes on until all voxels are done or `work` is used up, and takes what it used from `work`. A
+  /// column, a run and a voxel that is decided by itself are one unit each; a slice whose columns are
+  /// read, of up to 128 x 128 columns, may exceed `work` once. Returns true when all voxels are done.
+  /// Fails with
+  ///   - not_found if a chunk of the box is not known;
+  ///   - limit_exceeded if the build takes more than kBuildBytesMax or has too many materials.
+  /// Do not call it after a failure.
+  Result<bool> step(std::uint64_t& work);
+  /// Returns the number of voxels that were decided one by one: those that get a mix of several
+  /// materials, and those that `noise` takes.
+  std::uint64_t decided() const;
+  /// Returns the build, or a null build if no voxel changes. Fails as step() does. Requires that
+  /// step() has returned true.
+  Result<PlacedBuild> finish();
+
+ private:
+  /// A section of the present stack, and its heights in the world.
+  struct Section {
+    std::optional<RunBuilder> cells;  // nullopt: nothing in it changes yet
+    std::int32_t low = 0, high = 0;
+  };
+
+  Replacing(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
+            std::int32_t chunk_edge, ChunkLookup chunks, BuildBuilder builder);
+  Result<void> read_slice();
+  void begin_stack();
+  Result<void> put_stack();
+  /// Moves to the next stack, in the next slice if this one is done.
+  void next_stack();
+  Result<void> put_column(std::uint64_t& work);
+  void mix_run(HeightRange range, Material old);
+  void set(std::int32_t low, std::int32_t high, Material material);
+  Extent extent_of(const Section& section) const;
+
+  VoxelBox box_;
+  BoundMix mix_;
+  std::optional<BoundFilter> filter_;
+  std::int32_t chunk_edge_;
+  ChunkLookup chunks_;
+  BuildBuilder builder_;
+  // The slice: sections [slice_low_, slice_high_) along x and z.
+  SectionPos slice_low_, slice_high_;
+  std::optional<GroundColumns> columns_;  // of the slice; nullopt: not read yet
+  // The stack of sections at stack_, whose columns lie in [stack_min_, stack_max_) along x and z.
+  SectionPos stack_;
+  VoxelPos stack_min_, stack_max_;
+  std::vector<Section> sections_;  // from below to above
+  std::int32_t x_ = 0, z_ = 0;     // the next column
+  std::uint32_t line_ = 0;         // its number in the stack
+  std::size_t section_ = 0;        // that holds the voxel that was set last in the column
+  std::uint64_t mixed_ = 0;
+  bool has_changes_ = false;
+  bool is_full_ = false;  // the palette has no room
+  bool is_done_ = false;
+};
+
+/// Does the work of Replacing at once. A null filter lets all voxels pass. Fails as its functions do.
+/// Requires what they require. Cost: O(runs + columns * chunks above each other + voxels that are
+/// decided one by one).
+Result<PlacedBuild> replaced(const VoxelBox& box, const BoundMix& mix, const BoundFilter* filter,
                              std::int32_t chunk_edge, const ChunkLookup& chunks);
 
 }  // namespace runstone

@@ -148,10 +148,6 @@ class SectionMaker {
   std::vector<std::size_t> first_;  // change by column, and the number of all
 };
 
-std::int32_t grid_offset(std::int32_t at) {
-  return at - floor_div(at, kPasteBlockEdge) * kPasteBlockEdge;
-}
-
 }  // namespace
 
 void move_surface(const GroundColumns& columns, std::size_t column, std::int32_t from,
@@ -185,10 +181,7 @@ void set_layers(const GroundColumns& columns, std::size_t column, std::int32_t s
 Result<PlacedBuild> build_of_changes(const GroundColumns& columns, const ColumnChanges& changes) {
   if (changes.empty()) return PlacedBuild{};
   const VoxelBox box = box_of_changes(columns, changes);
-  auto builder =
-      BuildBuilder::of({grid_cuts(box.max.x - box.min.x, kPasteBlockEdge, grid_offset(box.min.x)),
-                        grid_cuts(box.max.y - box.min.y, kPasteBlockEdge, grid_offset(box.min.y)),
-                        grid_cuts(box.max.z - box.min.z, kPasteBlockEdge, grid_offset(box.min.z))});
+  auto builder = BuildBuilder::of(world_cuts(box, kPasteBlockEdge));
   if (!builder) return failure(builder.error());
   SectionMaker maker(columns, changes, box, *builder);
   if (const auto put = maker.put_all(); !put) return failure(put.error());

@@ -1,4 +1,4 @@
-// Polygon: a prism over a polygon of clicked corners, straight as runs.
+// Polygon: a prism over a polygon of clicked corners. It is made of runs, without a grid.
 #pragma once
 #include <cstddef>
 #include <cstdint>

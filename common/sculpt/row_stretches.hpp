@@ -1,4 +1,4 @@
-// Row stretches: voxels of a row along x as stretches, and what is made of them.
+// Row stretches: voxels of a row along x as stretches, and operations on such rows.
 #pragma once
 #include <cstdint>
 #include <vector>

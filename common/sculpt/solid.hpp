@@ -1,5 +1,6 @@
-// Solids: ellipsoids, cylinders and other bodies of one material that fill a box, straight as runs.
-// A row of a solid is at most two stretches, so nothing is tested voxel by voxel.
+// Solids: ellipsoids, cylinders and other bodies of one material that fill a box. They are made of
+// runs, without a grid. A row of a solid is at most two stretches, so nothing is tested voxel by
+// voxel.
 #pragma once
 #include <cstdint>
 

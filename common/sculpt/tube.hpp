@@ -1,4 +1,5 @@
-// Tube: a round bar along a curve or along straight lines through places, straight as runs.
+// Tube: a round bar along a curve or along straight lines through places. It is made of runs, without
+// a grid.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -38,12 +38,13 @@ ChunkStretches by_chunk(const VoxelRows& rows, std::int32_t edge) {
   return out;
 }
 
-/// Returns the cells of a chunk inside a part of it: those of the stretches that are not empty.
+/// Returns the cells of a chunk inside a part of it: those of the stretches that are not empty, and
+/// with `with_air` the empty ones as well.
 /// Returns nullopt if there are too many materials.
 std::optional<RunChunk> cells_of_stretches(const RunChunk& chunk, VoxelPos origin,
                                            const VoxelBox& part,
                                            const std::vector<ChunkStretch>& stretches,
-                                           BuildBuilder& out) {
+                                           BuildBuilder& out, bool with_air) {
   const auto edge = static_cast<std::uint32_t>(chunk.extent.x);
   const auto side = [](std::int32_t low, std::int32_t high) {
     return static_cast<std::uint8_t>(high - low);
@@ -65,7 +66,7 @@ std::optional<RunChunk> cells_of_stretches(const RunChunk& chunk, VoxelPos origi
       const std::uint32_t end = std::min(chunk.runs.end(run), from + count);
       const Material material = chunk.runs.material(run);
       std::uint16_t number = 0;
-      if (material != kEmpty) {
+      if (material != kEmpty || with_air) {
         const auto found = out.number_of(material);
         if (!found) return std::nullopt;
         number = *found;
@@ -167,17 +168,14 @@ VoxelRows shrunk(const VoxelRows& rows, std::int32_t steps) {
 }
 
 Result<PlacedBuild> build_of_voxels(const VoxelRows& rows, std::int32_t edge,
-                                    const ChunkLookup& chunk_at) {
+                                    const ChunkLookup& chunk_at, bool with_air) {
   if (rows.empty()) return fail(ErrorCode::bad_value, "no voxel is left");
   const VoxelBox box = rows.box();
   const VoxelPos sides{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
   if (std::max({sides.x, sides.y, sides.z}) > kBuildSideMax)
     return fail(ErrorCode::limit_exceeded, "build is longer than 1,048,576 voxels");
   const ChunkCoord first = chunk_of(box.min, edge);
-  const VoxelPos origin = origin_of(first, edge);
-  auto out = BuildBuilder::of({grid_cuts(sides.x, edge, box.min.x - origin.x),
-                               grid_cuts(sides.y, edge, box.min.y - origin.y),
-                               grid_cuts(sides.z, edge, box.min.z - origin.z)});
+  auto out = BuildBuilder::of(world_cuts(box, edge));
   if (!out) return failure(out.error());
   for (const auto& [at, stretches] : by_chunk(rows, edge)) {
     auto chunk = chunk_at(at);
@@ -186,7 +184,7 @@ Result<PlacedBuild> build_of_voxels(const VoxelRows& rows, std::int32_t edge,
     if (chunk->order != AxisOrder::xyz)
       chunk = std::make_shared<const RunChunk>(reorder(*chunk, AxisOrder::xyz));
     auto cells = cells_of_stretches(*chunk, origin_of(at, edge), intersect(box, box_of(at, edge)),
-                                    stretches, *out);
+                                    stretches, *out, with_air);
     if (!cells) return fail(ErrorCode::limit_exceeded, "build has too many materials");
     const SectionPos place{static_cast<std::uint32_t>(at.x - first.x),
                            static_cast<std::uint32_t>(at.y - first.y),

@@ -50,11 +50,12 @@ VoxelRows grown(const VoxelRows& rows, std::int32_t steps);
 /// Cost: O(stretches * steps).
 VoxelRows shrunk(const VoxelRows& rows, std::int32_t steps);
 
-/// Returns a build of the voxels of the set that are not empty in the world, with their materials;
-/// its other cells are untouched. Fails with bad_value if there is none, with not_found if a chunk
-/// is not known, and with limit_exceeded if the build takes too much memory. Requires chunks of
-/// `edge` voxels a side. Cost: O(stretches, and runs of the chunks that they meet).
+/// Returns a build of the voxels of the set that are not empty in the world, and with `with_air` of
+/// the empty ones as well, with their materials; its other cells are untouched. Fails with bad_value
+/// if it would have no voxel, with not_found if a chunk is not known, and with limit_exceeded if the
+/// build takes too much memory. Requires chunks of `edge` voxels a side. Cost: O(stretches, and runs
+/// of the chunks that they meet).
 Result<PlacedBuild> build_of_voxels(const VoxelRows& rows, std::int32_t edge,
-                                    const ChunkLookup& chunk_at);
+                                    const ChunkLookup& chunk_at, bool with_air = false);
 
 }  // namespace runstone

@@ -67,22 +67,25 @@ Result<VoxelRows, FloodFault> connected_voxels(const WandSearch& search, VoxelPo
   return out;
 }
 
-Result<VoxelRows, FloodFault> voxels_of_box(const WandSearch& search, const VoxelBox& box,
-                                            std::int32_t edge, const ChunkLookup& chunk_at) {
-  const ChunkCoord first = chunk_of(box.min, edge);
-  const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
+Result<VoxelRows, FloodFault> voxels_of_boxes(const WandSearch& search,
+                                              std::span<const VoxelBox> boxes, std::int32_t edge,
+                                              const ChunkLookup& chunk_at) {
   VoxelRows out;
   std::uint64_t count = 0;
-  for (ChunkCoord at = first; at.z <= last.z; ++at.z) {
-    for (at.y = first.y; at.y <= last.y; ++at.y) {
-      for (at.x = first.x; at.x <= last.x; ++at.x) {
-        const auto chunk = chunk_at(at);
-        if (!chunk) return failure(FloodFault::missing_chunk);
-        const VoxelPos origin = origin_of(at, edge);
-        count += chunk->order == AxisOrder::xyz
-                     ? add_found(search, *chunk, origin, box, out)
-                     : add_found(search, reorder(*chunk, AxisOrder::xyz), origin, box, out);
-        if (count > search.voxels_max) return failure(FloodFault::too_many_voxels);
+  for (const VoxelBox& box : boxes) {
+    const ChunkCoord first = chunk_of(box.min, edge);
+    const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
+    for (ChunkCoord at = first; at.z <= last.z; ++at.z) {
+      for (at.y = first.y; at.y <= last.y; ++at.y) {
+        for (at.x = first.x; at.x <= last.x; ++at.x) {
+          const auto chunk = chunk_at(at);
+          if (!chunk) return failure(FloodFault::missing_chunk);
+          const VoxelPos origin = origin_of(at, edge);
+          count += chunk->order == AxisOrder::xyz
+                       ? add_found(search, *chunk, origin, box, out)
+                       : add_found(search, reorder(*chunk, AxisOrder::xyz), origin, box, out);
+          if (count > search.voxels_max) return failure(FloodFault::too_many_voxels);
+        }
       }
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "common/builds/line_flood.hpp"
 #include "common/core/coords.hpp"
@@ -22,10 +23,11 @@ struct WandSearch {
 Result<VoxelRows, FloodFault> connected_voxels(const WandSearch& search, VoxelPos start,
                                                std::int32_t edge, const ChunkLookup& chunk_at);
 
-/// Returns the voxels of a box. Fails with blocked if there is none. Requires a box that is not
-/// empty. Cost: O(chunks of the box + their runs + stretches found); it stops soon after voxels_max
-/// and at the first chunk that is not known.
-Result<VoxelRows, FloodFault> voxels_of_box(const WandSearch& search, const VoxelBox& box,
-                                            std::int32_t edge, const ChunkLookup& chunk_at);
+/// Returns the voxels of boxes. Fails with blocked if there is none. Requires boxes that are not
+/// empty and do not overlap. Cost: O(chunks of the boxes + their runs + stretches found); it stops
+/// soon after voxels_max and at the first chunk that is not known.
+Result<VoxelRows, FloodFault> voxels_of_boxes(const WandSearch& search,
+                                              std::span<const VoxelBox> boxes, std::int32_t edge,
+                                              const ChunkLookup& chunk_at);
 
 }  // namespace runstone

@@ -11,7 +11,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
 #include "common/runs/chunk.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone {
 namespace {

@@ -2,7 +2,7 @@
 // (docs/protocol.md, *Chunk bytes*).
 #pragma once
 #include "common/core/coords.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 
 namespace runstone {
 

@@ -16,14 +16,15 @@ install_packages() {
   DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build PRESET [TARGET...]: configures once, then builds. The preset bench is the folder of the preset
-# release with the benchmarks switched on. In a terminal Ninja shows its progress
+# build PRESET [TARGET...]: configures once, then builds. The presets bench and python are the folder of
+# the preset release with the benchmarks, or the module of Python, switched on. In a terminal Ninja shows its progress
 # line; in a log it prints errors only.
 build() {
   local preset=$1 quiet=--quiet made="$root/build/$1/build.ninja"
   shift
   [ -t 1 ] && quiet=
   [ "$preset" = bench ] && made="$root/build/release/bench/cmake_install.cmake"
+  [ "$preset" = python ] && made="$root/build/release/bindings/python/cmake_install.cmake"
   [ -f "$made" ] || (cd "$root" && cmake --preset "$preset" >/dev/null)
   (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} -- $quiet)
 }

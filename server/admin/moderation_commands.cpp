@@ -10,6 +10,7 @@
 #include "common/names/folded_name.hpp"
 #include "common/rights/restriction_text.hpp"
 #include "server/admin/address_range_text.hpp"
+#include "server/admin/amount_text.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/joined_replies.hpp"
 #include "server/admin/rights_change_text.hpp"
@@ -29,8 +30,14 @@ std::string damage_text(const OperatorActions& actions) {
   const std::uint64_t faults = actions.row_faults ? actions.row_faults() : 0;
   if (faults == 0) return "";
   return "\nDAMAGE: " + std::to_string(faults) +
-         " rows or parts of the world are damaged: the log of the server names them; stop it and run "
-         "`runstone-server repair`";
+         " rows or parts of the world are damaged: the log of the server names them. Stop the server "
+         "and run `runstone-server repair --world W --to NEW`, with --from and the folder of a backup "
+         "if there is one";
+}
+
+/// Returns a line about the backups that the server makes by itself, or an empty text.
+std::string backups_text(const OperatorActions& actions) {
+  return actions.backup_state ? "\n" + backup_state_text(actions.backup_state()) : "";
 }
 
 /// Returns a line with the border of the world, or an empty text if it has none.
@@ -50,17 +57,18 @@ void show_status(const CommandCall& call) {
   const ServerHealth health = ask_health ? ask_health() : ServerHealth{};
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer(
-      version_line(health) + "\nsessions " + std::to_string(world.session_count()) + ", edits " +
-      std::to_string(world.order().head()) + " (on disk " +
-      std::to_string(world.order().durable()) + "), since the start " +
-      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
-      " (" + byte_count_text(memory.voxels) + "), waiting edits " +
-      byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
-      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-      std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
-      border_line(world) + read_only_text(world.order()) + damage_text(call.services.actions));
+  call.answer(version_line(health) + "\nsessions " + std::to_string(world.session_count()) +
+              ", edits " + std::to_string(world.order().head()) + " (on disk " +
+              std::to_string(world.order().durable()) + "), since the start " +
+              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+              " rejected\nchunks in memory " +
+              std::to_string(world.order().chunks().resident_count()) + " (" +
+              byte_count_text(memory.voxels) + "), waiting edits " +
+              byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
+              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+              std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
+              border_line(world) + read_only_text(world.order()) +
+              damage_text(call.services.actions) + backups_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

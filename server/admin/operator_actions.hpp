@@ -8,6 +8,7 @@
 
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
+#include "server/admin/backup_state.hpp"
 #include "server/admin/server_health.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
@@ -36,6 +37,9 @@ struct OperatorActions {
       save_build_file;
   /// Returns how many damaged rows the check of the world has found. The runtime sets it.
   std::function<std::uint64_t()> row_faults;
+  /// Returns the state of the backups that the server makes by itself. Empty: it makes none. Unlike the
+  /// others it may be called from any thread.
+  std::function<BackupState()> backup_state;
   /// Returns how the server is, for `status`. The runtime sets it.
   std::function<ServerHealth()> health;
   /// Writes a line into the log of the server. The runtime sets it.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "common/core/assert.hpp"
 #include "common/core/hex.hpp"
 #include "common/core/tile_keys.hpp"
+#include "common/core/utc_text.hpp"
 #include "protocol/codec/server_list.hpp"
 #include "protocol/rules/chat_text.hpp"
 #include "server/admin/border_setting.hpp"
@@ -163,6 +165,28 @@ FormField message_of_the_day_field() {
             return {};
           },
           [](const ServerConfig& config) { return config.message_of_the_day; }};
+}
+
+constexpr std::uint64_t kBackupEveryMin = 60, kBackupEveryMax = 366ULL * 86'400;
+
+FormField backup_every_field() {
+  return {
+      [](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+        const auto us = text == "0" ? std::optional<TimeUs>(0) : parse_duration(text);
+        const std::uint64_t seconds = us ? static_cast<std::uint64_t>(*us) / 1'000'000 : 1;
+        if (seconds != 0 && (seconds < kBackupEveryMin || seconds > kBackupEveryMax))
+          return failure(
+              "must be a duration of a minute to a year, such as 6h, 90m or 1d, or 0: no backups");
+        config.backup_every_s = seconds;
+        return {};
+      },
+      [](const ServerConfig& config) -> std::string {
+        const std::uint64_t seconds = config.backup_every_s;
+        if (seconds == 0) return "0";
+        if (seconds % 3600 == 0) return std::to_string(seconds / 3600) + "h";
+        if (seconds % 60 == 0) return std::to_string(seconds / 60) + "m";
+        return std::to_string(seconds) + "s";
+      }};
 }
 
 FormField reserved_names_field() {
@@ -332,6 +356,17 @@ const SettingsTable<ServerConfig>& settings() {
                  "days for which the log of the chat keeps lines, 0: nothing is written to disk"),
           form("message_of_the_day", "text for players who join, at most 512 bytes; empty: none",
                message_of_the_day_field()),
+          form("backup_every",
+               "time between two backups that the server makes by itself, such as 6h; 0: none",
+               backup_every_field()),
+          optional("backup_folder", "folder that holds these backups, and nothing else",
+                   &C::backup_folder),
+          number("backup_keep_hourly", &C::backup_keep_hourly, 0, 100'000,
+                 "hours of which the newest backup stays"),
+          number("backup_keep_daily", &C::backup_keep_daily, 0, 100'000,
+                 "days of which the newest backup stays"),
+          number("backup_keep_weekly", &C::backup_keep_weekly, 0, 100'000,
+                 "weeks of which the newest backup stays; all three 0: every backup stays"),
           number("memory_mib", &C::memory_mib, 16, 1'048'576,
                  "MiB of chunks and of edits that wait, then views wait and edits are rejected"),
           number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,

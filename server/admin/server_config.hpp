@@ -13,7 +13,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
 #include "common/core/text_error.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
 #include "server/admin/log_format.hpp"
@@ -115,6 +115,12 @@ struct ServerConfig {
   std::uint64_t chat_per_minute = 30;  // lines of a player, ten at once, 0: no limit .. 60000
   std::uint64_t chat_days = 30;        // for which lines stay on disk, 0: none is written .. 36500
   std::string message_of_the_day;      // for players who join; empty: none
+  // Backups that the server makes by itself.
+  std::uint64_t backup_every_s = 0;       // seconds between two backups, 0: none, 60..31622400
+  std::string backup_folder;              // that holds them; not in the world's folder
+  std::uint64_t backup_keep_hourly = 24;  // see BackupPolicy, 0..100000
+  std::uint64_t backup_keep_daily = 7;    // 0..100000
+  std::uint64_t backup_keep_weekly = 8;   // 0..100000
   // World and disk.
   std::uint64_t memory_mib = 512;            // MiB of chunks and of edits that wait, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9

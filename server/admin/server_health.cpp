@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/version.hpp"
+#include "server/admin/amount_text.hpp"
 
 namespace runstone {
 
@@ -12,16 +13,6 @@ std::string read_only_reason(const Order& order) {
     return "the log cannot be written any more, so the server must be started again";
   if (order.is_stopping()) return "the server stops";
   return order.is_disk_full() ? order.disk_reason() : "";
-}
-
-std::string byte_count_text(std::uint64_t bytes) {
-  constexpr std::array<const char*, 3> kUnits = {"KiB", "MiB", "GiB"};
-  if (bytes < 1024) return std::to_string(bytes) + " bytes";
-  // The value has one decimal, so it is kept in tenths.
-  std::uint64_t tenths = bytes / 1024 * 10 + bytes % 1024 * 10 / 1024;
-  std::size_t unit = 0;
-  for (; unit + 1 < kUnits.size() && tenths >= 10'240; ++unit) tenths /= 1024;
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " " + kUnits[unit];
 }
 
 std::string uptime_text(TimeUs duration_us) {

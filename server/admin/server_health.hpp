@@ -25,8 +25,6 @@ struct ServerHealth {
 /// text if it takes them. A server that follows passes edits on, so it takes them.
 std::string read_only_reason(const Order& order);
 
-/// Returns a count of bytes in the largest unit of which there is at least one, as in "12.3 GiB".
-std::string byte_count_text(std::uint64_t bytes);
 /// Returns a duration in its two largest units, as in "3 d 4 h". Times below a second are "0 s".
 std::string uptime_text(TimeUs duration_us);
 

@@ -59,10 +59,11 @@ constexpr std::array<CommandRow, 4> kTextureRows = {{
     {"materials textures", kLocal, "", parsed_by<parse_picture_folder, give_textures_of>()},
     {"materials textures preview", kLocal, "",
      parsed_by<parse_picture_folder, preview_textures_of>()},
+    // The word FILE makes the control program send a whole path, also of a folder.
     {"materials textures FILE", kLocal,
-     "materials textures FILE   give materials the pictures of a folder: of PNGs that are named\n"
+     "materials textures FOLDER give materials the pictures of a folder: of PNGs that are named\n"
      "                          for them, of a game of Luanti, or of a resource pack of Minecraft\n"
-     "materials textures preview FILE\n"
+     "materials textures preview FOLDER\n"
      "                          say what that would give",
      parsed_by<parse_picture_folder, give_textures_of>()},
     {"materials textures preview FILE", kLocal, "",

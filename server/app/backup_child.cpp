@@ -17,6 +17,10 @@ namespace runstone {
 BackupChild::~BackupChild() { stop(); }
 
 void BackupChild::start(const std::string& folder, CommandReply reply) {
+  run({"backup", "--world", world_, "--to", folder}, std::move(reply));
+}
+
+void BackupChild::run(const std::vector<std::string>& arguments, CommandReply reply) {
   const std::lock_guard lock(mutex_);
   if (is_stopped_) return refuse(reply, "backup: the server stops");
   if (pid_ >= 0) return refuse(reply, "backup: another one is under way");
@@ -27,7 +31,8 @@ void BackupChild::start(const std::string& folder, CommandReply reply) {
   }
   const std::string program = sibling_program("", "RUNSTONE_SERVER", "runstone-server");
   ChildProgram child;
-  child.words = {program, "backup", "--world", world_, "--to", folder};
+  child.words = {program};
+  child.words.insert(child.words.end(), arguments.begin(), arguments.end());
   child.out = child.errors = ends[1];
   const auto pid = start_program(std::move(child));
   ::close(ends[1]);

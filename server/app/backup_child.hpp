@@ -1,13 +1,14 @@
-// BackupChild: carries out the command `backup` of a running server as a program of its own. Its
+// BackupChild: makes a backup for a running server as a program of its own. Its
 // priority, its memory and the locks that SQLite takes on the world's files are then not those of
 // the server.
-// Threads: start() from any thread, the rest from the one that owns the object.
+// Threads: start() and run() from any thread, the rest from the one that owns the object.
 #pragma once
 #include <sys/types.h>
 
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/rollback/command_reply.hpp"
 
@@ -24,6 +25,8 @@ class BackupChild {
   /// Starts `runstone-server backup` to a new folder. The reply gets what the program prints, from
   /// another thread. Refuses if a backup is under way.
   void start(const std::string& folder, CommandReply reply);
+  /// Starts `runstone-server` with these arguments, as start() does. Thread: any.
+  void run(const std::vector<std::string>& arguments, CommandReply reply);
   /// Ends a backup that is under way, which leaves its partial folder. No reply is called any more
   /// on return, and start() refuses from now on.
   void stop();

@@ -1,5 +1,5 @@
-// runstone-server: runs a world, imports, compacts, backs up, restores or repairs one, or gives a
-// running server a command.
+// runstone-server: runs a world, imports, compacts, backs up, packs, restores or repairs one, or
+// gives a running server a command.
 // Exit codes: 0 stopped, and every edit is in the log (control: the command succeeded), 1 failed
 // while running, 2 could not start, 3 control: the command is in force and not on disk yet
 // (docs/server-reference.md).
@@ -28,6 +28,7 @@
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
 #include "server/app/backup_child.hpp"
+#include "server/app/backup_schedule.hpp"
 #include "server/app/first_invite.hpp"
 #include "server/app/input_end.hpp"
 #include "server/app/new_world.hpp"
@@ -190,6 +191,8 @@ int run(const ServerOptions& options) {
   if (const auto allowed = allow_new_world(world_place(*config), options.create); !allowed) {
     return cannot_start(allowed.error());
   }
+  const auto plan = backup_plan_of(*config);
+  if (!plan) return cannot_start(plan.error());
   start_logging(config->log_level, config->log_format);
   if (!options.port_file.empty()) {  // before the world is opened
     if (const auto written = empty_output_file(options.port_file); !written) {
@@ -201,6 +204,7 @@ int run(const ServerOptions& options) {
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
+  std::optional<BackupSchedule> schedule;  // outlives the server, whose commands ask for its state
   std::unique_ptr<Server> running;
   std::optional<TakeoverWatch> watch;
   BackupChild backup(config->world);
@@ -216,6 +220,10 @@ int run(const ServerOptions& options) {
       return refuse(reply, "the world is in PostgreSQL: back it up with pg_dump");
     backup.start(folder, std::move(reply));
   };
+  if (*plan) {
+    schedule.emplace(**plan);
+    actions.backup_state = [&schedule] { return schedule->state(); };
+  }
   actions.hand_over = [&](std::optional<SessionId> successor, CommandReply reply) {
     asio::post(main_loop, [&, successor, reply = std::move(reply)] {
       if (!running) return refuse(reply, "the server starts");
@@ -259,11 +267,13 @@ int run(const ServerOptions& options) {
         write_output_file(options.port_file, std::to_string(running->port()) + "\n");
     if (!written) return cannot_start(written.error());
   }
+  if (schedule) schedule->start();
   signals.wait_for_the_end(*running, [&] {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
   watch.reset();
   backup.stop();
+  if (schedule) schedule->stop();
   if (console) console->close();
   logger("app").info("stopping");
   const OwnershipState part = running->ownership();
@@ -302,7 +312,10 @@ int server_program(int argc, char** argv) {
   const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
   if (options->compact) return exit_code_of(compact_world(*options->compact, now_us, std::cout));
   if (options->copy) return exit_code_of(copy_between(*options->copy, std::cout));
+  if (options->backup_folder)
+    return exit_code_of(run_backup_folder(*options->backup_folder, now_us, std::cout));
   if (options->backup) return exit_code_of(back_up(*options->backup, now_us, std::cout));
+  if (options->pack) return exit_code_of(pack_world(*options->pack, now_us, std::cout));
   if (options->restore) return exit_code_of(restore(*options->restore, now_us, std::cout));
   if (options->repair) return exit_code_of(repair(*options->repair, now_us, std::cout));
   if (options->control) {

@@ -5,12 +5,13 @@
 #include <iostream>
 #include <map>
 #include <string_view>
-#include <vector>
 
+#include "common/command_line/help_options.hpp"
 #include "common/core/coords_text.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/admin/server_config.hpp"
+#include "server/app/backup_options.hpp"
 #include "server/convert/model_options.hpp"
 #include "server/store/place_rule.hpp"
 #include "server/store/world_schema.hpp"
@@ -50,6 +51,17 @@ void add_flags(CLI::App& app, ServerOptions& out) {
   add_setting_flags(app, config_fields(), out.settings);
 }
 
+void add_progress(CLI::App& app, bool& out) {
+  app.add_flag("--progress", out, "print progress even if standard error is no terminal");
+}
+
+/// Adds an option that must be given. `refusal` returns what is wrong with a value, or nothing.
+template <class Refusal>
+void add_required(CLI::App& app, const char* name, std::string& out, const char* help,
+                  Refusal refusal) {
+  app.add_option(name, out, help)->required()->check(refusal);
+}
+
 CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   CLI::App* const made = app.add_subcommand(
       "import", "make a new world from a Luanti or Minecraft world, or from a file with a build");
@@ -76,9 +88,7 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
   made->callback([kind, luanti] {
     if (kind->count() + luanti->count() == 0) throw CLI::RequiredError("KIND and SOURCE");
   });
-  made->add_option("--world", out.world, "folder of the new world")
-      ->required()
-      ->check(folder_refusal);
+  add_required(*made, "--world", out.world, "folder of the new world", folder_refusal);
   made->add_option_function<std::string>(
           "--at", [&out](const std::string& text) { out.at = *parse_voxel_pos(text); },
           "file: X,Y,Z of its lowest corner; default: 0,0,0")
@@ -104,19 +114,15 @@ CLI::App* add_import(CLI::App& app, ImportRequest& out) {
       "--keep-all", out.keep_all,
       "keep blocks that are no whole cubes and have no shape, such as wires, as see-through "
       "cubes, and plants in water instead of the water");
-  made->add_flag("--progress", out.progress,
-                 "print progress even if standard error is no terminal");
+  add_progress(*made, out.progress);
   return made;
 }
 
 CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   CLI::App* const compact =
       app.add_subcommand("compact", "move the oldest part of a world's log into its base");
-  compact
-      ->add_option("--world", out.world,
-                   "folder of the world, or postgresql://...; no server may run it")
-      ->required()
-      ->check(place_refusal);
+  add_required(*compact, "--world", out.world,
+               "folder of the world, or postgresql://...; no server may run it", place_refusal);
   compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
       ->check(CLI::Range(0, 36'500));
@@ -125,50 +131,19 @@ CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
   compact->add_flag_callback(
       "--keep-size", [&out] { out.shrink = false; },
       "leave the free space in the file, for new edits");
-  compact->add_flag("--progress", out.progress,
-                    "print progress even if standard error is no terminal");
+  add_progress(*compact, out.progress);
   return compact;
 }
 
 CLI::App* add_copy(CLI::App& app, CopyRequest& out) {
   CLI::App* const copy = app.add_subcommand(
       "copy", "copy a world from a folder to a PostgreSQL database, or back, and verify it");
-  copy->add_option("--from", out.from, "folder of the world, or postgresql://...")
-      ->required()
-      ->check(place_refusal);
-  copy->add_option("--to", out.to, "the new folder, or postgresql://... without a world")
-      ->required()
-      ->check(place_refusal);
-  copy->add_flag("--progress", out.progress,
-                 "print progress even if standard error is no terminal");
+  add_required(*copy, "--from", out.from, "folder of the world, or postgresql://...",
+               place_refusal);
+  add_required(*copy, "--to", out.to, "the new folder, or postgresql://... without a world",
+               place_refusal);
+  add_progress(*copy, out.progress);
   return copy;
-}
-
-CLI::App* add_backup(CLI::App& app, BackupRequest& out) {
-  CLI::App* const backup = app.add_subcommand(
-      "backup", "copy a world, also while a server runs it, and verify the copy");
-  backup->add_option("--world", out.world, "folder of the world")
-      ->required()
-      ->check(folder_refusal);
-  backup->add_option("--to", out.to, "the new folder; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
-  backup->add_flag("--progress", out.progress,
-                   "print progress even if standard error is no terminal");
-  return backup;
-}
-
-CLI::App* add_restore(CLI::App& app, RestoreRequest& out) {
-  CLI::App* const restore = app.add_subcommand("restore", "make a world of a backup");
-  restore->add_option("--from", out.from, "folder of the backup")
-      ->required()
-      ->check(folder_refusal);
-  restore->add_option("--world", out.world, "folder of the new world; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
-  restore->add_flag("--progress", out.progress,
-                    "print progress even if standard error is no terminal");
-  return restore;
 }
 
 CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
@@ -180,20 +155,16 @@ CLI::App* add_repair(CLI::App& app, RepairRequest& out) {
                ? "is in a database: `runstone-server copy` it to a folder first, and back afterwards"
                : folder_refusal(place);
   };
-  repair->add_option("--world", out.world, "folder of the damaged world; no server may run it")
-      ->required()
-      ->check(refusal);
-  repair->add_option("--to", out.to, "the new folder; empty, or not there")
-      ->required()
-      ->check(folder_refusal);
+  add_required(*repair, "--world", out.world, "folder of the damaged world; no server may run it",
+               refusal);
+  add_required(*repair, "--to", out.to, "the new folder; empty, or not there", folder_refusal);
   repair
       ->add_option("--from", out.from, "folder of an older backup, from which lost rows are taken")
       ->check(folder_refusal);
   repair->add_flag("--in-place", out.in_place,
                    "give the repaired world the name of the damaged one at the end; --to is then "
                    "the damaged one");
-  repair->add_flag("--progress", out.progress,
-                   "print progress even if standard error is no terminal");
+  add_progress(*repair, out.progress);
   return repair;
 }
 
@@ -219,13 +190,13 @@ int arguments_before_command(int argc, const char* const* argv) {
 /// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
 /// order.
 void print_unknown_argument(const CLI::App& app) {
-  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  const CLI::App* innermost = &app;
+  while (!innermost->get_subcommands().empty()) innermost = innermost->get_subcommands().front();
   const std::string argument = app.remaining(true).front();
   std::cerr
       << "runstone-server: \"" << argument
-      << "\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag"
-      << nearest_flag(parsed.empty() ? app : *parsed.front(), argument)
-      << "; --help lists the flags\n";
+      << "\" is no subcommand (import, compact, copy, backup, pack, restore, repair, control) and no flag"
+      << nearest_flag(*innermost, argument) << "; --help lists the flags\n";
 }
 
 }  // namespace
@@ -235,7 +206,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   ImportRequest import_request;
   CompactRequest compact_request;
   CopyRequest copy_request;
-  BackupRequest backup_request;
+  BackupOptions backup_options;
+  PackRequest pack_request;
   RestoreRequest restore_request;
   RepairRequest repair_request;
   ControlRequest control_request;
@@ -244,10 +216,12 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   // it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_flags(app, out);
+  add_help_options(app, "runstone-server");
   const CLI::App* const import = add_import(app, import_request);
   const CLI::App* const compact = add_compact(app, compact_request);
   const CLI::App* const copy = add_copy(app, copy_request);
-  const CLI::App* const backup = add_backup(app, backup_request);
+  const CLI::App* const backup = add_backup(app, backup_options);
+  const CLI::App* const pack = add_pack(app, pack_request);
   const CLI::App* const restore = add_restore(app, restore_request);
   const CLI::App* const repair = add_repair(app, repair_request);
   const CLI::App* const control = add_control(app, control_request);
@@ -263,7 +237,11 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   if (import->parsed()) out.import = import_request;
   if (compact->parsed()) out.compact = compact_request;
   if (copy->parsed()) out.copy = copy_request;
-  if (backup->parsed()) out.backup = backup_request;
+  if (backup->parsed()) {
+    out.backup = backup_options.copy;
+    out.backup_folder = backup_options.folder;
+  }
+  if (pack->parsed()) out.pack = pack_request;
   if (restore->parsed()) out.restore = restore_request;
   if (repair->parsed()) out.repair = repair_request;
   if (control->parsed()) {

@@ -8,6 +8,8 @@
 #include "server/admin/control_program.hpp"
 #include "server/admin/copy_program.hpp"
 #include "server/backup/backup_program.hpp"
+#include "server/backup/folder_program.hpp"
+#include "server/backup/world_pack.hpp"
 #include "server/import/import_program.hpp"
 #include "server/repair/repair_program.hpp"
 #include "server/store/world_folder.hpp"
@@ -21,12 +23,14 @@ struct ServerOptions {
   bool create = false;         // make the world if its place holds none, whatever the place is
   bool accept_losses = false;  // start a world that has lost edits, players or watermarks
   WorldCreation creation;
-  std::optional<ImportRequest> import;    // the import subcommand
-  std::optional<CompactRequest> compact;  // the compact subcommand
-  std::optional<CopyRequest> copy;        // the copy subcommand
-  std::optional<BackupRequest> backup;    // the backup subcommand
-  std::optional<RestoreRequest> restore;  // the restore subcommand
-  std::optional<RepairRequest> repair;    // the repair subcommand
+  std::optional<ImportRequest> import;               // the import subcommand
+  std::optional<CompactRequest> compact;             // the compact subcommand
+  std::optional<CopyRequest> copy;                   // the copy subcommand
+  std::optional<BackupRequest> backup;               // the backup subcommand without one of its own
+  std::optional<BackupFolderRequest> backup_folder;  // backup add, list, prune, verify
+  std::optional<PackRequest> pack;                   // the pack subcommand
+  std::optional<RestoreRequest> restore;             // the restore subcommand
+  std::optional<RepairRequest> repair;               // the repair subcommand
   bool console = false;          // read commands from standard input even if it is no terminal
   bool stop_with_input = false;  // stop when standard input ends
   std::optional<ControlRequest> control;  // the control subcommand

@@ -15,9 +15,10 @@ struct BackupRequest {
 };
 
 struct RestoreRequest {
-  std::string from;   // folder of a backup
+  std::string from;   // folder of a backup or of several ones (BackupFolder), or a pack
   std::string world;  // the new folder
   bool progress = false;
+  std::string backup = {};  // of a folder of several backups, by name; empty: the newest one
 };
 
 /// Writes a verified copy of the world into the new folder `to`, and prints what it holds. A server

@@ -106,12 +106,20 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
   if (!left_out) return failure(left_out.error());
   backup.left_out = *std::move(left_out);
   backup.copy_s = seconds_since(begun);
+  if (auto complete = complete_copy(to, now_us, backup); !complete)
+    return failure(complete.error());
+  return backup;
+}
+
+Result<void, std::string> complete_copy(const std::string& to, TimeUs now_us, WorldBackup& backup) {
+  const fs::path target(to);
   const auto checked = Clock::now();
   if (auto verified = verify(to, now_us, backup); !verified) {
     const std::string verdict = verified.error().may_pass() ? "cannot be verified" : "is not sound";
     return failure("the copy " + verdict + ", and is removed: " + verified.error().message());
   }
   backup.check_s = seconds_since(checked);
+  std::error_code error;
   const fs::path wal = target / "world.sqlite-wal";
   if (fs::exists(wal, error) && fs::file_size(wal, error) != 0) {
     if (const auto moved = move_log((target / kDatabase).string()); !moved)
@@ -119,7 +127,7 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
                      moved.error().message());
   }
   for (const std::string_view name : kMadeAnew) fs::remove(target / name, error);
-  return backup;
+  return {};
 }
 
 Result<std::vector<std::string>, std::string> copy_configuration(const std::string& from,

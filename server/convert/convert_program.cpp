@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/build_files/build_files.hpp"
+#include "common/command_line/help_options.hpp"
 #include "common/core/build_info.hpp"
 #include "common/core/text.hpp"
 #include "common/core/version.hpp"
@@ -116,6 +117,7 @@ int convert_program(int argc, const char* const* argv, std::ostream& out, std::o
   CLI::App app("Reads a build from a file and writes it in the format of another ending.",
                "runstone-convert");
   app.set_version_flag("--version", "runstone-convert " + std::string(version()));
+  add_help_options(app, "runstone-convert");
   app.add_option("IN", options.in, "the file to read, such as castle.schem")->required();
   app.add_option("OUT", options.out,
                  "the file to write, such as castle.vox; an old one is replaced. Without it, the "

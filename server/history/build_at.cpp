@@ -26,10 +26,6 @@ std::optional<std::string> box_refusal(const VoxelBox& box) {
   return std::nullopt;
 }
 
-std::vector<std::int32_t> cuts_of(std::int32_t min, std::int32_t max, std::int32_t edge) {
-  return grid_cuts(max - min, edge, min - floor_div(min, edge) * edge);
-}
-
 /// Returns the cells of a chunk's part as numbers of the builder, or nullopt if its palette is full.
 std::optional<RunChunk> cells_of(const RunChunk& part, BuildBuilder& builder,
                                  std::vector<std::uint16_t>& numbers) {
@@ -68,10 +64,7 @@ Result<FileBuild, std::string> build_at(const WorldAt& world, WorldReader& reade
                                         std::int32_t chunk_edge, std::size_t bytes_max,
                                         const ChunkProgress& progress) {
   if (auto why = box_refusal(box)) return failure(*std::move(why));
-  auto builder = BuildBuilder::of(
-      {cuts_of(box.min.x, box.max.x, chunk_edge), cuts_of(box.min.y, box.max.y, chunk_edge),
-       cuts_of(box.min.z, box.max.z, chunk_edge)},
-      bytes_max);
+  auto builder = BuildBuilder::of(world_cuts(box, chunk_edge), bytes_max);
   if (!builder) return failure(std::string(builder.error().what));
   const BuildCuts cuts = builder->cuts();
   const ChunkCoord first = chunk_of(box.min, chunk_edge);

@@ -11,6 +11,7 @@
 
 #include "common/build_files/model_reading.hpp"
 #include "common/edits/clipboard/orientation.hpp"
+#include "common/materials/look_on_shape.hpp"
 #include "common/materials/palette.hpp"
 #include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
@@ -55,10 +56,11 @@ class BaseWriter {
   std::string error_;
 };
 
-/// Returns the materials of the new world: those of the imported one, and the palette.
+/// Returns the materials of the new world: those of the imported one, with looks that belong to their
+/// shapes (look_on_shape()), and the palette.
 Result<MaterialTable, std::string> materials_of(const ImportRequest& request,
                                                 const MaterialTable& found) {
-  MaterialTable materials = found;
+  MaterialTable materials = with_looks_on_shapes(found);
   if (request.palette && !append_palette(materials, default_material_table())) {
     return failure(request.source + ": its " + std::to_string(found.size()) +
                    " materials leave no room for the builders' palette: add --palette none");

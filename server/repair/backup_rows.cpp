@@ -16,6 +16,28 @@
 #include "server/store/world_folder.hpp"
 
 namespace runstone {
+namespace {
+
+/// Calls `take` for the rows, and returns how often it returned true. Fails as `rows` and `take`.
+template <class Row, class Take>
+StoreResult<std::uint64_t> take_rows(const StoreResult<std::vector<Row>>& rows, Take take) {
+  if (!rows) return failed(rows.error());
+  std::uint64_t taken = 0;
+  for (const Row& row : *rows) {
+    const StoreResult<bool> is_taken = take(row);
+    if (!is_taken) return failed(is_taken.error());
+    taken += *is_taken ? 1 : 0;
+  }
+  return taken;
+}
+
+template <class T>
+StoreResult<bool> is_written(const StoreResult<T>& written) {
+  if (!written) return failed(written.error());
+  return true;
+}
+
+}  // namespace
 
 Result<BackupRows, std::string> BackupRows::open(const std::string& folder) {
   auto store = open_world(folder, StoreAccess::read_only);
@@ -46,7 +68,8 @@ StoreResult<std::uint64_t> BackupRows::fill_log(sql::Database& database, const L
   auto next = database.prepare(
       "SELECT epoch FROM edit_log WHERE log = 0 AND seq > ?1 ORDER BY seq LIMIT 1");
   if (!next) return failed(next.error());
-  // Of a backup whose log has no record in common, the head alone is known to be common.
+  // The edits that the backup has compacted are taken for common, until a record shows that they
+  // are not. Their authors are known only if the log of the backup has no records.
   common_ = range->first - 1;
   author_max_ = range->last.version.seq == common_ ? store_->author_max() : 0;
   std::vector<EditRecord> taken;
@@ -60,7 +83,7 @@ StoreResult<std::uint64_t> BackupRows::fill_log(sql::Database& database, const L
     if (!there) return false;
     bool is_common = record.version.seq <= head.version.seq;
     if (record.version.seq == head.version.seq && record.version != head.version) {
-      // What was compacted in one of the two has another history in the other.
+      // The world has compacted another edit of this number: nothing is common.
       common_ = 0;
       author_max_ = 0;
       return false;
@@ -150,19 +173,14 @@ StoreResult<std::uint64_t> BackupRows::fill_players(sql::Database& database) {
   if (!table) return failed(table.error());
   const auto there = table->players();
   if (!there) return failed(there.error());
-  const auto players = store_->players();
-  if (!players) return failed(players.error());
-  std::uint64_t taken = 0;
   RowFold unused;
-  for (const PlayerRow& player : *players) {
+  return take_rows(store_->players(), [&](const PlayerRow& player) -> StoreResult<bool> {
     const bool is_known = std::ranges::any_of(there->rows, [&](const PlayerRow& row) {
       return row.author == player.author || row.key == player.key;
     });
-    if (is_known || !is_common(player.author)) continue;
-    if (auto put = table->put(player, unused); !put) return failed(put.error());
-    ++taken;
-  }
-  return taken;
+    if (is_known || !is_common(player.author)) return false;
+    return is_written(table->put(player, unused));
+  });
 }
 
 StoreResult<std::uint64_t> BackupRows::fill_names(sql::Database& database) {
@@ -172,33 +190,22 @@ StoreResult<std::uint64_t> BackupRows::fill_names(sql::Database& database) {
   if (!there) return failed(there.error());
   std::set<AuthorId> known;
   for (const UsedName& name : *there) known.insert(name.author);
-  const auto names = store_->player_names();
-  if (!names) return failed(names.error());
-  std::uint64_t taken = 0;
-  for (const UsedName& name : *names) {
-    if (known.contains(name.author) || !is_common(name.author)) continue;
-    const auto added = table->add(name);
-    if (!added) return failed(added.error());
-    ++taken;
-  }
-  return taken;
+  return take_rows(store_->player_names(), [&](const UsedName& name) -> StoreResult<bool> {
+    if (known.contains(name.author) || !is_common(name.author)) return false;
+    return is_written(table->add(name));
+  });
 }
 
 StoreResult<std::uint64_t> BackupRows::fill_claims(sql::Database& database) {
   auto table = ClaimTable::open(database);
   if (!table) return failed(table.error());
-  const auto claims = store_->name_claims();
-  if (!claims) return failed(claims.error());
-  std::uint64_t taken = 0;
   RowFold unused;
-  for (const NameClaim& claim : *claims) {
+  return take_rows(store_->name_claims(), [&](const NameClaim& claim) -> StoreResult<bool> {
     const auto owner = table->owner(claim.folded);
     if (!owner) return failed(owner.error());
-    if (*owner) continue;
-    if (auto added = table->add(claim, unused); !added) return failed(added.error());
-    ++taken;
-  }
-  return taken;
+    if (*owner) return false;
+    return is_written(table->add(claim, unused));
+  });
 }
 
 StoreResult<std::uint64_t> BackupRows::fill_watermarks(sql::Database& database) {
@@ -206,13 +213,12 @@ StoreResult<std::uint64_t> BackupRows::fill_watermarks(sql::Database& database) 
   if (!table) return failed(table.error());
   const auto before = table->high_waters();
   if (!before) return failed(before.error());
-  const auto marks = store_->high_waters();
-  if (!marks) return failed(marks.error());
   RowFold unused;
-  for (const HighWater& mark : *marks) {
-    if (!is_common(mark.author)) continue;
-    if (auto raised = table->raise(mark, unused); !raised) return failed(raised.error());
-  }
+  const auto taken = take_rows(store_->high_waters(), [&](const HighWater& mark) {
+    return is_common(mark.author) ? is_written(table->raise(mark, unused))
+                                  : StoreResult<bool>(false);
+  });
+  if (!taken) return failed(taken.error());
   const auto after = table->high_waters();
   if (!after) return failed(after.error());
   return after->rows.size() - before->rows.size();

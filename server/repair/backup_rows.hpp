@@ -1,5 +1,7 @@
-// BackupRows: what a repair takes from an older backup of the same world. It takes a row only from
-// the history that the two have in common: a backup that was played on has other edits behind it.
+// BackupRows: the rows that a repair takes from an older backup of the same world. The common
+// history of the two is the part of the log in which their records are equal. If a server ran the
+// backup, its later records are not those of the world. So a row is taken only if it belongs to the
+// common history.
 // Threads: the one that owns the database.
 #pragma once
 #include <cstdint>
@@ -18,18 +20,20 @@ namespace runstone {
 class BackupRows {
  public:
   /// Opens the world in the folder of a backup, and verifies every row of it. The error is one
-  /// line.
+  /// line. Cost: O(rows of the backup).
   static Result<BackupRows, std::string> open(const std::string& folder);
 
   const std::string& file() const { return store_->file(); }
   const WorldMeta& meta() const { return store_->meta(); }
   StoreResult<LogEnd> log_head() { return store_->log_head(); }
 
-  // The calls below write in the caller's transaction, in this order. Each returns how many rows it
-  // took.
+  // The functions below write in the caller's transaction. fill_log() must be the first call,
+  // because it finds the common history. Each returns how many rows it took. `head`: that of the
+  // damaged world.
 
-  /// Takes records behind the head that the log lacks, up to the first one that differs. A record
-  /// must fit the epochs of its neighbours, and be no newer than `epoch`, that of the world.
+  /// Takes the records behind the head that the log lacks, up to the first record that differs. A
+  /// record must have an epoch between those of its neighbours, and none above `epoch`, which is
+  /// that of the world.
   StoreResult<std::uint64_t> fill_log(sql::Database& database, const LogEnd& head, Epoch epoch);
   /// Takes the chunks of the base that the world lacks, as they were at its head. It takes none if
   /// the common history does not reach the head.

@@ -1,5 +1,5 @@
 // FoundRow: a row that its own checksum proves, wherever its bytes were found. The checksum has 64
-// bits and covers the name of the table, so no other bytes are taken for such a row.
+// bits and covers the name of the table. So other bytes pass for a row with a probability of 2^-64.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,8 +12,7 @@
 
 namespace runstone {
 
-/// The tables whose rows a repair looks for. The others are indexes and caches, which it makes
-/// anew.
+/// The tables whose rows a repair looks for. It makes the rows of all other tables again.
 enum class FoundTable {
   meta,
   edit_log,

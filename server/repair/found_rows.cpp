@@ -76,9 +76,12 @@ StoreResult<void> FoundRows::add(FoundTable table, const StoredRow& row, RowOrig
     if (origin != RowOrigin::free) add_meta(row, origin);
     return {};
   }
-  // A free page may have rows from before a compaction. Only a record of the log says by its
-  // sequence whether it still counts.
-  if (origin == RowOrigin::free && table != FoundTable::edit_log) return {};
+  // A free page may have rows from before a compaction. A record of the log says by its sequence
+  // whether it still counts. A watermark only rises and is never deleted, so an older one is a
+  // lower bound.
+  const bool is_known_when_free =
+      table == FoundTable::edit_log || table == FoundTable::player_instance;
+  if (origin == RowOrigin::free && !is_known_when_free) return {};
   if (origin == RowOrigin::torn && !is_lasting(table)) return {};
   if (table == FoundTable::build || table == FoundTable::build_part) {
     if (auto made = make_library(); !made) return made;

@@ -1,6 +1,7 @@
-// FoundRows: the rows that a scan found, in the tables of the new world. Of two sound rows with one
-// key the one that was found first stays; of two watermarks the higher one. Records of the log that
-// were not in a used page are doubtful: they count only if they fit their neighbours.
+// FoundRows: writes the rows that a scan found into the tables of the new world. Of two sound rows
+// with one key the one that was found first stays; of two watermarks the higher one. A record of
+// the log that was not in a used page is doubtful: remove_misfits() deletes it if it does not fit
+// its neighbours.
 // Threads: the one that owns the database.
 #pragma once
 #include <cstdint>
@@ -35,13 +36,13 @@ class FoundRows {
   /// Makes the tables of the library, if they are not there, in the caller's transaction.
   StoreResult<void> make_library();
 
-  /// The rows of `meta` that were found. They are not in the database.
+  /// Returns the rows of `meta` that were found. They are not written.
   MetaRows& meta() { return meta_; }
   bool has_library() const { return has_library_; }
-  /// The records of the log that count only if they fit, ascending.
+  /// Returns the doubtful records of the log, ascending.
   const std::map<Sequence, RowOrigin>& doubtful() const { return doubtful_; }
   const std::map<Sequence, UnprovenRecord>& unproven() const { return unproven_; }
-  /// A line for each damaged row.
+  /// Returns a line for each damaged row.
   const std::vector<std::string>& damage() const { return damage_; }
 
  private:

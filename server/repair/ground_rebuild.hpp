@@ -1,7 +1,7 @@
-// ground_rebuild: the chunks of a repaired world. Base and log say what they hold. A snapshot of
-// the damaged world may show edits that the log lacks: then the present voxels of the chunk are
-// those of the snapshot and of the later edits, and an edit of the server at the end of the log
-// writes them. So players find the ground as they left it, wherever a snapshot is sound.
+// ground_rebuild: the chunks of a repaired world. Base and log give their voxels. A snapshot of the
+// damaged world may show edits that the log lacks. Then the present voxels of the chunk are those
+// of the snapshot with the later edits, and an edit of the server at the end of the log writes
+// them. So players find such a chunk as they left it.
 #pragma once
 #include <functional>
 #include <map>

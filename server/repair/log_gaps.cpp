@@ -34,15 +34,15 @@ StoreResult<std::int64_t> epoch_of(sql::Database& database, Sequence seq) {
                                        std::to_string(seq)));
 }
 
-/// The records that stand for lost ones.
+/// Makes the records that stand for lost ones.
 class GapPlan {
  public:
   GapPlan(const LogEnd& head, const std::map<Sequence, LostRecord>& known, std::size_t materials,
           ClientInstance instance)
       : before_(head), known_(known), materials_(materials), instance_(instance) {}
 
-  /// Adds the gaps before a record that is there. Returns false if materials are missing for which
-  /// there is no gap.
+  /// Adds the gaps between the record of the call before and this one. Call it for all records that
+  /// are there, ascending. Returns false if the record needs more materials than gaps can add.
   bool add(const EditRecord& record) {
     const bool has_gap = before_.version.seq + 1 < record.version.seq;
     const bool has_past = before_.version.seq != 0;
@@ -84,11 +84,11 @@ class GapPlan {
   std::size_t materials_made() const { return made_; }
 
  private:
-  /// Makes the newest gaps add `count` rows.
+  /// Makes gaps add `count` rows. Returns false if there are too few gaps.
   bool add_materials(std::size_t count) {
     while (count > 0) {
-      // The table grows in the order of the log. The first gap that may take rows leaves later ones
-      // for what follows.
+      // Rows are added in the order of their ids, so a gap before the newest added rows cannot add
+      // some. Of the others the first is taken: a later record may need the rest.
       const auto first = std::ranges::find_if(gaps_, [&](const EditRecord& gap) {
         const GapEdit* edit = gap_of(gap.edit);
         return gap.version.seq > newest_materials_ && edit != nullptr && !edit->begins_era;

@@ -1,6 +1,6 @@
-// log_gaps: makes the log of a repaired world continuous. A record that is lost is replaced by a
-// gap (GapEdit), so that sequence numbers have none. If the lost records added materials, the gap
-// adds rows with names of its own instead, because voxels and later records refer to the ids.
+// log_gaps: makes the log of a repaired world continuous. A record with a GapEdit takes the
+// sequence number of each lost record. If lost records added materials, a record that adds rows
+// named lost_ID takes the place of such a gap, because voxels and later records refer to the ids.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -18,21 +18,22 @@
 
 namespace runstone {
 
-/// What is known of a lost record. The indexes of the log have its author and cause; they have no
-/// checksum.
+/// The columns of a lost record that are known. They come from the indexes of the log, which have
+/// no checksums, so they may be wrong.
 struct LostRecord {
   AuthorId author = 0;         // 0: the server, or not known
   std::optional<Cause> cause;  // nullopt: not known
 };
 
-/// Deletes the records up to the head, and the doubtful ones that do not fit their neighbours:
-/// their epoch is older than before or newer than behind, or they are from a free page and behind
-/// the end.
+/// Deletes the records up to the head, which are in the base. Deletes also each doubtful record
+///   - whose epoch is older than that of the record before it;
+///   - whose epoch is newer than that of the record behind it;
+///   - which is from a free page, if no record is behind it.
 StoreResult<void> remove_misfits(sql::Database& database, const LogEnd& head,
                                  const std::map<Sequence, RowOrigin>& doubtful);
 
-/// Returns rows that take the ids `first` up to `end`, as many as one record may have. They stand
-/// for materials that are lost. Requires first < end.
+/// Returns rows, named lost_ID, for lost materials from the id `first` on. It returns those up to
+/// `end`, not included, or as many as one record may have. Requires first < end.
 AddedMaterials lost_materials(std::size_t first, std::size_t end);
 
 /// Returns the sequences behind the head and up to `last` that the log lacks, ascending.

@@ -30,8 +30,9 @@ inline constexpr std::size_t kDatabaseHeaderBytes = 100;
 std::uint32_t sqlite_u32(ByteView in, std::size_t at);
 
 /// Returns the cells of a page. Returns nullopt if the page is none of a b-tree. An interior page
-/// of a table has no rows, so it has no cells here. `header_bytes` are those before the header of
-/// the page; `usable` are the bytes of the page that SQLite uses. Requires a page of a power of two bytes.
+/// of a table has no rows, so no cells are returned for it. `header_bytes` are those before the
+/// header of the page; `usable` are the bytes of the page that SQLite uses. Requires that the size
+/// of the page is a power of two.
 std::optional<PageCells> cells_of(ByteView page, std::size_t header_bytes, std::size_t usable);
 
 }  // namespace runstone

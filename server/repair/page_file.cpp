@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLogHeaderBytes = 32, kLogFrameHeaderBytes = 24;
 constexpr std::uint32_t kLogMagic = 0x377f0682;  // the last bit: checksums are big-endian
-constexpr std::uint32_t kFormatRepaired = 4;     // the first one with all tables
+constexpr std::uint32_t kFormatRepaired = 4;     // the first format that can be repaired
 constexpr std::array<std::size_t, 4> kPageBytesTried = {2'048, 4'096, 1'024, 8'192};
 
 /// The running checksum of the write-ahead log.
@@ -168,7 +168,8 @@ StoreResult<void> PageFile::read_log() {
       committed_pages_ = size;
     }
   }
-  // A transaction that was not committed was never durable, unless its end is torn.
+  // Frames behind the last commit are of a transaction that was not committed, so they are dropped.
+  // If there are torn frames, the frame of its commit may be one of them.
   if (torn_frames_.empty()) open.clear();
   for (const auto& [page, from] : open) {
     torn_.try_emplace(page, from);

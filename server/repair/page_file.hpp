@@ -46,7 +46,8 @@ class PageFile {
   /// Returns true for each page that SQLite does not use. Element 0 is not a page.
   const std::vector<bool>& free_pages() const { return is_free_; }
 
-  /// Returns a line for each damage of what is no page of rows: header, freelist, log.
+  /// Returns a line for each damage of the header, of the list of free pages and of the write-ahead
+  /// log.
   const std::vector<std::string>& damage() const { return damage_; }
 
  private:

@@ -192,14 +192,13 @@ Result<void, std::string> repair(const RepairRequest& request, TimeUs now_us, st
   if (!proven) {
     return failure(request.to + ": is not equal to its base and log: " + proven.error());
   }
-  if (!request.in_place) {
-    out << "repaired    " << request.world << " is in " << request.to
-        << ": start the server on it, and keep the damaged one until all is well\n";
-    return {};
+  if (request.in_place) {
+    if (const auto done = put_in_place(request, *left_out); !done) return done;
   }
-  if (const auto done = put_in_place(request, *left_out); !done) return done;
-  out << "repaired    " << request.world << " is repaired, and " << request.to
-      << " is the damaged world: keep it until all is well\n";
+  const std::string& repaired = request.in_place ? request.world : request.to;
+  const std::string& damaged = request.in_place ? request.to : request.world;
+  out << "repaired    the repaired world is " << repaired << ": start the server on it\n"
+      << "keep        the damaged world is " << damaged << ": keep it until all is well\n";
   return {};
 }
 

@@ -20,9 +20,9 @@ struct RepairRequest {
 /// Makes the repaired world in the new folder `to`, and prints what was found, what is gone, and
 /// the proof. The damaged world stays as it is; no server may run it. `now_us` is the time in UTC.
 /// The error is one line. Fails if
-///   - the world cannot be repaired, or another program writes or repairs it. `to` is not there
-///     then;
-///   - the repaired world is not sound. It stays in `to`, and nothing is exchanged.
+///   - the world cannot be repaired, or another program writes or repairs it. Then `to` does not
+///     exist;
+///   - the repaired world is not sound. Then it stays in `to`, and the folders are not exchanged.
 Result<void, std::string> repair(const RepairRequest& request, TimeUs now_us, std::ostream& out);
 
 }  // namespace runstone

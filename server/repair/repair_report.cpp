@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-/// The lines of one list; the rest is counted.
+/// The greatest number of lines of one list. The rows behind them are counted.
 constexpr std::size_t kLinesMax = 1'000;
 constexpr std::size_t kChunksNamedMax = 8;
 
@@ -20,7 +20,7 @@ void print_list(const std::vector<Row>& rows, std::ostream& out, const char* nam
   if (rows.size() > kLinesMax) out << name << "and " << rows.size() - kLinesMax << " more\n";
 }
 
-/// Returns the chunks that a box meets, or how many they are.
+/// Returns the coordinates of the first kChunksNamedMax chunks that a box meets.
 std::string chunks_text(const VoxelBox& box, std::int32_t edge) {
   if (box.empty()) return "";
   const ChunkCoord first = chunk_of(box.min, edge);

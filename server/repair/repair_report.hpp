@@ -1,5 +1,5 @@
-// RepairReport: what a repair found, what it could not bring back, and where. Its text is for the
-// host.
+// RepairReport: the damage that a repair found, the rows that it lost or took from elsewhere, and
+// their places. Its text is for the host.
 #pragma once
 #include <cstdint>
 #include <iosfwd>

@@ -1,15 +1,14 @@
 #include "server/repair/world_rebuild.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/materials/look_on_shape.hpp"
+#include "server/repair/built_in_materials.hpp"
+#include "server/repair/table_folds.hpp"
 #include "server/store/build_table.hpp"
-#include "server/store/chunk_table.hpp"
-#include "server/store/claim_table.hpp"
 #include "server/store/durable_mark.hpp"
-#include "server/store/kept_records.hpp"
 #include "server/store/name_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/segment_table.hpp"
@@ -19,61 +18,13 @@
 namespace runstone {
 namespace {
 
+constexpr const char* kMaterialsKey = "materials";
+
 std::uint64_t counter_in(const MetaRows& rows, const char* key) {
   const auto row = rows.find(key);
   const auto* value = row == rows.end() ? nullptr : std::get_if<std::int64_t>(&row->second);
   return value == nullptr || *value < 0 ? 0 : static_cast<std::uint64_t>(*value);
 }
-
-std::optional<RowFold> fold_in(const MetaRows& rows, const std::string& key) {
-  const auto row = rows.find(key);
-  const auto* bytes = row == rows.end() ? nullptr : std::get_if<Bytes>(&row->second);
-  if (bytes == nullptr || bytes->size() != 16) return std::nullopt;
-  ByteReader reader(*bytes);
-  const std::uint64_t count = reader.u64();
-  return RowFold{count, reader.u64()};
-}
-
-template <class Table, class Rows>
-StoreResult<RowFold> fold_of_rows(sql::Database& database, Rows rows) {
-  auto table = Table::open(database);
-  if (!table) return failed(table.error());
-  const auto found = rows(*table);
-  if (!found) return failed(found.error());
-  return found->fold;
-}
-
-StoreResult<RowFold> fold_of_chunks(sql::Database& database, ChunkTable::Kind kind) {
-  auto table = ChunkTable::open(database, kind);
-  if (!table) return failed(table.error());
-  return table->fold();
-}
-
-/// The tables that have a fold in `meta`, but for those of the library.
-constexpr std::array kFolded = {
-    FoundTable::base,       FoundTable::rights_record,   FoundTable::player,
-    FoundTable::name_claim, FoundTable::player_instance, FoundTable::snapshot};
-
-/// Returns the fold of a table of kFolded.
-StoreResult<RowFold> fold_of(sql::Database& database, FoundTable table) {
-  switch (table) {
-    case FoundTable::base:
-      return fold_of_chunks(database, ChunkTable::Kind::base);
-    case FoundTable::rights_record:
-      return fold_of_rows<KeptRecords>(database, [](KeptRecords& rows) { return rows.records(); });
-    case FoundTable::player:
-      return fold_of_rows<PlayerTable>(database, [](PlayerTable& rows) { return rows.players(); });
-    case FoundTable::name_claim:
-      return fold_of_rows<ClaimTable>(database, [](ClaimTable& rows) { return rows.claims(); });
-    case FoundTable::player_instance:
-      return fold_of_rows<PlayerTable>(database,
-                                       [](PlayerTable& rows) { return rows.high_waters(); });
-    default:
-      return fold_of_chunks(database, ChunkTable::Kind::snapshot);
-  }
-}
-
-std::string fold_key_of(FoundTable table) { return std::string(columns_of(table).name) + "_fold"; }
 
 }  // namespace
 
@@ -115,6 +66,9 @@ StoreResult<void> WorldRebuild::find_pinned_values() {
     } else if (const auto kept = from_backup.find(key); kept != from_backup.end()) {
       meta_[key] = kept->second;
       report_.taken.push_back("meta key=" + key + " from the backup");
+    } else if (key == kMaterialsKey) {
+      are_materials_lost_ = true;
+      meta_[key] = to_toml(MaterialTable());  // until the log is known
     } else {
       return failure(StoreError{StoreError::Kind::corrupt, folder_, "meta key=" + key,
                                 "is lost, and nothing else in the world has it. Give the folder of "
@@ -125,6 +79,34 @@ StoreResult<void> WorldRebuild::find_pinned_values() {
     return failure(StoreError{StoreError::Kind::corrupt, folder_, "meta key=" + meta.error(),
                               "has an impossible value"});
   }
+  return {};
+}
+
+StoreResult<void> WorldRebuild::find_materials() {
+  if (!are_materials_lost_) return {};
+  const auto meta = meta_of(meta_);
+  const bool has_shapes = found_->meta().contains(kShapesKey);
+  auto found = find_built_in_materials(*database_, {meta->generator, meta->chunk_edge, has_shapes});
+  if (!found) return failed(found.error());
+  if (found->name.empty()) {
+    return failure(StoreError{
+        StoreError::Kind::corrupt, folder_, std::string("meta key=") + kMaterialsKey,
+        "is lost, and nothing else in the world has it. The built-in table is not that of this "
+        "world: " +
+            found->fault + ". Give the folder of an older backup with --from"});
+  }
+  report_.taken.push_back(
+      std::string("meta key=") + kMaterialsKey + ": " + found->name + " with " +
+      std::to_string(found->table.size()) +
+      " rows. All of base and log fits it. If the world was created with --materials, take the "
+      "table from a backup instead: repair it with --from");
+  if (head_.version.seq != 0) {
+    report_.losses.push_back(
+        std::string("meta key=") + kMaterialsKey + ": materials that were added up to seq=" +
+        std::to_string(head_.version.seq) + ", and that no voxel has, are lost if there were any");
+  }
+  meta_[kMaterialsKey] = to_toml(found->table);
+  if (found->table.has_shapes() || has_silhouettes(found->table)) meta_[kShapesKey] = std::int64_t{1};
   return {};
 }
 
@@ -219,6 +201,7 @@ StoreResult<void> WorldRebuild::report_lost(const std::vector<Sequence>& lost,
 StoreResult<void> WorldRebuild::rebuild_log() {
   sql::Database& database = *database_;
   if (auto removed = remove_misfits(database, head_, found_->doubtful()); !removed) return removed;
+  if (auto found = find_materials(); !found) return found;
   const auto kept = database.integer("SELECT count(*) FROM edit_log");
   if (!kept) return failed(kept.error());
   report_.records = static_cast<std::uint64_t>(*kept);
@@ -257,7 +240,7 @@ StoreResult<std::uint64_t> WorldRebuild::fill_from_backup(FoundTable table) {
     case FoundTable::player_instance:
       return backup_->fill_watermarks(database);
     default:
-      return std::uint64_t{0};  // snapshots are made anew
+      return std::uint64_t{0};  // snapshots are made again
   }
 }
 
@@ -278,12 +261,23 @@ StoreResult<void> WorldRebuild::complete(FoundTable table) {
   // Rows of torn frames are newer than the fold.
   const bool is_newer = pages_.has_torn_pages() && expected && found->count >= expected->count;
   if (expected == *found || is_newer) return {};
-  report_.losses.push_back(name + ": " +
-                           (expected
-                                ? std::to_string(found->count) + " rows of " +
-                                      std::to_string(expected->count) + " that meta counts"
-                                : "it is not known whether rows are missing, because meta key=" +
-                                      fold_key_of(table) + " is lost"));
+  std::string loss = name + ": ";
+  if (!expected) {
+    loss += "it is not known whether rows are missing, because meta key=" + fold_key_of(table) +
+            " is lost";
+  } else if (found->count == expected->count) {
+    loss += "an older row stands for one that is lost";
+  } else {
+    loss += std::to_string(found->count) + " rows of " + std::to_string(expected->count) +
+            " that meta counts";
+  }
+  if (table == FoundTable::player_instance) {
+    are_watermarks_lost_ = true;
+    loss +=
+        ". Edits of clients that run since before the repair are refused, because the world may "
+        "have them: their players start the client again";
+  }
+  report_.losses.push_back(std::move(loss));
   return {};
 }
 
@@ -317,12 +311,13 @@ StoreResult<void> WorldRebuild::complete_names() {
 }
 
 StoreResult<void> WorldRebuild::complete_tables() {
-  // Chunks of other levels and versions that the log never had are no chunks of this world.
+  // A snapshot of another level, or of a version behind the end of the log, does not belong to this
+  // world.
   const std::string foreign =
       "DELETE FROM snapshot WHERE lod <> 0 OR seq > " + std::to_string(state_.seq);
   if (const auto gone = database_->run(foreign.c_str()); !gone) return failed(gone.error());
-  for (const FoundTable table : kFolded) {
-    // Snapshots are made anew, and the log gives watermarks first.
+  for (const FoundTable table : kFoldedTables) {
+    // Snapshots are made again. Watermarks are raised to the log before they are completed.
     if (table == FoundTable::snapshot || table == FoundTable::player_instance) continue;
     if (auto completed = complete(table); !completed) return completed;
   }
@@ -377,7 +372,9 @@ StoreResult<void> WorldRebuild::follow_log() {
     state_.author_max = std::max(state_.author_max, author);
     state_.epoch = std::max(state_.epoch, record.version.epoch);
     if (corrects_time(record)) eras_.push_back({record.version.seq, record.time_us});
-    if (given_shapes_of(record.edit) != nullptr) meta_[kShapesKey] = std::int64_t{1};
+    const AddedMaterials* const added = added_materials_of(record.edit);
+    if (given_shapes_of(record.edit) != nullptr || (added && has_silhouettes(added->rows)))
+      meta_[kShapesKey] = std::int64_t{1};
     if (given_texture_of(record.edit) != nullptr) meta_[kTexturesKey] = std::int64_t{1};
     if (gap_of(record.edit) != nullptr) meta_[kGapsKey] = std::int64_t{1};
     return segments->add(record.version.seq, author, bounding_box(record.edit));
@@ -396,18 +393,22 @@ StoreResult<void> WorldRebuild::follow_log() {
   return {};
 }
 
-StoreResult<void> WorldRebuild::raise_own_mark() {
-  if (own_mark_.resolved == 0) return {};
+StoreResult<void> WorldRebuild::raise_own_marks() {
   auto players = PlayerTable::open(*database_);
   if (!players) return failed(players.error());
   RowFold unused;
+  if (are_watermarks_lost_) {
+    if (auto raised = players->raise(lost_watermarks(state_.author_max, now_us_), unused); !raised)
+      return raised;
+  }
+  if (own_mark_.resolved == 0) return {};
   return players->raise(own_mark_, unused);
 }
 
 StoreResult<void> WorldRebuild::write_meta() {
   auto meta = MetaTable::open(*database_);
   if (!meta) return failed(meta.error());
-  // Values that no row of another table has. The rest is made anew.
+  // These values follow from no other table. The values below are made again.
   for (const char* key : {kShapesKey, kTexturesKey, kGapsKey, kClockKey, kPlacesKey}) {
     const auto row = found_->meta().find(key);
     if (row != found_->meta().end()) meta_[key] = row->second;
@@ -423,7 +424,7 @@ StoreResult<void> WorldRebuild::write_meta() {
   if (!eras_.empty()) {
     if (auto put = meta->put_log_eras(eras_); !put) return put;
   }
-  for (const FoundTable table : kFolded) {
+  for (const FoundTable table : kFoldedTables) {
     const auto fold = fold_of(*database_, table);
     if (!fold) return failed(fold.error());
     if (auto put = meta->put_fold(fold_key_of(table), *fold); !put) return put;
@@ -451,7 +452,7 @@ StoreResult<void> WorldRebuild::fill(
   if (auto completed = complete_tables(); !completed) return completed;
   if (auto followed = follow_log(); !followed) return followed;
   if (auto completed = complete(FoundTable::player_instance); !completed) return completed;
-  if (auto raised = raise_own_mark(); !raised) return raised;
+  if (auto raised = raise_own_marks(); !raised) return raised;
   if (auto completed = complete_library(); !completed) return completed;
   return write_meta();
 }

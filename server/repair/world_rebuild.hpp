@@ -1,5 +1,6 @@
-// WorldRebuild: fills the tables of a new world with what a damaged one still has. It writes base,
-// log, players and what else cannot be made anew; ground_rebuild.hpp makes the chunks.
+// WorldRebuild: fills the tables of a new world with the sound rows of a damaged one. It writes all
+// rows that cannot be made again from others, and the values of `meta`; GroundRebuild makes the
+// snapshots.
 // Threads: the one that owns the database.
 #pragma once
 #include <cstdint>
@@ -42,6 +43,8 @@ class WorldRebuild {
   ClientInstance instance() const { return static_cast<ClientInstance>(now_us_); }
   StoreResult<void> find_rows(const std::function<void(std::uint64_t, std::uint64_t)>& on_progress);
   StoreResult<void> find_pinned_values();
+  /// Finds the material table again if `meta` has lost it. Requires that the log has its records.
+  StoreResult<void> find_materials();
   StoreResult<void> find_head();
   StoreResult<void> read_mark();
   StoreResult<void> rebuild_log();
@@ -56,8 +59,9 @@ class WorldRebuild {
   StoreResult<void> complete_library();
   /// Reads the log once and makes what follows from it: segments, watermarks, eras, marks of kinds.
   StoreResult<void> follow_log();
-  /// Writes the watermark of the records that stand for lost ones.
-  StoreResult<void> raise_own_mark();
+  /// Writes the watermark of the records that stand for lost ones, and the row that says that
+  /// watermarks are lost.
+  StoreResult<void> raise_own_marks();
   StoreResult<void> write_meta();
 
   const std::string folder_;
@@ -73,6 +77,7 @@ class WorldRebuild {
   std::vector<LogEra> eras_;
   std::uint64_t segments_ = 0;
   HighWater own_mark_;
+  bool are_watermarks_lost_ = false, are_materials_lost_ = false;
   ClientSequence operations_ = 0;
 };
 

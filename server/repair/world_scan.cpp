@@ -100,7 +100,7 @@ StoreResult<void> scan_index_pages(
     if (!found || pages.free_pages()[number]) continue;
     std::vector<IndexEntry> entries;
     for (const PageCell& cell : found->cells) {
-      // An entry is short: value, sequence and log.
+      // An entry has three columns: value, sequence and log. It is too short for overflow pages.
       if (cell.row_id || cell.overflow != 0) continue;
       const auto row = decode_stored_row(cell.local);
       if (!row || row->size() != 3) continue;

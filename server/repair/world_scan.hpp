@@ -12,11 +12,11 @@
 
 namespace runstone {
 
-/// Where a row was found. A row of an earlier origin is newer or as old as one of a later origin.
+/// Where a row was found. A scan reads the origins in this order.
 enum class RowOrigin {
   used,  // a page of the database, as the last commit left it
-  torn,  // a frame of the write-ahead log that SQLite does not read
-  free   // a page that the database has given up; it may be older than a compaction
+  torn,  // a frame behind the first damaged one of the write-ahead log; its rows may be newer
+  free   // a page on the list of free pages; its rows may be older than a compaction
 };
 
 struct ScanEvents {

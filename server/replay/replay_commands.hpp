@@ -66,6 +66,20 @@ void declare_export(SubcommandOptions& command_line, ExportOptions& options);
 /// Writes the file and prints a table. Returns the code of code_of_output() (command_world.hpp).
 Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out);
 
+/// dump: writes the materials of a box of the world to an .npy file (docs/replay.md).
+struct DumpOptions {
+  CommonOptions common;
+  std::string file;
+  std::optional<VoxelBox> box;     // set once the command line is parsed
+  std::optional<NamedMoment> at;   // last edit in the array; default: the end of the log
+  std::uint64_t memory_mib = 256;  // of voxels, at most
+};
+
+void declare_dump(SubcommandOptions& command_line, DumpOptions& options);
+/// Writes the file and prints a table. Requires a box. Returns the code of code_of_output()
+/// (command_world.hpp).
+Result<int, std::string> run_dump(const DumpOptions& options, std::ostream& out);
+
 /// import: appends an .rlog file to a world's log, or makes the world (docs/replay.md).
 struct ImportOptions {
   CommonOptions common;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/command_line/help_options.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/version.hpp"
 #include "server/replay/replay_commands.hpp"
@@ -27,6 +28,8 @@ std::vector<Subcommand> subcommands() {
                       declare_diff, run_diff),
       make_subcommand("copy", "write the world of a moment as a new world", declare_copy, run_copy),
       make_subcommand("export", "write the log to an .rlog file", declare_export, run_export),
+      make_subcommand("dump", "write the materials of a box of the world to an .npy file",
+                      declare_dump, run_dump),
       make_subcommand("import", "append an .rlog file to the log of a world", declare_import,
                       run_import),
       make_subcommand("play", "play the log into a live server", declare_play, run_play),
@@ -70,7 +73,8 @@ std::string new_spelling(int argc, const char* const* argv) {
 bool lacks_subcommand(int argc, const char* const* argv) {
   if (argc < 2) return true;
   const std::string_view first = argv[1];
-  return first.starts_with('-') && first != "--help" && first != "-h" && first != "--version";
+  return first.starts_with('-') && first != "--help" && first != "-h" && first != "--version" &&
+         !is_help_option(first);
 }
 
 /// Returns "" if the program has the subcommand, otherwise a line that lists the subcommands.
@@ -104,6 +108,7 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
   program.require_subcommand(1);
   program.set_version_flag(
       "--version", "runstone-replay " + std::string(version()) + ", " + world_formats_text());
+  add_help_options(program, "runstone-replay");
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   struct Entry {
     CLI::App* app;

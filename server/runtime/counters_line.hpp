@@ -1,8 +1,10 @@
 // The log line that shows the load of a server: "counters sessions=3 opened=7 …".
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "server/admin/backup_state.hpp"
 #include "server/admin/server_health.hpp"
 #include "server/net/net_session.hpp"
 #include "server/store/log_writer.hpp"
@@ -17,7 +19,8 @@ struct RuntimeCounters {
   std::int64_t commit_enqueue_us = 0;  // processor time that queueing commits took
   std::uint64_t memory_bytes = 0;      // of the process
   std::uint64_t log_lines_dropped = 0;
-  std::uint64_t row_faults = 0;  // that the check of the rows has found
+  std::uint64_t row_faults = 0;                       // that the check of the rows has found
+  std::optional<BackupState> backups = std::nullopt;  // that the server makes by itself
   ServerHealth health = {};
   WaitHistogram durable_waits = {};  // from ordering an edit until it was on disk
 };

@@ -1,6 +1,6 @@
-// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It reports their progress
-// on the world strand. Several group commits become one report if the strand has not run in
-// between.
+// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It
+// reports their progress on the world strand. Several group commits become one report if the strand
+// has not run in between.
 // Threads: writer() as LogWriter says; the events run on the world strand.
 #pragma once
 #include <atomic>
@@ -71,8 +71,8 @@ class DurableLog {
   std::optional<std::uint64_t> log_bytes() const {
     return check_ ? check_->log_bytes() : std::nullopt;
   }
-  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full disk the edits
-  /// behind durable() are lost. It may be called again.
+  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full
+  /// disk the edits behind durable() are lost. It may be called again.
   void stop();
 
  private:

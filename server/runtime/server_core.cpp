@@ -354,10 +354,11 @@ void ServerCore::log_counters() {
 }
 
 std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
-  const RuntimeCounters runtime{
-      sender_.encoded_count(), environment_.enqueue_ns() / 1'000, memory_bytes,
-      dropped_log_lines(),     log_ ? log_->row_faults() : 0,     health(),
-      health_.durable_waits()};
+  RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000, memory_bytes,
+                          dropped_log_lines(), log_ ? log_->row_faults() : 0};
+  if (actions_.backup_state) runtime.backups = actions_.backup_state();
+  runtime.health = health();
+  runtime.durable_waits = health_.durable_waits();
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
 }
 

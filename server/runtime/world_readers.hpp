@@ -67,14 +67,14 @@ class WorldReaders {
   void run_on_log_reader(RollbackService::Workers::Work work,
                          std::function<void(std::string)> then);
 
-  /// Ends the threads of the history readers, the log readers and the file reader. Waits for the reads under way,
-  /// which end soon, and drops the queued ones: their `then` is not called. Requires that
-  /// RollbackService::stop() was called.
+  /// Ends the threads of the history readers, the log readers and the file reader. Waits for the
+  /// reads under way, which end soon, and drops the queued ones: their `then` is not called.
+  /// Requires that RollbackService::stop() was called.
   void stop();
 
  private:
-  /// Calls `read` on a history reader, and `then` on the world strand: with `refusal` if there is no
-  /// reader, or if `read` fails. The cause is logged.
+  /// Calls `read` on a history reader, and `then` on the world strand: with `refusal` if there is
+  /// no reader, or if `read` fails. The cause is logged.
   template <class T>
   void read_history(std::string refusal, std::function<StoreResult<T>(WorldReader&)> read,
                     std::function<void(Result<T, std::string>)> then);

@@ -65,7 +65,7 @@ class SettingsTable {
   /// that the caller reads (read_toml_sections); empty: there are none.
   Result<void, TextError> read_toml(Config& config, std::string_view toml, std::string_view file,
                                     std::string_view sections = {}) const {
-    auto values = read_toml_settings(toml, file);
+    auto values = read_toml_settings(toml, file, sections);
     if (!values) return failure(values.error());
     std::erase_if(*values, [&](const TomlSetting& value) {
       return !sections.empty() && value.key == sections;

@@ -2,6 +2,8 @@
 
 #include <toml++/toml.h>
 
+#include <functional>
+#include <set>
 #include <sstream>
 
 namespace runstone {
@@ -17,10 +19,19 @@ Result<toml::table, TextError> parse_toml(std::string_view toml, std::string_vie
   }
 }
 
-std::vector<TomlSetting> settings_in(const toml::table& table) {
-  std::vector<TomlSetting> out;
+/// Appends the settings of a table. `prefix`: of their names. `is_header` says which tables in it are
+/// headers; the others are values of a wrong type.
+void append_settings(const toml::table& table, const std::string& prefix,
+                     const std::function<bool(const std::string&)>& is_header,
+                     std::vector<TomlSetting>& out) {
   for (const auto& [key, node] : table) {
-    TomlSetting setting{key.source().begin.line, std::string(key.str()), std::nullopt, {}};
+    const std::string name = prefix + std::string(key.str());
+    const toml::table* const inner = node.as_table();
+    if (inner != nullptr && !inner->is_inline() && !inner->empty() && is_header(name)) {
+      append_settings(*inner, name + "_", [](const std::string&) { return false; }, out);
+      continue;
+    }
+    TomlSetting setting{key.source().begin.line, name, std::nullopt, {}};
     if (const auto text = node.value_exact<std::string>()) {
       setting.type = SettingType::text;
       setting.text = *text;
@@ -33,16 +44,29 @@ std::vector<TomlSetting> settings_in(const toml::table& table) {
     }
     out.push_back(std::move(setting));
   }
+}
+
+std::vector<TomlSetting> settings_in(const toml::table& table) {
+  std::vector<TomlSetting> out;
+  append_settings(table, "", [](const std::string&) { return false; }, out);
   return out;
 }
 
 }  // namespace
 
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
-                                                               std::string_view file) {
+                                                               std::string_view file,
+                                                               std::string_view sections) {
   const auto table = parse_toml(toml, file);
   if (!table) return failure(table.error());
-  return settings_in(*table);
+  std::vector<TomlSetting> out;
+  append_settings(*table, "", [&](const std::string& name) { return name != sections; }, out);
+  std::set<std::string> names;
+  for (const TomlSetting& setting : out) {
+    if (!names.insert(setting.key).second)
+      return failure(TextError{std::string(file), setting.line, setting.key, "is there twice"});
+  }
+  return out;
 }
 
 Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view toml,

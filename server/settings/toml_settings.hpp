@@ -1,6 +1,7 @@
-// TOML files of settings: one line a setting. A program may also have sections, such as
-// [server.valley], with settings of their own. Reads their values as text, and writes
-// such lines. Which settings there are is known to SettingsTable. Thread: any.
+// TOML files of settings: one line a setting, perhaps under a header with the first word of its name.
+// A program may also have sections, such as [server.valley], with settings of their own. Reads their
+// values as text, and writes such lines. Which settings there are is known to SettingsTable. Thread:
+// any.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -33,10 +34,13 @@ struct TomlSection {
 Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view toml,
                                                                std::string_view file,
                                                                std::string_view kind);
-/// Returns all keys of a file with their values. `file` is only for messages. Fails if it is no
-/// TOML.
+/// Returns all keys of a file with their values. `file` is only for messages. A key `every` under the
+/// header [backup] is `backup_every`, so settings whose names begin alike can stand under one header.
+/// The kind of sections `sections` is one key without a value; empty: there are none. Fails if the
+/// file is no TOML, or has a key twice.
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,
-                                                               std::string_view file);
+                                                               std::string_view file,
+                                                               std::string_view sections = {});
 /// Returns true if a setting of this type takes the value. A flag may also be quoted.
 bool can_be(const TomlSetting& value, SettingType wanted);
 /// Returns what a value of this type must be, such as "must be a whole number".

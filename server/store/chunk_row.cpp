@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {

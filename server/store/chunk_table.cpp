@@ -3,7 +3,7 @@
 #include <array>
 
 #include "common/core/key_text.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
 #include "server/store/loss_advice.hpp"
 #include "server/store/sql_result.hpp"
@@ -75,6 +75,28 @@ StoreResult<RowFold> ChunkTable::read_rows(const std::function<void(const Stored
     fold.sum += fold_term({rows_.integer(0), rows_.integer(1), rows_.integer(2), rows_.integer(3),
                            rows_.integer(4), rows_.integer(5)});
     each({key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
+  }
+}
+
+StoreResult<std::vector<ChunkKey>> ChunkTable::keys(sql::Database& database,
+                                                    const std::optional<ChunkKey>& behind,
+                                                    std::size_t count) const {
+  // The index of the key has these columns, so no row of the table is read.
+  const std::string where = behind ? " WHERE (lod, x, y, z) > (?1, ?2, ?3, ?4)" : "";
+  auto row = database.prepare("SELECT lod, x, y, z FROM " + table_ + where +
+                              " ORDER BY lod, x, y, z LIMIT " + std::to_string(count));
+  if (!row) return failed(row.error());
+  if (behind) bind_key(*row, *behind);
+  std::vector<ChunkKey> keys;
+  for (;;) {
+    const auto more = row->step();
+    if (!more) return failed(more.error());
+    if (!*more) return keys;
+    const ChunkKey key = key_at(*row, 0);
+    const bool is_cut = key.lod != row->integer(0) || key.at.x != row->integer(1) ||
+                        key.at.y != row->integer(2) || key.at.z != row->integer(3);
+    if (is_cut) return chunk_failure(StoreError::Kind::corrupt, key, "has an impossible key");
+    keys.push_back(key);
   }
 }
 

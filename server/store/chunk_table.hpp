@@ -25,6 +25,10 @@ class ChunkTable {
   /// Returns all rows without their voxels, ascending by key. Fails (corrupt) if their fold is not
   /// `expected`.
   StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);
+  /// Returns keys as Store::chunk_keys(). `database` is that of the table.
+  StoreResult<std::vector<ChunkKey>> keys(sql::Database& database,
+                                          const std::optional<ChunkKey>& behind,
+                                          std::size_t count) const;
   /// Returns the fold of all rows.
   StoreResult<RowFold> fold();
   /// Inserts or replaces one row in the caller's transaction, and updates the fold. Fails

@@ -43,17 +43,8 @@ StoreResult<NameClaim> ClaimTable::claim_of(const sql::Statement& row) const {
 }
 
 StoreResult<FoldedRows<NameClaim>> ClaimTable::claims() {
-  const sql::ResetAtEnd reset_at_end(all_);
-  FoldedRows<NameClaim> claims;
-  for (;;) {
-    const auto more = all_.step();
-    if (!more) return failed(more.error());
-    if (!*more) return claims;
-    auto claim = claim_of(all_);
-    if (!claim) return failed(claim.error());
-    claims.rows.push_back(*std::move(claim));
-    add_row(claims.fold, all_.integer(3));
-  }
+  return read_folded_rows<NameClaim>(
+      all_, 3, [this](const auto& row, auto& rows) { return append_row(claim_of(row), rows); });
 }
 
 StoreResult<std::optional<PublicKey>> ClaimTable::owner(const std::string& folded) {

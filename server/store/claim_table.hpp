@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "common/sql/database.hpp"
-#include "server/store/meta_table.hpp"
-#include "server/store/player_table.hpp"
+#include "server/store/folded_rows.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
 

@@ -15,29 +15,24 @@ StoreResult<KeptRecords> KeptRecords::open(sql::Database& database) {
 }
 
 StoreResult<FoldedRows<EditRecord>> KeptRecords::records(std::optional<Cause> cause) {
-  const sql::ResetAtEnd reset_at_end(all_);
-  FoldedRows<EditRecord> out;
-  for (;;) {
-    const auto more = all_.step();
-    if (!more) return failed(more.error());
-    if (!*more) return out;
-    const std::int64_t seq = all_.integer(0);
-    const ByteView bytes = all_.blob(1);
-    bool is_sound = static_cast<std::int64_t>(record_checksum(bytes)) == all_.integer(2);
+  const auto take = [&](const sql::Statement& row,
+                        std::vector<EditRecord>& rows) -> StoreResult<void> {
+    const std::int64_t seq = row.integer(0);
+    const ByteView bytes = row.blob(1);
+    bool is_sound = static_cast<std::int64_t>(record_checksum(bytes)) == row.integer(2);
     if (is_sound && (!cause || cause_of_record(bytes) == cause)) {
       auto record = decode_record(bytes);
       is_sound =
           record && static_cast<std::int64_t>(record->version.seq) == seq &&
           (rights_change_of(record->edit) != nullptr || given_texture_of(record->edit) != nullptr);
-      if (is_sound) out.rows.push_back(*std::move(record));
+      if (is_sound) rows.push_back(*std::move(record));
     }
-    if (!is_sound) {
-      return failure(StoreError{StoreError::Kind::corrupt, file_,
-                                "rights_record seq=" + std::to_string(seq),
-                                "checksum or encoding is wrong"});
-    }
-    add_row(out.fold, all_.integer(2));
-  }
+    if (is_sound) return {};
+    return failure(StoreError{StoreError::Kind::corrupt, file_,
+                              "rights_record seq=" + std::to_string(seq),
+                              "checksum or encoding is wrong"});
+  };
+  return read_folded_rows<EditRecord>(all_, 2, take);
 }
 
 StoreResult<void> KeptRecords::add(const EditRecord& record, RowFold& fold) {

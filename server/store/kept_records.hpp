@@ -9,8 +9,7 @@
 
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/sql/database.hpp"
-#include "server/store/meta_table.hpp"
-#include "server/store/player_table.hpp"
+#include "server/store/folded_rows.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {

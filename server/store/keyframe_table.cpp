@@ -4,7 +4,7 @@
 #include <map>
 
 #include "common/core/key_text.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
 #include "server/store/index_hint.hpp"
 #include "server/store/sql_result.hpp"

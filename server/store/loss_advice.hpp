@@ -4,6 +4,7 @@
 namespace runstone {
 
 inline constexpr const char* kLossAdvice =
-    "Put the world back from a backup, or start the server once with --accept-losses";
+    "Put the world back from a backup, or run `runstone-server repair`, or start the server once "
+    "with --accept-losses";
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/materials/look_on_shape.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/sql_result.hpp"
@@ -27,7 +28,8 @@ StoreResult<void> fill_new_world(sql::Database& database, const WorldMeta& meta)
   rows["author_max"] = std::int64_t{0};
   rows["log_last"] = std::int64_t{0};
   rows["tile_rules"] = std::int64_t{tile_rules_of(tile_shapes_number(meta.materials))};
-  if (meta.materials.has_shapes()) rows[kShapesKey] = std::int64_t{1};
+  if (meta.materials.has_shapes() || has_silhouettes(meta.materials))
+    rows[kShapesKey] = std::int64_t{1};
   for (const auto& [key, value] : rows) {
     if (auto put = table->put(key, value); !put) return put;
   }

@@ -59,41 +59,30 @@ StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
                      *std::move(mark), *std::move(put), *std::move(raise));
 }
 
-StoreResult<FoldedRows<PlayerRow>> PlayerTable::players() {
-  const sql::ResetAtEnd reset_at_end(players_);
-  FoldedRows<PlayerRow> all;
-  for (;;) {
-    const auto more = players_.step();
-    if (!more) return failed(more.error());
-    if (!*more) return all;
-    const std::int64_t author = players_.integer(0);
-    const ByteView key = players_.blob(1);
-    PlayerRow row;
-    row.name = players_.text(2);
-    if (players_.integer(3) != checksum_of(author, key, row.name) || author < 1 ||
-        author > std::numeric_limits<AuthorId>::max() || key.size() != row.key.size()) {
-      return failure(StoreError{StoreError::Kind::corrupt, file_,
-                                "player author=" + std::to_string(author), "checksum is wrong"});
-    }
-    row.author = static_cast<AuthorId>(author);
-    std::copy(key.begin(), key.end(), row.key.begin());
-    all.rows.push_back(std::move(row));
-    add_row(all.fold, players_.integer(3));
+StoreResult<PlayerRow> PlayerTable::player_of(const sql::Statement& row) const {
+  const std::int64_t author = row.integer(0);
+  const ByteView key = row.blob(1);
+  PlayerRow player;
+  player.name = row.text(2);
+  if (row.integer(3) != checksum_of(author, key, player.name) || author < 1 ||
+      author > std::numeric_limits<AuthorId>::max() || key.size() != player.key.size()) {
+    return failure(StoreError{StoreError::Kind::corrupt, file_,
+                              "player author=" + std::to_string(author), "checksum is wrong"});
   }
+  player.author = static_cast<AuthorId>(author);
+  std::copy(key.begin(), key.end(), player.key.begin());
+  return player;
+}
+
+StoreResult<FoldedRows<PlayerRow>> PlayerTable::players() {
+  return read_folded_rows<PlayerRow>(players_, 3, [this](const auto& row, auto& rows) {
+    return append_row(player_of(row), rows);
+  });
 }
 
 StoreResult<FoldedRows<HighWater>> PlayerTable::high_waters() {
-  const sql::ResetAtEnd reset_at_end(marks_);
-  FoldedRows<HighWater> all;
-  for (;;) {
-    const auto more = marks_.step();
-    if (!more) return failed(more.error());
-    if (!*more) return all;
-    const auto mark = mark_of(marks_);
-    if (!mark) return failed(mark.error());
-    all.rows.push_back(*mark);
-    add_row(all.fold, marks_.integer(4));
-  }
+  return read_folded_rows<HighWater>(
+      marks_, 4, [this](const auto& row, auto& rows) { return append_row(mark_of(row), rows); });
 }
 
 StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {

@@ -8,18 +8,11 @@
 #include <vector>
 
 #include "common/sql/database.hpp"
-#include "server/store/meta_table.hpp"
+#include "server/store/folded_rows.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
-
-/// All rows of a table, and their fold: the sum of their checksums.
-template <class Row>
-struct FoldedRows {
-  std::vector<Row> rows;
-  RowFold fold;
-};
 
 class PlayerTable {
  public:
@@ -53,6 +46,7 @@ class PlayerTable {
         put_(std::move(put)),
         raise_(std::move(raise)) {}
 
+  StoreResult<PlayerRow> player_of(const sql::Statement& row) const;
   StoreResult<HighWater> mark_of(const sql::Statement& row) const;
   /// Returns the watermark that is stored for the client of `mark`, or nullopt.
   StoreResult<std::optional<HighWater>> stored_mark(const HighWater& mark);

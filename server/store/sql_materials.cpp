@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "common/materials/look_on_shape.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
@@ -62,18 +63,20 @@ StoreResult<void> SqlStore::check_continues_materials(std::span<const EditRecord
 }
 
 StoreResult<void> SqlStore::mark_shapes(std::span<const EditRecord> records) {
-  bool has_shapes = false, are_for_old_rows = false;
+  bool needs_format = false, are_for_old_rows = false;
   std::optional<Material> first_new;
   for (const EditRecord& record : records) {
-    if (const AddedMaterials* added = added_materials_of(record.edit); added && !first_new)
-      first_new = added->first;
+    if (const AddedMaterials* added = added_materials_of(record.edit)) {
+      if (!first_new) first_new = added->first;
+      needs_format = needs_format || has_silhouettes(added->rows);
+    }
     const GivenShapes* given = given_shapes_of(record.edit);
     if (given == nullptr) continue;
-    has_shapes = true;
+    needs_format = true;
     for (const GivenShape& row : given->rows)
       are_for_old_rows = are_for_old_rows || !first_new || row.material < *first_new;
   }
-  if (!has_shapes) return {};
+  if (!needs_format) return {};
   auto table = materials(kSequenceMax);
   if (!table) return failed(table.error());
   for (const EditRecord& record : records) {

@@ -355,6 +355,12 @@ StoreResult<std::optional<Chunk>> SqlStore::load_base(const ChunkKey& key) {
   return base_.load(key, kSequenceMax, meta_.chunk_edge, row_check_);
 }
 
+StoreResult<std::vector<ChunkKey>> SqlStore::chunk_keys(ChunkRows rows,
+                                                        const std::optional<ChunkKey>& behind,
+                                                        std::size_t count) {
+  return (rows == ChunkRows::base ? base_ : snapshots_).keys(database(), behind, count);
+}
+
 StoreResult<void> SqlStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
   const auto range = log_range();
   if (!range) return failed(range.error());

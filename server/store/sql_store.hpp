@@ -128,6 +128,9 @@ class SqlStore final : public Store {
   Epoch epoch() const override { return state_.epoch; }
   StoreResult<std::vector<std::string>> accept_losses() override;
   StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<std::vector<ChunkKey>> chunk_keys(ChunkRows rows,
+                                                const std::optional<ChunkKey>& behind,
+                                                std::size_t count) override;
   StoreResult<void> complete_file() override;
   StoreResult<void> shrink() override;
 
@@ -205,8 +208,8 @@ class SqlStore final : public Store {
   StoreResult<void> mark_textures(std::span<const EditRecord> records);
   /// Marks the world as one with gaps if a record is one.
   StoreResult<void> mark_gaps(std::span<const EditRecord> records);
-  /// Marks the world as one with shapes if a record gives some, and records the rules of tiles that
-  /// follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
+  /// Marks the world as one with shapes if a record gives some or has a look with a silhouette, and
+  /// records the rules of tiles that follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
   /// records are inserted.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
   /// Notes the clock that the newest of these records sets, in the caller's transaction.

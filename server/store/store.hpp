@@ -12,7 +12,9 @@
 //     and row. It is never overwritten, regenerated or skipped. Tiles are the exception, because
 //     they are a cache: a damaged tile is made of its chunks again.
 #pragma once
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,8 +69,17 @@ class Store : public WorldReader, public WorldSink, public ImportSink {
   ///     that are older are deleted.
   ///   - The watermarks of players stay.
   virtual StoreResult<void> compact(Sequence keyframe) = 0;
-  /// Moves all of the world into its main file, which can be copied alone until the next write. Fails
-  /// (locked) if a reader keeps it from doing so. The destructor does the same and says nothing.
+  /// Returns keys of chunks in one of the two tables, ascending: those behind `behind`, or the
+  /// first ones if that is nullopt, `count` at most. It reads no voxels. A running server may add
+  /// rows before `behind` meanwhile. Fails (corrupt) for a key that no chunk can have. Cost: O(log
+  /// rows + count).
+  enum class ChunkRows { base, snapshot };
+  virtual StoreResult<std::vector<ChunkKey>> chunk_keys(ChunkRows rows,
+                                                        const std::optional<ChunkKey>& behind,
+                                                        std::size_t count) = 0;
+  /// Moves all of the world into its main file, which can be copied alone until the next write.
+  /// Fails (locked) if a reader keeps it from doing so. The destructor does the same and says
+  /// nothing.
   virtual StoreResult<void> complete_file() { return {}; }
   /// Returns the free space in the database to the file system. Requires disk space for a second
   /// copy meanwhile.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/generate/spawn_point.hpp"
+#include "common/materials/look_on_shape.hpp"
 #include "common/os/text_file.hpp"
 #include "server/store/postgres_backend.hpp"
 
@@ -63,7 +64,7 @@ Result<MaterialTable, std::string> read_materials(const std::string& file,
   if (!toml) return failure(toml.error());
   auto table = parse_material_table(*toml, file);
   if (!table) return failure(table.error().message());
-  return *std::move(table);
+  return with_looks_on_shapes(*table);
 }
 
 void draw_identity(WorldMeta& meta) {

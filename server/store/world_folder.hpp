@@ -35,6 +35,7 @@ struct OpenedWorld {
 /// opening the world then says so.
 bool has_world(const std::string& place);
 /// Reads the material table of a new world of a generator. An empty name means the built-in one.
+/// Looks are those of look_on_shape().
 Result<MaterialTable, std::string> read_materials(const std::string& file,
                                                   const std::string& generator);
 /// Sets a new identity: a random world id and a random server key.

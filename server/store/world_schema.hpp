@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// The format of a world that has a library of builds (kBuildFoldKey): it has two tables more, and its
 /// log may have records that programs of format 6 do not know.
 inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
-/// The format of a world in which a material has, or had once, a shape (kShapesKey): its material
-/// table and its log have what programs of format 7 do not know. It has the tables of a library
+/// The format of a world in which a material has, or had once, a shape or a look with a silhouette
+/// (kShapesKey): its material table and its log have what programs of format 7 do not know. It has the tables of a library
 /// only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
 /// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records

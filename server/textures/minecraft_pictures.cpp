@@ -135,7 +135,7 @@ const Json& MinecraftPictures::json_of(const std::string& path) {
   if (read_bytes_ > kAllJsonBytesMax) return json;
   if (const auto text = read_file(file->second, kJsonBytesMax)) {
     read_bytes_ += text->size();
-    // Nothing below depends on how deep a file of a stranger is.
+    // The limit bounds the recursion of the functions that read the document.
     const auto is_shallow = [](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
       return depth <= kJsonDepthMax;
     };

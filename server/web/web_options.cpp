@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string>
 
+#include "common/command_line/help_options.hpp"
 #include "common/os/output_file.hpp"
 #include "protocol/program_version.hpp"
 #include "server/web/web_config.hpp"
@@ -17,6 +18,7 @@ ParsedWebOptions parse_web_options(int argc, const char* const* argv) {
   // it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version", program_version("runstone-web"));
+  add_help_options(app, "runstone-web");
   app.add_option("--config", out.config_file,
                  "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");

@@ -11,7 +11,8 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
     "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --no-tests=error)
-expect("examples.array_to_quads" "examples.edit_layers" "examples.walk_on_runs" "100% tests passed, 0 tests failed out of 3")
+expect("examples.array_to_quads" "examples.edit_layers" "examples.walk_on_runs" "examples.c_hill"
+       "100% tests passed, 0 tests failed out of 4")
 
 # No flag of this project reaches the user, and no header of the source tree does.
 file(READ ${WORK}/build/compile_commands.json output)
@@ -32,4 +33,14 @@ separate_arguments(options UNIX_COMMAND "${FLAGS} ${output}")
 run(${COMPILER} -std=c++20 ${SOURCE}/examples/edit_layers.cpp -o ${WORK}/edit_layers ${options})
 run(${WORK}/edit_layers)
 expect("voxels changed")
+
+# The C interface needs a C compiler alone.
+run(${PKG_CONFIG} --cflags --libs runstone-c)
+separate_arguments(options UNIX_COMMAND "${output}")
+find_program(C_COMPILER NAMES cc gcc clang REQUIRED)
+run(${C_COMPILER} -std=c99 -pedantic -Wall -Wextra -Werror ${SOURCE}/examples/c/hill.c -o ${WORK}/hill ${options})
+cmake_path(GET folders PARENT_PATH libraries)
+set(ENV{LD_LIBRARY_PATH} ${libraries})
+run(${WORK}/hill)
+expect("6528 voxels of stone")
 file(REMOVE_RECURSE ${WORK})

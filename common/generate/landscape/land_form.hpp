@@ -9,6 +9,7 @@
 #include "common/generate/landscape/drainage.hpp"
 #include "common/generate/landscape/lattice_noise.hpp"
 #include "common/generate/landscape/recent.hpp"
+#include "common/generate/landscape/square_key.hpp"
 
 namespace runstone {
 

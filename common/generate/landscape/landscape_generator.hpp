@@ -12,6 +12,7 @@
 #include "common/generate/landscape/land_form.hpp"
 #include "common/generate/landscape/land_materials.hpp"
 #include "common/generate/landscape/recent.hpp"
+#include "common/generate/landscape/square_key.hpp"
 
 namespace runstone {
 

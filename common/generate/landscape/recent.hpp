@@ -1,15 +1,13 @@
 // Recent: values of a pure function that were computed lately. A value depends on its key alone, so
-// results do not depend on which values are kept.
+// results do not depend on which values are kept. A key has the function hash_of(key), which returns
+// 64 bits. Thread: any.
 #pragma once
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
-
-#include "common/core/hash.hpp"
 
 namespace runstone {
 
@@ -20,7 +18,7 @@ class Recent {
   explicit Recent(std::size_t places) : slots_(places) {}
 
   /// Returns the value of the key, which make() computes if it is not kept. Two threads may compute
-  /// it at the same time. Thread: any.
+  /// it at the same time. Cost: O(1), and that of make() if the value is not kept.
   template <class Make>
   std::shared_ptr<const Value> get(const Key& key, Make&& make) {
     Slot& slot = slots_[static_cast<std::size_t>(hash_of(key) % slots_.size())];
@@ -44,12 +42,5 @@ class Recent {
   std::mutex mutex_;  // guards the slots; a leaf
   std::vector<Slot> slots_;
 };
-
-/// A square of the ground, by its number along x and z.
-struct SquareKey {
-  std::int32_t x = 0, z = 0;
-  friend bool operator==(const SquareKey&, const SquareKey&) = default;
-};
-constexpr std::uint64_t hash_of(const SquareKey& key) { return place_hash(0, key.x, key.z); }
 
 }  // namespace runstone

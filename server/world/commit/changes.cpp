@@ -5,6 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/materials/look_on_shape.hpp"
 #include "common/textures/texture_hash.hpp"
 #include "protocol/rules/edit_price.hpp"
 
@@ -192,6 +193,7 @@ Result<AddedAt, MaterialsRefusal> Changes::add_materials(const std::vector<Mater
   AddedMaterials added{first, rows};
   std::vector<GivenShape> given;
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    added.rows[i] = with_look_on_shape(rows[i]);
     added.rows[i].shape = {};
     if (!rows[i].shape.is_cube())
       given.push_back({static_cast<Material>(first + i), rows[i].shape});

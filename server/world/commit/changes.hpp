@@ -72,7 +72,8 @@ class Changes {
   std::optional<std::string> accept_kept_jump(const std::optional<std::string>& refusal,
                                               const Clocks& now);
   /// Orders the addition of materials by the console, as one record of the log, and as records that
-  /// give them their shapes if they have some: all or none. Refuses bad rows
+  /// give them their shapes if they have some: all or none. Looks become those of
+  /// with_look_on_shape(). Refuses bad rows
   /// (MaterialTable::check_rows()), none or more than kAddedMaterialsMax of them, and while the log
   /// takes no edits.
   Result<AddedAt, MaterialsRefusal> add_materials(const std::vector<MaterialRow>& rows,

@@ -41,4 +41,14 @@ struct HighWater {
   TimeUs last_us = 0;  // UTC, of the instance's last record
 };
 
+/// Returns the row of a repaired world whose watermarks are not all known: author 0 and instance 0,
+/// which no client has. `author_max` is the highest author number at the repair; `now_us` is the
+/// time of the repair, in UTC.
+inline HighWater lost_watermarks(AuthorId author_max, TimeUs now_us) {
+  return {0, 0, author_max, now_us};
+}
+inline bool is_of_lost_watermarks(const HighWater& row) {
+  return row.author == 0 && row.instance == 0;
+}
+
 }  // namespace runstone

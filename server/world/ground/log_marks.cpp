@@ -1,5 +1,6 @@
 #include "server/world/ground/log_marks.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -45,6 +46,7 @@ void LogMarkReads::read_next(Viewer& viewer, const Clocks& now) {
     return send_marks(base_, viewer, refused(request, "your role does not allow to see the past"));
   due.is_reading = true;
   ++reads_;
+  last_ = viewer.id();
   base_.sessions.charge_reading(viewer.session,
                                 request.at ? kVoxelMarkBytes : request.count * kLogMarkBytes);
   base_.environment.read_log_marks(viewer.id(), request);
@@ -56,18 +58,25 @@ void LogMarkReads::on_request(Viewer& viewer, const LogMarksRequest& request, co
 }
 
 void LogMarkReads::read_waiting(const Clocks& now) {
-  for (Viewer* viewer : base_.open()) {
-    if (reads_ >= kLogMarkReadsMax) return;
-    read_next(*viewer, now);
-  }
+  if (reads_ >= kLogMarkReadsMax) return;
+  std::vector<Viewer*> viewers = base_.open();
+  // The session behind the last one has the first turn.
+  const auto next =
+      std::ranges::find_if(viewers, [&](const Viewer* viewer) { return viewer->id() > last_; });
+  std::rotate(viewers.begin(), next, viewers.end());
+  for (Viewer* viewer : viewers) read_next(*viewer, now);
 }
 
 void LogMarkReads::finished(SessionId session, std::uint32_t request,
                             const Result<FoundLogMarks, std::string>& found, const Clocks& now) {
   --reads_;
   Viewer* const viewer = base_.find(session);
-  if (viewer == nullptr) return;
+  if (viewer == nullptr) return read_waiting(now);
   viewer->marks.is_reading = false;
+  if (found) {
+    viewer->marks.due_us = std::max(
+        viewer->marks.due_us, now.steady_us + static_cast<TimeUs>(found->cost) * kMarkPauseUs);
+  }
   LogMarks answer;
   answer.request = request;
   if (found) {
@@ -78,7 +87,7 @@ void LogMarkReads::finished(SessionId session, std::uint32_t request,
     answer.refusal = found.error();
   }
   send_marks(base_, *viewer, answer);
-  read_next(*viewer, now);
+  read_waiting(now);
 }
 
 }  // namespace runstone

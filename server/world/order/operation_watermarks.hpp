@@ -8,14 +8,21 @@
 // first.
 // A start restores the watermarks from the store, which knows accepted edits only. Rejections are
 // lost when the server stops.
+// A repaired world may lack watermarks. Then an operation above the known watermark may have been
+// applied before the repair. The instances of that time are refused, and those that began later are
+// not. An instance without a watermark began before the repair if its first operation is not 1,
+// because each client counts from 1.
 #pragma once
 #include <algorithm>
 #include <list>
 #include <map>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "common/core/ids.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 
@@ -61,6 +68,27 @@ class OperationWatermarks {
     --rejection_count_;
     if (rejected->second.reasons.empty()) forget_rejections(rejected);
   }
+  /// Sets the watermarks of a world, whose other state is empty.
+  void restore(std::span<const HighWater> rows) {
+    TimeUs lost_until_us = 0;
+    for (const HighWater& row : rows) {
+      if (!is_of_lost_watermarks(row)) continue;
+      lost_author_max_ = static_cast<AuthorId>(row.resolved);
+      lost_until_us = row.last_us;
+    }
+    for (const HighWater& row : rows) {
+      raise({row.author, row.instance, row.resolved});
+      if (row.author != 0 && row.author <= lost_author_max_ && row.last_us <= lost_until_us)
+        before_repair_.insert({row.author, row.instance});
+    }
+  }
+  /// Returns true if an operation may have been applied before a repair that lost its watermark.
+  /// Requires that knows() returns false for it.
+  bool may_be_applied(const OperationId& op) const {
+    if (op.author == 0 || op.author > lost_author_max_) return false;
+    const Instance instance{op.author, op.instance};
+    return marks_.contains(instance) ? before_repair_.contains(instance) : op.seq != 1;
+  }
   /// Drops everything about an author whose number is not used any more.
   void forget(AuthorId author) {
     const Instance first{author, 0};
@@ -68,6 +96,7 @@ class OperationWatermarks {
     for (auto at = rejections_.lower_bound(first); at != rejections_.end() && is_mine(*at);) {
       forget_rejections(at++);
     }
+    std::erase_if(before_repair_, [&](const Instance& one) { return one.first == author; });
     auto end = marks_.lower_bound(first);
     while (end != marks_.end() && is_mine(*end)) ++end;
     marks_.erase(marks_.lower_bound(first), end);
@@ -93,6 +122,9 @@ class OperationWatermarks {
   }
 
   std::map<Instance, ClientSequence> marks_;
+  // Authors up to this one may lack watermarks; 0: nobody does.
+  AuthorId lost_author_max_ = 0;
+  std::set<Instance> before_repair_;  // instances with a watermark that may be too low
   std::map<Instance, Rejections> rejections_;
   std::list<Instance> by_use_;  // the keys of rejections_; the last rejection is at the end
   std::size_t rejection_count_ = 0;

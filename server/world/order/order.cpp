@@ -40,8 +40,7 @@ Order::Order(const WorldConfig& config, const WorldStart& start, WorldEnvironmen
   for (const PlayerRow& player : start.players) players_.restore(player);
   players_.begin_above(start.author_max);
   for (const NameClaim& claim : start.name_claims) names_.restore(claim);
-  for (const HighWater& watermark : start.resolved)
-    authority_.resolved().raise({watermark.author, watermark.instance, watermark.resolved});
+  authority_.resolved().restore(start.resolved);
   std::array<std::uint8_t, sizeof own_instance_> instance{};
   random(instance);
   std::memcpy(&own_instance_, instance.data(), sizeof own_instance_);

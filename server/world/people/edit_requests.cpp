@@ -22,6 +22,8 @@ constexpr std::size_t kLookupBytes = 64 * 1024;
 constexpr TimeUs kLookupAgainUs = 1'000'000;
 constexpr const char* kActionUnknown =
     "the log does not have the first edit of this action: begin another one";
+constexpr const char* kWatermarkLost =
+    "this world was repaired and does not know which of your edits it has: start your client again";
 constexpr const char* kActionEnded = "you have undone this action: it takes no more edits";
 
 /// Describes what is wrong with a descriptor, for the author of the client.
@@ -146,6 +148,9 @@ std::optional<EditRequests::Refusal> EditRequests::check_and_enqueue(const Attem
   Authority& authority = order_.authority();
   if (authority.resolved().knows(attempt.op))
     return Refusal{authority.resolved().answer_to(attempt.op)};
+  // It is not resolved by this, so that the edits behind it are refused, too.
+  if (authority.resolved().may_be_applied(attempt.op))
+    return Refusal{RejectReason::not_permitted, kWatermarkLost};
   constexpr Check kChecks[] = {
       &EditRequests::check_action, &EditRequests::check_room,   &EditRequests::check_budget,
       &EditRequests::check_bytes,  &EditRequests::check_reach,  &EditRequests::check_edit,

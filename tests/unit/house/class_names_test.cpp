@@ -13,7 +13,7 @@ TEST_CASE("each class of namespace runstone has a name of its own", "[house]") {
   const std::regex definition(R"(^(?:class|struct|enum class) (\w+)[^;(:]*( : [^;(]*)?\{)");
   const std::regex space(R"(^namespace ([\w:]+) \{)");
   std::map<std::string, std::string> header_of;
-  for (const char* folder : {"client", "common", "protocol", "server"}) {
+  for (const char* folder : {"bindings", "client", "common", "protocol", "server"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       if (entry.path().extension() != ".hpp") continue;
       std::ifstream in(entry.path());

@@ -1,4 +1,4 @@
-// docs/library.md shows the examples as they are.
+// docs/library.md and docs/c.md show the examples as they are.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
@@ -22,4 +22,10 @@ TEST_CASE("the page for embedders holds the code of the examples", "[house][docs
     REQUIRE(!code.empty());
     CHECK(page.find("```cpp\n" + code + "```\n") != std::string::npos);
   }
+}
+
+TEST_CASE("the page of the C interface holds its example", "[house][docs]") {
+  const std::string code = text_of_file("examples/c/hill.c");
+  REQUIRE(!code.empty());
+  CHECK(text_of_file("docs/c.md").find("```c\n" + code + "```\n") != std::string::npos);
 }

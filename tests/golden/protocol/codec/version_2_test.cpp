@@ -6,8 +6,8 @@
 #include "common/core/material_row.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/rights/right.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/chat_messages.hpp"
-#include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/limits.hpp"
 

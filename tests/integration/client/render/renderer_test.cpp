@@ -561,20 +561,32 @@ TEST_CASE("a ghost shows removed voxels in red and placed ones in their colour",
   add(placed.transparent, {4, 4, 4, 8, 8, Direction::pos_y, kGlass});
   ChunkMesh removed;
   add(removed.opaque, {4, 4, 4, 8, 8, Direction::pos_y, kGlass});
-  const auto centre = [&](GhostChunk ghost) {
+  // Returns the colour at a place within the cell (8, 4, 8).
+  const auto shown = [&](const GhostChunk& ghost, double x, double z) {
     FrameContents contents;
-    if (ghost.edge != 0) contents.ghosts.push_back(std::move(ghost));
-    renderer.draw(above(), 160, 120, contents);
+    if (ghost.edge != 0) contents.ghosts.push_back(ghost);
+    Camera camera = above();
+    camera.x += x;
+    camera.z += z;
+    camera.fov_y = 0.1;  // a pixel is less than a hundredth of a cell
+    renderer.draw(camera, 160, 120, contents);
     return pixel(renderer.read_image(), 0.5, 0.5);
   };
+  const auto redness = [](const std::array<int, 3>& p) { return p[0] - p[2]; };
   const ChunkKey key{0, {0, 0, 0}};
-  const auto none = centre({});
-  const auto blue = centre({key, kEdge, std::make_shared<const ChunkMesh>(placed), nullptr});
-  const auto red = centre({key, kEdge, nullptr, std::make_shared<const ChunkMesh>(removed)});
-  CHECK(blue[2] > blue[0] + 40);
-  CHECK(red[0] > red[2] + 10);
-  CHECK(none[0] < none[2] + 20);
-  CHECK(centre({}) == none);
+  const GhostChunk blue{key, kEdge, std::make_shared<const ChunkMesh>(placed), nullptr};
+  const GhostChunk red{key, kEdge, nullptr, std::make_shared<const ChunkMesh>(removed)};
+  const auto none = shown({}, 0.25, 0.5);
+  const auto beside_blue = shown(blue, 0.25, 0.5), beside_red = shown(red, 0.25, 0.5);
+  CHECK(redness(beside_blue) < redness(none) - 30);
+  CHECK(redness(beside_red) > redness(none) + 30);
+  // A removed voxel has a cross of two diagonals, and a placed one has none.
+  for (const double x : {0.25, 0.75}) {
+    CAPTURE(x);
+    CHECK(shown(red, x, 0.25)[1] > beside_red[1] + 15);
+    CHECK(std::abs(shown(blue, x, 0.25)[1] - beside_blue[1]) <= 4);
+  }
+  CHECK(shown({}, 0.25, 0.5) == none);
 }
 
 TEST_CASE("a ghost far away has no pattern of lines", "[render]") {

@@ -118,7 +118,7 @@ TEST_CASE("the wand finds what a flood voxel by voxel finds", "[sculpt][property
   CHECK(found > 20);
 }
 
-TEST_CASE("voxels of a box by material, and their build, equal the world", "[sculpt][property]") {
+TEST_CASE("voxels of boxes by material, and their build, equal the world", "[sculpt][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (int round = 0; round < 60; ++round) {
     CAPTURE(Catch::rngSeed(), round);
@@ -126,6 +126,12 @@ TEST_CASE("voxels of a box by material, and their build, equal the world", "[scu
     const VoxelPos a = random_voxel(rng, kLow, kHigh - 1), b = random_voxel(rng, kLow, kHigh - 1);
     const VoxelBox box{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
                        {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
+    // Two of the boxes lie beside each other.
+    std::vector<VoxelBox> boxes = {box};
+    if (const std::int32_t cut = (box.min.y + box.max.y) / 2; round % 2 == 0 && cut > box.min.y) {
+      boxes.front().max.y = cut;
+      boxes.push_back({{box.min.x, cut, box.min.z}, box.max});
+    }
     WandSearch search{static_cast<Material>(rng.between(1, 3)), 1'000'000};
     if (round % 3 == 0) search.material.reset();
     VoxelSet expected;
@@ -136,7 +142,7 @@ TEST_CASE("voxels of a box by material, and their build, equal the world", "[scu
         }
       }
     }
-    const auto made = voxels_of_box(search, box, kEdge, world.lookup());
+    const auto made = voxels_of_boxes(search, boxes, kEdge, world.lookup());
     if (expected.empty()) {
       REQUIRE_FALSE(made);
       continue;
@@ -146,7 +152,17 @@ TEST_CASE("voxels of a box by material, and their build, equal the world", "[scu
     const auto placed = build_of_voxels(*made, kEdge, world.lookup());
     REQUIRE(placed);
     CHECK(placed->build->touched() == expected.size());
+    VoxelRows whole;
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) whole.add(y, z, {box.min.x, box.max.x});
+    }
+    whole.join();
+    const auto with_air = build_of_voxels(whole, kEdge, world.lookup(), true);
+    REQUIRE(with_air);
+    CHECK(with_air->build->touched() == with_air->build->volume());
     for (const VoxelPos v : expected) {
+      REQUIRE(with_air->build->at({v.x - box.min.x, v.y - box.min.y, v.z - box.min.z}) ==
+              std::optional(world.at(v)));
       const VoxelPos cell{v.x - placed->at.x, v.y - placed->at.y, v.z - placed->at.z};
       REQUIRE(placed->build->at(cell) == std::optional(world.at(v)));
     }

@@ -184,6 +184,11 @@ class ModelStore final : public Store {
   }
   StoreResult<void> save_base(ChunkSpan /*chunks*/) override { return no<void>(); }
   StoreResult<void> compact(Sequence /*keyframe*/) override { return no<void>(); }
+  StoreResult<std::vector<ChunkKey>> chunk_keys(ChunkRows /*rows*/,
+                                                const std::optional<ChunkKey>& /*behind*/,
+                                                std::size_t /*count*/) override {
+    return no<std::vector<ChunkKey>>();
+  }
   StoreResult<void> shrink() override { return no<void>(); }
   StoreResult<Epoch> begin_branch(TimeUs /*now_us*/) override { return no<Epoch>(); }
   StoreResult<std::vector<std::string>> accept_losses() override {

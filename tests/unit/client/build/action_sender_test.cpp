@@ -52,7 +52,8 @@ TEST_CASE("a step offers a bounded number of edits", "[client][build]") {
 TEST_CASE("an action waits for the connection, the budget and what its source lacks",
           "[client][build]") {
   FakePort port;
-  std::vector<SourceStep> steps = {voxel_step(0), SourceStep::later(), voxel_step(1)};
+  std::vector<SourceStep> steps = {voxel_step(0), SourceStep::later("ground that is not here yet"),
+                                   voxel_step(1)};
   ActionSender sender(std::make_unique<ListSource>(steps));
   port.closed = "the connection";
   sender.step(port, 0);

@@ -175,9 +175,14 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   tool.fix_aim(FixedAim{{4, -1, 7}, Direction::pos_y});
   CHECK(act(Action::symmetry) == "tool: paste, mask everything, mirrored along x");
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie between voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 9, 15});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
   CHECK(act(Action::preview) == "previews are hidden");
   CHECK(act(Action::select) == "tool: select");
-  CHECK(act(Action::larger) == "tool: select, mirrored along x");
+  CHECK(act(Action::larger) == "tool: select, mode add, mirrored along x");
+  CHECK(act(Action::smaller) == "tool: select, mode new, mirrored along x");
 }
 
 TEST_CASE_METHOD(Fixture, "the box between a corner and the crosshair is measured",
@@ -226,7 +231,7 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   CHECK(shape.points.back().x == 12);
   CHECK(shape.radius <= 16);
   CHECK(stroke->material == 2);
-  // Of a long stroke the end is seen.
+  // Others see the end of a stroke that is too long to be shared.
   for (std::int32_t i = 0; i < 200; ++i) {
     tool.fix_aim(FixedAim{{1 + i % 14, -1 - i % 15, 1 + i % 13}, Direction::pos_y});
     tool.drag();
@@ -281,6 +286,30 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
       actions.push_back(request->action);
   }
   CHECK(actions == std::vector<ClientSequence>{1, 1, 0, 4, 4});
+}
+
+TEST_CASE_METHOD(Fixture, "the steps of a paste that is moved belong to its action",
+                 "[client_app]") {
+  ChunkSnapshot snapshot;
+  snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty);
+  snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+  receive(runstone::test::chunks_of(std::move(snapshot)));
+  box.select(VoxelBox{{0, 0, 0}, {2, 2, 2}});
+  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
+  REQUIRE(box.copy(session.replica(), true).has_value());
+  REQUIRE(box.choose("paste").has_value());
+  TypedPlaces typed;
+  typed.places = {{6, 6, 6}};
+  box.type_places(typed);
+  REQUIRE(tool.propose(box.apply_typed(session.replica(), 1), kNow).has_value());
+  for (int i = 0; i < 2; ++i)
+    REQUIRE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  REQUIRE(propose({9, 9, 9}).has_value());
+  CHECK_FALSE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  std::vector<ClientSequence> actions;
+  for (const auto& [seq, local] : session.replica().local_edits().all())
+    actions.push_back(local.action);
+  CHECK(actions == std::vector<ClientSequence>{0, 2, 2, 2, 0});
 }
 
 TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one action",

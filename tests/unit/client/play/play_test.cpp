@@ -264,6 +264,25 @@ TEST_CASE_METHOD(PlayBench, "a play leaves the actions of the interface to its p
   CHECK(lines[0].tone == ChatTone::refused);
 }
 
+TEST_CASE_METHOD(PlayBench,
+                 "an undo stops an action of which nothing was sent, and undoes no other",
+                 "[client]") {
+  show_ground();
+  tools.select(VoxelBox{{0, 0, 0}, {256, 256, 256}});
+  REQUIRE(play.tool().propose(tools.fill(session.replica(), 1), now));
+  REQUIRE(play.tool().is_building());
+  CHECK(play.act(Action::undo, now));
+  CHECK(take<CommandRequest>(sent()).empty());
+  turn();
+  CHECK_FALSE(play.tool().is_building());
+  CHECK(session.replica().local_edits().all().empty());
+  REQUIRE(play.tool().propose(tools.fill(session.replica(), 1), now));
+  turn();
+  CHECK(session.replica().local_edits().all().size() == 1);
+  CHECK(play.act(Action::undo, now));
+  CHECK(take<CommandRequest>(sent()).size() == 1);
+}
+
 TEST_CASE_METHOD(PlayBench, "what the server refuses is a notice, and the log gets it",
                  "[client]") {
   show_ground();

@@ -57,6 +57,21 @@ TEST_CASE_METHOD(ToolScript, "a script draws a stroke, and one click of it is a 
   CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 4, 1}, 2}, {}, 2});
 }
 
+TEST_CASE_METHOD(ToolScript, "a script adds boxes to the selection and removes them", "[bots]") {
+  run("select 0 3 0 2 3 0\nselect add 6 3 0 6 3 0\nselect remove 1 3 0 2 9 9\nselection fill sand\n"
+      "selection grow all 2\nselection grow all -2\nselection clear");
+  CHECK(runner->failures().empty());
+  const auto fill = [](std::int32_t x, Material material) {
+    return EditDescriptor{FillBox{{{x, 3, 0}, {x + 1, 4, 1}}}, {}, material};
+  };
+  REQUIRE(host.edits.size() == 4);
+  CHECK(host.edits[0].edit == fill(0, 2));
+  CHECK(host.edits[1].edit == fill(6, 2));
+  CHECK(host.edits[2].edit == fill(0, kEmpty));
+  CHECK(host.edits[3].edit == fill(6, kEmpty));
+  CHECK(error_of("select more 0 3 0 2 3 0").find("more") != std::string::npos);
+}
+
 TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bots]") {
   run("select 0 3 0 2 3 0\nselection grow +z 1\nselection copy\nselection shift +x 4\n"
       "selection fill sand\nselection replace sand stone\nselection stack +y 2\nselection clear\n"

@@ -81,6 +81,34 @@ TEST_CASE("a newer version of the chunk is asked about, at most once a second",
   CHECK(bench.author.found() == nullptr);
 }
 
+TEST_CASE("another author is shown after another voxel, another material or an answer alone",
+          "[client_session]") {
+  AuthorBench bench;
+  CHECK(bench.author.take_changed());
+  CHECK(bench.look(std::nullopt, kSecond).empty());
+  CHECK_FALSE(bench.author.take_changed());
+  const auto requests = bench.look(kStone, kSecond);
+  REQUIRE(requests.size() == 1);
+  CHECK(bench.author.take_changed());
+  CHECK_FALSE(bench.author.take_changed());
+  bench.author.receive(answer(requests[0]));
+  CHECK(bench.author.take_changed());
+  Sight sight = kStone;
+  ++sight.version.seq;
+  bench.look(sight, kSecond / 10);
+  CHECK_FALSE(bench.author.take_changed());  // the answer stays while the material does
+  sight.material = 2;
+  bench.look(sight, kSecond / 10);
+  CHECK(bench.author.take_changed());
+  sight.at.x = 7;
+  bench.look(sight, kSecond / 10);
+  CHECK(bench.author.take_changed());
+  bench.look(std::nullopt, kSecond / 10);
+  CHECK(bench.author.take_changed());
+  bench.author.clear();
+  CHECK(bench.author.take_changed());
+}
+
 TEST_CASE("no author is asked for while something else is, and a lost answer is asked for again",
           "[client_session]") {
   AuthorBench bench;

@@ -50,7 +50,7 @@ TEST_CASE_METHOD(MixBench, "the tool mix gives a box the materials of a pattern"
   CHECK(stone > 200);
   CHECK(gravel > 120);
   CHECK(at({0, -2, 0}) == 1);
-  // Those voxels are mixed already.
+  // The same pattern gives these voxels the materials that they have already.
   REQUIRE(click({-10, -3, -10}));
   CHECK(click({9, -1, 9}).error() == "the pattern changes no voxel there");
 }

@@ -1,10 +1,16 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <ios>
 #include <set>
+#include <string>
 
 #include "client/lettering/font_file.hpp"
 #include "client/lettering/text_build.hpp"
+#include "client/tools/preview_words.hpp"
 #include "client/tools/tool_box.hpp"
 #include "common/materials/material_table.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone::test {
@@ -104,6 +110,27 @@ TEST_CASE_METHOD(ShapeBench, "a text that cannot be written is refused with word
   CHECK(refusal({0, -1, 0}).empty());
 }
 
+TEST_CASE_METHOD(ShapeBench, "a font is searched once for each change of its name", "[tools]") {
+  const TempFolder folder;
+  const std::string file = folder / "written later.ttf";
+  REQUIRE(box.choose("text"));
+  REQUIRE(box.set_text("font", file));
+  const std::string missing = refusal({0, -1, 0});
+  CHECK(missing.starts_with("cannot read the font: "));
+  const FontPtr font = read_font(kDefaultFont).value();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(font->data()),
+             static_cast<std::streamsize>(font->size()));
+  CHECK(refusal({0, -1, 0}) == missing);
+  REQUIRE(box.set_text("font", kDefaultFont));
+  CHECK(refusal({0, -1, 0}).empty());
+  REQUIRE(box.set_text("font", file));
+  CHECK(refusal({0, -1, 0}).empty());
+  // The bytes that were read serve until the name changes.
+  std::filesystem::remove(file);
+  CHECK(refusal({0, -1, 0}).empty());
+}
+
 TEST_CASE_METHOD(ShapeBench, "a polygon is closed by a click on its first or its last corner",
                  "[tools]") {
   REQUIRE(box.choose("polygon"));
@@ -150,6 +177,18 @@ TEST_CASE_METHOD(ShapeBench, "the wand copies exactly the connected voxels, and 
   const auto before = held_voxels();
   REQUIRE(box.choose("wand"));
   const std::uint64_t changes = box.clipboard_changes();
+  const auto words = [&](ToolButton button) {
+    TypedPlaces typed;
+    typed.button = button;
+    typed.places = {{0, 0, 0}};
+    box.type_places(typed);
+    const Aim aim = aim_at({0, 0, 0}, Direction::pos_y);
+    for (unsigned i = 0; i < 2 * ToolBox::kRestCalls; ++i) box.step_preview(replica, aim, 512);
+    box.type_places(std::nullopt);
+    return preview_words(box);
+  };
+  CHECK(words(ToolButton::place) == "copies 6 voxels");
+  CHECK(words(ToolButton::clear) == "sets 0 and removes 6 voxels");
   CHECK(press({0, 0, 0}).empty());
   CHECK(held_voxels() == before);
   CHECK(box.clipboard_changes() == changes + 1);

@@ -12,7 +12,8 @@ using namespace runstone;
 
 namespace {
 
-constexpr std::array<int, 2> kToolsSize = {1280, 1020};
+/// A display in which all of the tool window fits, whatever is open.
+constexpr std::array<int, 2> kToolsSize = {1280, 2000};
 
 /// A display with its tool window open, and a tool box that obeys it.
 struct ToolWindowBench {
@@ -62,13 +63,28 @@ struct ToolWindowBench {
     hud.feed(events);
     frames();
   }
+  static ImGuiWindow& window() { return *ImGui::FindWindowByName("Tools"); }
   /// Returns the abscissa of a place in the window, `offset` pixels right of its left border.
-  static double x(double offset) { return ImGui::FindWindowByName("Tools")->Pos.x + offset; }
-  /// Clicks from above to below until a command of this type comes. Returns the command and keeps
-  /// its place.
+  static double x(double offset) { return window().Pos.x + offset; }
+  /// Returns the ordinate of the lower border of the window.
+  static double below() { return window().Pos.y + window().Size.y; }
+  /// Returns the ordinate of a place below the list of tools and above the fields of the tool.
+  static double below_list() {
+    return ImGui::TableFindByID(window().GetID("tools"))->OuterRect.Max.y +
+           ImGui::GetStyle().ItemSpacing.y;
+  }
+  /// Returns the distance of two rows of fields.
+  static double row() { return ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y; }
+  /// Returns the ordinate of the middle of the row with this number, from below; 0 is the last one.
+  static double row_from_below(int number) {
+    return below() - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight() / 2 -
+           number * row();
+  }
+  /// Clicks from above to the lower border of the window until a command of this type comes.
+  /// Returns the command and keeps its place.
   template <class T>
-  std::optional<T> find(double x, double from_y, double to_y = 920) {
-    for (found_y = from_y; found_y < to_y; found_y += 5) {
+  std::optional<T> find(double x, double from_y) {
+    for (found_y = from_y; found_y < below(); found_y += kStep) {
       commands.clear();
       click(x, found_y);
       for (const ToolCommand& command : commands) {
@@ -88,22 +104,26 @@ struct ToolWindowBench {
   int stops = 0;
   std::array<int, 2> size = kToolsSize;
   double found_y = 0;
+  static constexpr double kStep = 5;  // less than the height of a row
 };
 
 // Distances from the left border of the window. In the first every row has something to click.
 constexpr double kRow = 30, kSliderLow = 11, kSliderMiddle = 110, kSecondChoice = 120, kApply = 175,
                  kByVoxels = 16, kHollow = 75, kByMetres = 130, kSizeField = 220;
 
+/// The headers of the parts from below, while all of them are closed.
+constexpr int kSelectionRow = 0, kTimeRow = 1, kPlacesRow = 3;
+
 }  // namespace
 
 TEST_CASE_METHOD(ToolWindowBench, "the tool window lists all tools, and a click chooses one",
                  "[client_ui]") {
   std::vector<std::string> names;
-  for (double y = 30; names.size() < box.tools().size();) {
+  for (double y = window().Pos.y + ImGui::GetFrameHeight(); names.size() < box.tools().size();) {
     const auto chosen = find<ToolChoice>(x(kRow), y);
     REQUIRE(chosen);
     if (names.empty() || names.back() != chosen->name) names.push_back(chosen->name);
-    y = found_y + 5;
+    y = found_y + kStep;
   }
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(names[i] == box.tools()[i]->name());
   CHECK(box.tool().name() == "array");
@@ -113,14 +133,14 @@ TEST_CASE_METHOD(ToolWindowBench, "a slider sets the number of a tool, within it
                  "[client_ui]") {
   REQUIRE(box.choose("sphere").has_value());
   frames();
-  const auto changed = find<ParameterChange>(x(kSliderMiddle), 454);
+  const auto changed = find<ParameterChange>(x(kSliderMiddle), below_list());
   REQUIRE(changed);
   CHECK(changed->name == "radius");
   CHECK(changed->value > 20);
   CHECK(changed->value < 64);
   click(x(kSliderLow), found_y);
   CHECK(box.tool().parameters()[0].value == box.tool().parameters()[0].low);
-  const auto mask = find<ParameterChange>(x(kSecondChoice), found_y + 22);
+  const auto mask = find<ParameterChange>(x(kSecondChoice), found_y + row());
   REQUIRE(mask);
   CHECK(mask->name == "mask");
 }
@@ -129,12 +149,12 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 509));
+  REQUIRE(find<PlacesChange>(x(kRow), row_from_below(kPlacesRow)));
   const double header_y = found_y;
   REQUIRE(box.typed_places());
   CHECK(box.typed_places()->places == std::vector<VoxelPos>{{4, 5, 6}, {4, 5, 6}});
   // A double click chooses the text of the first number.
-  const double row_y = header_y + 24;
+  const double row_y = header_y + row();
   hud.feed({CursorEvent{x(kRow), row_y, 0, 0}, ButtonEvent{MouseButton::left, true},
             ButtonEvent{MouseButton::left, false}, ButtonEvent{MouseButton::left, true},
             ButtonEvent{MouseButton::left, false}});
@@ -142,7 +162,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are typed as numbers while their part 
   CHECK(hud.focus().types);
   type("-17");
   CHECK(box.typed_places()->places[0] == VoxelPos{-17, 5, 6});
-  REQUIRE(find<TypedApply>(x(kApply), row_y + 40));
+  REQUIRE(find<TypedApply>(x(kApply), row_y + 1.5 * row()));
   click(x(kRow), header_y);  // closes the part
   CHECK_FALSE(box.typed_places());
 }
@@ -176,7 +196,7 @@ TEST_CASE_METHOD(ToolWindowBench, "places are not typed any more once the player
                  "[client_ui]") {
   REQUIRE(box.choose("box").has_value());
   frames();
-  REQUIRE(find<PlacesChange>(x(kRow), 509));
+  REQUIRE(find<PlacesChange>(x(kRow), row_from_below(kPlacesRow)));
   REQUIRE(box.typed_places());
   SECTION("the window is closed") { hud.act(Action::release); }
   SECTION("the mouse is captured") { state.is_captured = true; }
@@ -188,12 +208,10 @@ TEST_CASE_METHOD(ToolWindowBench, "symmetry and selection are changed by their f
                  "[client_ui]") {
   box.select(VoxelBox{{1, 2, 3}, {4, 5, 6}});
   frames();
-  // The last header is that of the selection. Its buttons follow.
-  std::optional<SelectionCommand> copied;
-  for (double y = 680; y > 250 && !copied; y -= 5) {
-    click(x(kRow), y);
-    copied = find<SelectionCommand>(x(kRow), y + 60, y + 90);
-  }
+  // Below the header are two rows of fields, and then its buttons.
+  const double header_y = row_from_below(kSelectionRow);
+  click(x(kRow), header_y);
+  const auto copied = find<SelectionCommand>(x(kRow), header_y + 2.5 * row());
   REQUIRE(copied);
   CHECK(copied->kind == SelectionCommand::Kind::copy);
   CHECK(copied->is_solid);
@@ -204,36 +222,27 @@ TEST_CASE_METHOD(ToolWindowBench,
                  "[client_ui]") {
   state.time_of_day = 0.25;
   state.has_own_time = true;
-  for (double y = 500; y < 660 && times.empty(); y += 5) {
-    found_y = y + 24;
-    click(x(kRow), y);  // a header, perhaps
-    click(x(kSliderMiddle), found_y);
-    if (!times.empty()) break;
-    click(x(kSliderMiddle), found_y);  // closes what was opened
-    click(x(kRow), y);
-  }
+  const double header_y = row_from_below(kTimeRow);
+  click(x(kRow), header_y);
+  click(x(kSliderMiddle), header_y + row());
   REQUIRE_FALSE(times.empty());
   REQUIRE(times.back().has_value());
   CHECK(*times.back() > 0.2);
   CHECK(*times.back() < 0.8);
   times.clear();
-  for (double y = found_y + 22; y < found_y + 60 && times.empty(); y += 5) click(x(kRow), y);
+  click(x(kRow), header_y + 2 * row());
   REQUIRE_FALSE(times.empty());
   CHECK_FALSE(times.back().has_value());
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "a path is typed from which the clipboard is loaded",
                  "[client_ui]") {
-  const auto below = [] {
-    const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
-    return static_cast<double>(window->Pos.y + window->Size.y);
-  };
   state.has_files = true;
   frames();
-  // The last header is that of the selection; it is closed. The field and its buttons are last in it.
-  click(x(kRow), below() - 15);
+  // The field of the path and its buttons are the last rows of the part of the selection.
+  click(x(kRow), row_from_below(kSelectionRow));
   frames();
-  const double buttons_y = below() - 18, field_y = buttons_y - 23;
+  const double buttons_y = row_from_below(0), field_y = row_from_below(1);
   click(x(kRow), buttons_y);
   CHECK(files.empty());  // no path
   click(x(kRow), field_y);
@@ -246,40 +255,35 @@ TEST_CASE_METHOD(ToolWindowBench, "a path is typed from which the clipboard is l
   state.file.text = "reading castle.schem";
   frames();
   CHECK(below() < full);  // the text takes the place of the field
-  click(x(kRow), below() - 18);
+  click(x(kRow), row_from_below(0));
   CHECK(stops == 0);
   state.file.share = 0.5;
   state.file.can_stop = true;
   frames();
-  click(x(kRow), below() - 18);
+  click(x(kRow), row_from_below(0));
   CHECK(stops == 1);
 }
 
 TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes voxels",
                  "[client_ui]") {
-  const auto below = [] {
-    const ImGuiWindow* const window = ImGui::FindWindowByName("Tools");
-    return static_cast<double>(window->Pos.y + window->Size.y);
-  };
-  size = {1280, 1200};  // all of the window fits
   state.has_files = true;
   frames();
-  click(x(kRow), below() - 15);
+  click(x(kRow), row_from_below(kSelectionRow));
   frames();
-  const double plain = ImGui::FindWindowByName("Tools")->Size.y;
-  click(x(kRow), below() - 18 - 23);
+  const double plain = window().Size.y;
+  click(x(kRow), row_from_below(1));
   type("statue.stl");
   frames();
-  CHECK(ImGui::FindWindowByName("Tools")->Size.y > plain);
-  click(x(kRow), below() - 18);
+  CHECK(window().Size.y > plain);
+  click(x(kRow), row_from_below(0));
   REQUIRE(files.size() == 1);
   CHECK(files[0].file == "statue.stl");
   CHECK(files[0].model == ModelChoices());
   // From below: the button, the row of the surface, that of the inside, and that of the size.
-  const double inside_y = below() - 18 - 46, size_y = below() - 18 - 69;
+  const double inside_y = row_from_below(2), size_y = row_from_below(3);
   click(x(kHollow), inside_y);
   click(x(kByMetres), size_y);
-  click(x(kRow), below() - 18);
+  click(x(kRow), row_from_below(0));
   REQUIRE(files.size() == 2);
   CHECK_FALSE(files[1].model.is_solid);
   CHECK(files[1].model.voxels_per_metre == 1.0);
@@ -288,14 +292,14 @@ TEST_CASE_METHOD(ToolWindowBench, "of a model the window asks how it becomes vox
   CHECK(dropped.file == "/tmp/other.glb");
   CHECK(dropped.model == files[1].model);
   frames();
-  click(x(kRow), below() - 18);
+  click(x(kRow), row_from_below(0));
   CHECK(files.back().file == "/tmp/other.glb");
   // A size out of its range has words, and the button is dead.
   click(x(kByVoxels), size_y);
   click(x(kSizeField), size_y);
   type("5000");
   const auto count = files.size();
-  click(x(kRow), below() - 18);
+  click(x(kRow), row_from_below(0));
   CHECK(files.size() == count);
   // A model that is dropped then has the usual choices.
   CHECK(hud.panels().tools().file().drop("/tmp/third.glb").model == ModelChoices());

@@ -81,6 +81,10 @@ TEST_CASE("nodes have the look that belongs to their name", "[formats]") {
   CHECK(look("default:torch").emission == 100);
   CHECK(look("default:lava_source").emission > 0);
   CHECK(look("default:ice").roughness < look("default:stone").roughness);
+  // Grass on earth is a cube, and a tuft of grass is two planes.
+  CHECK(look("default:grass_3").pattern == MaterialPattern::blades);
+  CHECK(look("default:dirt_with_grass").pattern == MaterialPattern::none);
+  CHECK(look("mod:grassy_block").pattern == MaterialPattern::none);
 }
 
 TEST_CASE("unknown names get a shade of the colour of their kind", "[formats]") {

@@ -228,6 +228,8 @@ TEST_CASE("blocks look like what they are", "[formats]") {
     CHECK(look_at("minecraft:stone_brick_wall").colour == look_at("minecraft:stone_bricks").colour);
     CHECK(look_at("minecraft:quartz_stairs").colour == look_at("minecraft:quartz_block").colour);
     CHECK(look_at("minecraft:oak_stairs").look->pattern == MaterialPattern::planks);
+    CHECK(look_at("minecraft:short_grass").look->pattern == MaterialPattern::blades);
+    CHECK(look_at("minecraft:grass_block").look->pattern == MaterialPattern::none);
     CHECK(look_at("minecraft:waxed_oxidized_cut_copper_slab").colour ==
           look_at("minecraft:oxidized_copper").colour);
   }

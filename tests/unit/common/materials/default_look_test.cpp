@@ -6,7 +6,7 @@ using namespace runstone;
 
 namespace {
 
-MaterialLook look(std::string_view name) { return default_look(name, MaterialBody::solid); }
+MaterialLook look(std::string_view name) { return default_look(name, MaterialBody::solid, {}); }
 
 }  // namespace
 
@@ -34,8 +34,8 @@ TEST_CASE("names of other programs get the look of what they are", "[materials]"
 }
 
 TEST_CASE("a liquid has no pattern, but may give off light", "[materials]") {
-  CHECK(default_look("default:lava_source", MaterialBody::liquid).emission > 0);
-  CHECK(default_look("liquid_brick", MaterialBody::liquid).pattern == MaterialPattern::none);
+  CHECK(default_look("default:lava_source", MaterialBody::liquid, {}).emission > 0);
+  CHECK(default_look("liquid_brick", MaterialBody::liquid, {}).pattern == MaterialPattern::none);
 }
 
 TEST_CASE("a look that a row gives wins over that of its name", "[materials]") {

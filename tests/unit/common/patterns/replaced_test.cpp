@@ -274,23 +274,46 @@ TEST_CASE("a box without a voxel that changes makes no build", "[patterns]") {
   CHECK(none->build == nullptr);
 }
 
-TEST_CASE("too many voxels that are decided one by one are refused", "[patterns]") {
-  const auto empty = [](ChunkCoord) -> std::shared_ptr<const RunChunk> {
-    static const auto chunk = std::make_shared<RunChunk>(uniform_chunk(Extent::cube(128), kEmpty));
-    return chunk;
-  };
+TEST_CASE("a replacement in steps is that of one call", "[patterns][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 9);
   const MaterialTable table = patterns_table();
-  const VoxelBox box{{0, 0, 0}, {64, 524'289, 1}};
-  auto noise = BoundFilter::of(*parse_filter("noise 0%"), table, 1);
-  REQUIRE(noise);
-  BoundMix moss = BoundMix::of(5);
-  const auto refused = replaced(box, moss, &*noise, 128, empty);
-  REQUIRE_FALSE(refused);
-  CHECK(refused.error().code == ErrorCode::limit_exceeded);
-  // Runs have no such limit.
-  const auto made = replaced(box, moss, nullptr, 128, empty);
-  REQUIRE(made);
-  CHECK(made->build->touched() == 64U * 524'289U);
+  for (int round = 0; round < 6; ++round) {
+    const MixedWorld world(rng.next());
+    const VoxelBox box{{-30, -9, -11}, {rng.between(-10, 30), rng.between(0, 20), 27}};
+    const auto pattern = parse_pattern("stone, moss where not on air and noise 60% 3");
+    REQUIRE(pattern);
+    auto mix = BoundMix::of(pattern->mix, table, {});
+    auto filter = BoundFilter::of(*pattern->filter, table, 1);
+    REQUIRE((mix && filter));
+    const auto whole = replaced(box, *mix, &*filter, kEdge, world);
+    REQUIRE((whole && whole->build));
+    auto steps = Replacing::of(box, *mix, *filter, kEdge, world);
+    REQUIRE(steps);
+    const auto work_max = static_cast<std::uint64_t>(rng.between(1, 2'000));
+    std::uint64_t decided = 0;
+    for (bool is_done = false; !is_done;) {
+      std::uint64_t work = work_max;
+      const auto done = steps->step(work);
+      REQUIRE(done);
+      is_done = *done;
+      // A step ends with the column in which its work is used up.
+      const auto column = static_cast<std::uint64_t>(2 * (box.max.y - box.min.y));
+      if (steps->decided() - decided > work_max + column) FAIL_CHECK("a step is too long");
+      decided = steps->decided();
+    }
+    const auto made = steps->finish();
+    REQUIRE((made && made->build));
+    CHECK(made->at == whole->at);
+    CHECK(made->build->touched() == whole->build->touched());
+    for (VoxelPos c; c.z < whole->build->sides().z; ++c.z) {
+      for (c.y = 0; c.y < whole->build->sides().y; ++c.y) {
+        for (c.x = 0; c.x < whole->build->sides().x; ++c.x) {
+          if (made->build->at(c) != whole->build->at(c))
+            FAIL_CHECK(c.x << " " << c.y << " " << c.z);
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("the changes of a brush are filtered, and get a mix", "[patterns]") {

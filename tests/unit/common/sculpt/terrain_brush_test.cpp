@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -233,6 +234,54 @@ TEST_CASE("overlay and naturalise set the upper voxels of the ground", "[sculpt]
   CHECK(stroke(hills, brush, kLine).placed.build == nullptr);
 }
 
+TEST_CASE("naturalise gives bare columns the layers of most columns", "[sculpt]") {
+  const Hills& hills = Hills::shared();
+  const auto is_bare = [](std::int32_t x) { return x % 5 == 0; };
+  const auto bare_hills = [&](ChunkCoord coord) {
+    const VoxelPos o = origin_of(coord, kHillEdge);
+    RunBuilder out(Extent::cube(kHillEdge), AxisOrder::xyz);
+    for (std::int32_t z = o.z; z < o.z + kHillEdge; ++z) {
+      for (std::int32_t y = o.y; y < o.y + kHillEdge; ++y) {
+        for (std::int32_t x = o.x; x < o.x + kHillEdge; ++x) {
+          const bool is_stone = is_bare(x) && y <= hills.height(x, z);
+          out.append(1, is_stone ? hills.stone : hills.at({x, y, z}));
+        }
+      }
+    }
+    return std::make_shared<const RunChunk>(out.finish());
+  };
+  TerrainBrush brush;
+  brush.mode = BrushMode::naturalise;
+  brush.falloff = BrushFalloff::none;
+  brush.radius = 6;
+  const auto columns = GroundColumns::read(brush_box(brush, kLine), kHillEdge, bare_hills);
+  REQUIRE(columns);
+  const auto placed = build_of_changes(
+      *columns, brush_changes(*columns, GroundMaterials::of(hills.table), brush, kLine));
+  REQUIRE((placed && placed->build));
+  std::size_t bare = 0, wrong = 0;
+  const VoxelBox& box = columns->box();
+  for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+      const bool is_changed = is_bare(x) && weight(brush, kLine, x, z) > 0;
+      bare += is_changed ? 1 : 0;
+      const std::int32_t top = hills.height(x, z);
+      for (std::int32_t y = top - 6; y < top + 3; ++y) {
+        std::optional<Material> wanted;
+        if (is_changed && y <= top && y > top - kSkinVoxels)
+          wanted = y == top ? hills.grass : hills.dirt;
+        const VoxelPos cell{x - placed->at.x, y - placed->at.y, z - placed->at.z};
+        const auto is =
+            placed->build->box().contains(cell) ? placed->build->at(cell) : std::nullopt;
+        wrong += is != wanted ? 1 : 0;
+      }
+    }
+  }
+  CHECK(bare > 50);
+  CHECK(wrong == 0);
+  CHECK(placed->build->touched() == bare * kSkinVoxels);
+}
+
 TEST_CASE("a stroke that is lower than the box allows is cut to it", "[sculpt]") {
   const Hills& hills = Hills::shared();
   TerrainBrush brush;
@@ -241,8 +290,16 @@ TEST_CASE("a stroke that is lower than the box allows is cut to it", "[sculpt]")
   brush.lowers = true;
   brush.falloff = BrushFalloff::none;
   const auto made = stroke(hills, brush, kLine);
-  REQUIRE(made.placed.build);
-  CHECK(made.placed.at.y >= Hills::kLow);
+  // The skin of the ground stays in the box.
+  const std::int32_t lowest = made.columns.box().min.y + kSkinVoxels;
+  std::size_t cut = 0;
+  check_heights(hills, made, [&](std::int32_t x, std::int32_t z) {
+    const std::int32_t height = hills.height(x, z);
+    if (weight(brush, kLine, x, z) == 0) return height;
+    cut += height - kBrushStrengthMax < lowest ? 1 : 0;
+    return std::max(height - kBrushStrengthMax, lowest);
+  });
+  CHECK(cut > 20);
 }
 
 }  // namespace runstone::test

@@ -83,6 +83,30 @@ TEST_CASE("a program that cannot hand a world over says so", "[admin][servers]")
   CHECK(refused.text == "this server cannot do that");
 }
 
+TEST_CASE("status says what to do about damaged rows", "[admin]") {
+  CommandBench bench;
+  std::uint64_t faults = 0;
+  OperatorActions actions;
+  actions.row_faults = [&] { return faults; };
+  CommandServices services{bench.bench.server,
+                           bench.service,
+                           bench,
+                           bench.placing,
+                           bench.folder.path(),
+                           actions,
+                           [](const PublicKey&) { return false; }};
+  const auto status = [&] {
+    bench.answers.clear();
+    give_command({services, {}, bench.bench.now(), bench.reply()}, "status");
+    REQUIRE_FALSE(bench.answers.empty());
+    return bench.answers.back().text;
+  };
+  CHECK(status().find("DAMAGE") == std::string::npos);
+  faults = 3;
+  CHECK_THAT(status(), Catch::Matchers::Contains("\nDAMAGE: 3 rows") &&
+                           Catch::Matchers::Contains("runstone-server repair --world W --to NEW"));
+}
+
 /// A world in which somebody owns the name "Ana".
 struct NameBench : CommandBench {
   NameBench()

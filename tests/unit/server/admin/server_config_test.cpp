@@ -82,6 +82,37 @@ TEST_CASE("a file sets the fields that it names and no others", "[admin]") {
   CHECK(config == expected);
 }
 
+TEST_CASE("backups are set under a header of their own", "[admin]") {
+  ServerConfig config;
+  REQUIRE(read_config_toml(config,
+                           "sessions_max = 3\n[backup]\nevery = \"6h\"\nfolder = \"/b\"\n"
+                           "keep_hourly = 1\nkeep_daily = 2\nkeep_weekly = 3\n",
+                           "server.toml")
+              .has_value());
+  ServerConfig expected;
+  expected.sessions_max = 3;
+  expected.backup_every_s = 21'600;
+  expected.backup_folder = "/b";
+  expected.backup_keep_hourly = 1;
+  expected.backup_keep_daily = 2;
+  expected.backup_keep_weekly = 3;
+  CHECK(config == expected);
+  ServerConfig printed;
+  REQUIRE(read_config_toml(printed, to_toml(config), "server.toml").has_value());
+  CHECK(printed == config);
+  const std::pair<const char*, const char*> durations[] = {
+      {"0", "0"}, {"60s", "1m"}, {"90m", "90m"}, {"2d", "48h"}, {"61s", "61s"}, {"366d", "8784h"}};
+  for (const auto& [text, back] : durations) {
+    CAPTURE(text);
+    REQUIRE(set_config(config, "backup_every", text).has_value());
+    CHECK(config_text(config, "backup_every") == back);
+  }
+  for (const char* bad : {"", "6", "59s", "0s1", "often", "367d", "-1h", "6 h"}) {
+    CAPTURE(bad);
+    CHECK_FALSE(set_config(config, "backup_every", bad).has_value());
+  }
+}
+
 TEST_CASE("errors in a file name file, line and key, and change nothing", "[admin]") {
   const auto error = [](const char* toml) {
     ServerConfig config;
@@ -96,6 +127,13 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
   const TextError unknown = error("sessions_max = 3\n\nsession_max = 4\n");
   CHECK(unknown.line == 3);
   CHECK(unknown.key == "session_max");
+  const TextError under = error("sessions_max = 3\n[backup]\nevry = \"6h\"\n");
+  CHECK(under.line == 3);
+  CHECK(under.key == "backup_evry");
+  CHECK(under.what == "no such setting; did you mean backup_every?");
+  CHECK(error("backup_every = \"6h\"\n[backup]\nevery = \"7h\"\n").what == "is there twice");
+  CHECK(error("[backup]\n").key == "backup");
+  CHECK(error("[backup.deep]\nevery = \"6h\"\n").key == "backup_deep");
   CHECK(error("sessions_max = 0").what.find("1..65536") != std::string::npos);
   CHECK(error("sessions_max = -1").key == "sessions_max");
   CHECK(error("sessions_max = \"3\"").key == "sessions_max");

@@ -93,7 +93,7 @@ TEST_CASE("a mistyped subcommand is the argument that the error names", "[server
   CHECK(parsed.exit_code == 2);
   CHECK(
       text.str() ==
-      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, restore, repair, control) and no flag; "
+      "runstone-server: \"contrl\" is no subcommand (import, compact, copy, backup, pack, restore, repair, control) and no flag; "
       "--help lists the flags\n");
 }
 
@@ -131,6 +131,60 @@ TEST_CASE("a mistyped address of a database is no folder", "[server_options]") {
   CHECK(parse({"compact", "--world", kDatabase, "--keep", "1"}).options);
   CHECK(parse({"backup", "--world", kDatabase, "--to", "a"}).exit_code == 2);
   CHECK(parse({"restore", "--from", "a", "--world", kDatabase}).exit_code == 2);
+}
+
+TEST_CASE("a backup is a new folder, or one of a folder of backups", "[server_options]") {
+  using Action = BackupFolderRequest::Action;
+  const auto copy = parse({"backup", "--world", "w", "--to", "b"});
+  REQUIRE(copy.options);
+  REQUIRE(copy.options->backup);
+  CHECK(copy.options->backup->world == "w");
+  CHECK(copy.options->backup->to == "b");
+  CHECK_FALSE(copy.options->backup_folder);
+  const auto added = parse({"backup", "add", "--world", "w", "--folder", "b", "--keep-daily", "7"});
+  REQUIRE(added.options);
+  CHECK_FALSE(added.options->backup);
+  REQUIRE(added.options->backup_folder);
+  CHECK(added.options->backup_folder->action == Action::add);
+  CHECK(added.options->backup_folder->world == "w");
+  CHECK(added.options->backup_folder->folder == "b");
+  CHECK(added.options->backup_folder->policy == BackupPolicy{0, 7, 0});
+  const auto list = parse({"backup", "list", "--folder", "b", "--json"});
+  REQUIRE(list.options->backup_folder);
+  CHECK(list.options->backup_folder->action == Action::list);
+  CHECK(list.options->backup_folder->json);
+  const auto prune = parse({"backup", "prune", "--folder", "b", "--keep-hourly", "2", "--dry-run"});
+  REQUIRE(prune.options->backup_folder);
+  CHECK(prune.options->backup_folder->action == Action::prune);
+  CHECK(prune.options->backup_folder->is_rehearsal);
+  CHECK(prune.options->backup_folder->policy == BackupPolicy{2, 0, 0});
+  const auto verify = parse({"backup", "verify", "--folder", "b", "--backup", "20261118T110640Z"});
+  REQUIRE(verify.options->backup_folder);
+  CHECK(verify.options->backup_folder->action == Action::verify);
+  CHECK(verify.options->backup_folder->backup == "20261118T110640Z");
+  const auto restored =
+      parse({"restore", "--from", "b", "--backup", "20261118T110640Z", "--world", "w"});
+  REQUIRE(restored.options->restore);
+  CHECK(restored.options->restore->backup == "20261118T110640Z");
+  const auto packed = parse({"pack", "w", "w.tar"});
+  REQUIRE(packed.options->pack);
+  CHECK(packed.options->pack->world == "w");
+  CHECK(packed.options->pack->file == "w.tar");
+  for (const std::vector<const char*>& line : std::vector<std::vector<const char*>>{
+           {"pack", "w"},
+           {"pack", "postgresql://h/d", "w.tar"},
+           {"backup"},
+           {"backup", "--world", "w"},
+           {"backup", "--to", "b"},
+           {"backup", "add", "--folder", "b"},
+           {"backup", "add", "--world", "w"},
+           {"backup", "list"},
+           {"backup", "--world", "w", "list", "--folder", "b"},
+           {"backup", "prune", "--folder", "b", "--keep-daily", "-1"},
+           {"backup", "list", "--folder", "b", "prune", "--folder", "b"}}) {
+    CAPTURE(line);
+    CHECK(parse(line).exit_code == 2);
+  }
 }
 
 TEST_CASE("losses are accepted on request", "[server_options]") {

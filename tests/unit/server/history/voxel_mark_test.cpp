@@ -81,6 +81,30 @@ TEST_CASE("a masked record counts if it changes what the generator made", "[hist
   CHECK(world.mark(high) == 0);
 }
 
+TEST_CASE("the cost of a mark is bounded, wherever its record is", "[history]") {
+  MarkedWorld world;
+  const VoxelPos busy{1, 5, 1}, quiet{200, 5, 200};
+  world.add({SetVoxel{quiet}, {}, 2});
+  world.add({SetVoxel{busy}, {}, 2});
+  const EditDescriptor in_vain{SetVoxel{busy}, {MaskKind::only_empty, kEmpty}, 1};
+  SECTION("it is behind many records in vain") {
+    while (world.records.size() < 6'000) world.add(in_vain);
+    world.write();
+    CHECK(world.mark(busy) == 2);
+  }
+  SECTION("it is behind too many of them") {
+    while (world.records.size() < 20'000) world.add(in_vain);
+    world.write();
+    CHECK(world.mark(busy) == 0);
+    const auto found = read_voxel_mark(*world.store, *world.generator, busy);
+    REQUIRE(found.has_value());
+    CHECK(found->cost >= kVoxelMarkCostMax);
+    CHECK(found->cost < kVoxelMarkCostMax + kVoxelMarkCostMax / 8);
+  }
+  CHECK(world.mark(quiet) == 1);
+  CHECK(read_voxel_mark(*world.store, *world.generator, quiet)->cost < 10);
+}
+
 TEST_CASE("the mark of each voxel is that of a plain walk over the log", "[history][property]") {
   MarkedWorld world;
   SplitMix64 rng(11);

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/core/epoch_branch.hpp"
+#include "common/tiles/tile_rules.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/repair/repair_bench.hpp"
 
@@ -98,6 +99,116 @@ TEST_CASE("base chunks come from a backup", "[repair][sqlite]") {
   INFO(bench.printed);
   CHECK_THAT(bench.printed, Contains("rows of base from the backup"));
   CHECK(bench.has_same_ground(*RepairBench::opened(bench.to)));
+}
+
+TEST_CASE_METHOD(RepairBench, "lost watermarks come back from the log", "[repair][sqlite]") {
+  const auto marks = opened(world)->high_waters();
+  REQUIRE(raw_sql(world_file(), "DELETE FROM player_instance") == "");
+  REQUIRE(repair_to(to) == "");
+  INFO(printed);
+  CHECK_THAT(printed, !Contains("lost "));
+  const auto repaired = opened(to)->high_waters();
+  REQUIRE((marks.has_value() && repaired.has_value()));
+  REQUIRE(repaired->size() == marks->size());
+  for (std::size_t i = 0; i < marks->size(); ++i) {
+    CHECK((*repaired)[i].author == (*marks)[i].author);
+    CHECK((*repaired)[i].instance == (*marks)[i].instance);
+    CHECK((*repaired)[i].resolved == (*marks)[i].resolved);
+  }
+}
+
+TEST_CASE_METHOD(RepairBench, "a world remembers that watermarks are lost with their records",
+                 "[repair][sqlite]") {
+  REQUIRE(raw_sql(world_file(), "DELETE FROM edit_log WHERE author = 2") == "");
+  SECTION("rows are missing") {
+    REQUIRE(raw_sql(world_file(), "DELETE FROM player_instance WHERE author = 2") == "");
+    REQUIRE(repair_to(to) == "");
+    CHECK_THAT(printed, Contains(" that meta counts. Edits of clients that run since before"));
+  }
+  SECTION("the count of the rows is lost") {
+    REQUIRE(raw_sql(world_file(), "DELETE FROM meta WHERE key = 'player_instance_fold'") == "");
+    REQUIRE(repair_to(to) == "");
+    CHECK_THAT(printed, Contains("meta key=player_instance_fold is lost. Edits of clients"));
+  }
+  const auto marks = opened(to)->high_waters();
+  REQUIRE(marks.has_value());
+  const auto lost = std::ranges::find_if(*marks, is_of_lost_watermarks);
+  REQUIRE(lost != marks->end());
+  CHECK(lost->resolved == 3);
+  CHECK(lost->last_us == kRepairTimeUs);
+}
+
+TEST_CASE_METHOD(RepairBench, "a world whose watermarks are all there refuses no client",
+                 "[repair][sqlite]") {
+  REQUIRE(raw_sql(world_file(), "DELETE FROM edit_log WHERE author = 2") == "");
+  REQUIRE(repair_to(to) == "");
+  const auto marks = opened(to)->high_waters();
+  REQUIRE(marks.has_value());
+  CHECK(std::ranges::none_of(*marks, is_of_lost_watermarks));
+}
+
+TEST_CASE_METHOD(RepairBench, "a lost material table is the built-in one if all rows fit it",
+                 "[repair][sqlite]") {
+  REQUIRE(raw_sql(world_file(), "DELETE FROM meta WHERE key = 'materials'") == "");
+  SECTION("they fit") {
+    REQUIRE(repair_to(to) == "");
+    INFO(printed);
+    CHECK_THAT(printed, Contains("taken       meta key=materials: the built-in table"));
+    CHECK_THAT(printed,
+               Contains("with " + std::to_string(sample_meta().materials.size()) + " rows"));
+    CHECK_THAT(printed, !Contains("lost "));
+    const auto store = opened(to);
+    CHECK(store->meta().materials == sample_meta().materials);
+    CHECK(store->materials()->size() == sample_meta().materials.size() + 1);
+    CHECK(records_of(*store) == records);
+    CHECK(has_same_ground(*store));
+  }
+  SECTION("an edit has a material that nothing in the log adds") {
+    REQUIRE(raw_sql(world_file(), "DELETE FROM edit_log WHERE seq = 60") == "");
+    const std::string size = std::to_string(sample_meta().materials.size());
+    CHECK_THAT(repair_to(to), Contains("meta key=materials: is lost") &&
+                                  Contains("edit_log seq=70 has material " + size +
+                                           ", and the table has " + size) &&
+                                  Contains("Give the folder of an older backup with --from"));
+    CHECK_FALSE(fs::exists(to));
+    CHECK(repair_to(to, backup) == "");
+  }
+}
+
+TEST_CASE("a lost material table of an imported world is not guessed", "[repair][sqlite]") {
+  TempFolder folder;
+  {
+    SplitMix64 rng(5);
+    const auto store = *create_world(folder / "world", sample_meta());
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
+        {{0, {0, 0, 0}}, sample_chunk(rng, {})}};
+    REQUIRE(store->save_base(chunks).has_value());
+  }
+  REQUIRE(raw_sql(folder / "world/world.sqlite", "DELETE FROM meta WHERE key = 'materials'") == "");
+  std::ostringstream out;
+  const auto done =
+      repair({folder / "world", folder / "new", "", false, false}, kRepairTimeUs, out);
+  REQUIRE_FALSE(done.has_value());
+  CHECK_THAT(done.error(), Contains("the world was imported, and its table came with it"));
+}
+
+TEST_CASE_METHOD(RepairBench, "a repaired world has no tiles, and takes new ones",
+                 "[repair][sqlite]") {
+  SplitMix64 rng(8);
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> tiles = {
+      {{1, {0, 0, 0}}, sample_chunk(rng, {1, kRepairBackup})}};
+  {
+    auto store = open_world(world, StoreAccess::read_write);
+    REQUIRE(store.has_value());
+    REQUIRE((*store)->save_tiles(tiles, kTileRules).has_value());
+    REQUIRE((*store)->tile_keys(kTileRules)->size() == 1);
+  }
+  REQUIRE(repair_to(to) == "");
+  CHECK(raw_sql(to + "/world.sqlite", "SELECT count(*) FROM tile") == "0");
+  auto store = open_world(to, StoreAccess::read_write);
+  REQUIRE(store.has_value());
+  REQUIRE((*store)->save_tiles(tiles, kTileRules).has_value());
+  CHECK((*store)->tile_keys(kTileRules)->size() == 1);
 }
 
 TEST_CASE_METHOD(RepairBench, "a page of zeros costs the rows in it alone", "[repair][sqlite]") {

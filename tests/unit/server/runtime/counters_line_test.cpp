@@ -53,6 +53,13 @@ TEST_CASE("the line of counters shows each part of the server", "[server]") {
   }
   CHECK(line.find('\n') == std::string::npos);
   CHECK(line.find("wal_bytes") == std::string::npos);  // not known
+  CHECK(line.find("backup_") == std::string::npos);
+  RuntimeCounters with_backups{11, 12, 13, 14, 15};
+  with_backups.backups = BackupState{};
+  with_backups.backups->failures = 16;
+  const std::string longer = counters_line(world, net, log, with_backups);
+  CHECK(longer.find(" row_faults=15 backup_next_s=0 backup_failures=16 edit_wait_count=0 ") !=
+        std::string::npos);
 }
 
 }  // namespace

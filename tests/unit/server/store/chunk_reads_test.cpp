@@ -1,7 +1,7 @@
 // Reads of chunks: what is checked of a row, and reads that are joined to one moment.
 #include <catch2/catch.hpp>
 
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
 #include "server/store/read_span.hpp"
 #include "server/store/store.hpp"

@@ -1,13 +1,17 @@
 // Shapes of the materials of a world on disk: from record to record, compacted, copied, and the
 // format.
+#include <array>
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "common/sqlite/sqlite_file.hpp"
 #include "common/tiles/tile_rules.hpp"
 #include "server/store/copy_stored_world.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/sqlite_backend.hpp"
+#include "server/store/world_folder.hpp"
 #include "server/store/world_schema.hpp"
+#include "tests/support/core/temp_folder.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/support/sql/temp_place.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -184,6 +188,60 @@ TEST_CASE("a world is of format 8 from its first shape on, and so is a copy",
     CHECK(store->check().has_value());
   }
   CHECK(stored_format(copy) == std::to_string(kWorldFormatOfShapes));
+}
+
+TEST_CASE("a world is of format 8 from its first pattern of plants on",
+          "[store][materials][shapes]") {
+  TempPlace place;
+  const auto format_with = [&](const std::string& name, MaterialPattern pattern) {
+    auto store = *create_world(place / name, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    const auto next = static_cast<Material>(store->meta().materials.size());
+    MaterialRow row{"plant", {9, 9, 9, 255}};
+    row.look = MaterialLook{1, 2, 3, 4, pattern};
+    EditRecord added = record_of_shapes(1, {});
+    added.edit = materials_edit({next, {row}});
+    REQUIRE(store->append({}, std::vector{added}).has_value());
+    CHECK((*store->materials())[next].look == row.look);
+    store.reset();
+    return stored_format(place / name);
+  };
+  CHECK(format_with("plain", MaterialPattern::weave) == std::to_string(kWorldFormat));
+  CHECK(format_with("blades", MaterialPattern::blades) == std::to_string(kWorldFormatOfShapes));
+  CHECK(format_with("foliage", MaterialPattern::foliage) == std::to_string(kWorldFormatOfShapes));
+
+  WorldMeta meta = sample_meta();
+  MaterialInfo flower{"flower", {9, 9, 9, 255}, Visibility::opaque, std::nullopt};
+  flower.look = MaterialLook{1, 2, 3, 4, MaterialPattern::flower};
+  REQUIRE(meta.materials.add(flower).has_value());
+  REQUIRE((*create_world(place / "created", meta))->raise_epoch().has_value());
+  {
+    const auto store = *open_world(place / "created", StoreAccess::read_write);
+    CHECK(*store->materials() == meta.materials);
+    CHECK(store->check().has_value());
+  }
+  CHECK(stored_format(place / "created") == std::to_string(kWorldFormatOfShapes));
+}
+
+TEST_CASE("a file of a new world gives patterns of plants to crossed planes alone",
+          "[store][materials][shapes]") {
+  const TempFolder folder;
+  const std::string file = folder / "materials.toml";
+  std::ofstream(file) << "[[material]]\nname = \"air\"\nvisibility = \"empty\"\n";
+  const std::array<const char*, 3> shapes = {"shape = \"plant\"", "shape = \"slab\"", ""};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    std::ofstream(file, std::ios::app)
+        << "[[material]]\nname = \"m" << i
+        << "\"\ncolour = \"#80ff20\"\nlook = { pattern = \"flower\" }\n"
+        << shapes[i] << "\n";
+  }
+  const auto table = read_materials(file, "flat");
+  INFO((table ? std::string() : table.error()));
+  REQUIRE(table.has_value());
+  REQUIRE(table->size() == 4);
+  CHECK((*table)[1].look->pattern == MaterialPattern::flower);
+  CHECK((*table)[2].look->pattern == MaterialPattern::none);
+  CHECK((*table)[3].look->pattern == MaterialPattern::none);
 }
 
 TEST_CASE("a world that is created with shapes is of format 8", "[store][materials][shapes]") {

@@ -63,7 +63,8 @@ bool has(const std::string& text, const std::string& part) {
 constexpr const char* kAllOfWalLost =
     "ends at seq=12, but seq=20 was durable: the edits seq=13 to seq=20 are lost, because "
     "world.sqlite-wal was lost or damaged, or an older world.sqlite was put back. Put the world "
-    "back from a backup, or start the server once with --accept-losses";
+    "back from a backup, or run `runstone-server repair`, or start the server once with "
+    "--accept-losses";
 
 }  // namespace
 

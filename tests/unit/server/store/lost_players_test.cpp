@@ -44,8 +44,8 @@ constexpr const char* kOneWatermark =
 /// Returns the cause in the error about a table that does not have the rows that `meta` counts.
 std::string wrong_rows(const std::string& counts) {
   return "rows vanished, appeared or changed: " + counts +
-         ". Put the world back from a backup, or start the server once with "
-         "--accept-losses";
+         ". Put the world back from a backup, or run `runstone-server repair`, or start the server "
+         "once with --accept-losses";
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ std::string counted(Store& store) {
 }
 
 constexpr const char* kWayOn =
-    "Put the world back from a backup, or start the server once with --accept-losses";
+    "Put the world back from a backup, or run `runstone-server repair`, or start the server once "
+    "with --accept-losses";
 
 struct LostRows {
   const char* rows;

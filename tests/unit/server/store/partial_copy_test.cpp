@@ -59,7 +59,7 @@ std::string part_error(const std::string& folder, const std::string& missing, Se
          missing + " missing. The log ends here at seq=" + std::to_string(last) +
          ", and it is not known how many later edits are lost. Put world.sqlite, world.sqlite-wal "
          "and world.durable of one moment together into the folder. Put the world back from a "
-         "backup, or start the server once with --accept-losses";
+         "backup, or run `runstone-server repair`, or start the server once with --accept-losses";
 }
 
 constexpr const char* kBothMissing = "world.sqlite-wal and world.durable are";

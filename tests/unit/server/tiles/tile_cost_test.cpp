@@ -10,7 +10,7 @@
 
 #include "common/os/steady_clock.hpp"
 #include "common/tiles/tile_rules.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/tiles/tile_world.hpp"
 

@@ -177,6 +177,8 @@ inline ServerStatus full_server_status(const std::string& more_lines = "") {
                     [](std::span<std::uint8_t> out) { std::fill(out.begin(), out.end(), 9); });
   RuntimeCounters runtime;
   runtime.health = {7'000'000, 1'000, 2'000, 3'000, 4'000, 5};
+  runtime.backups = BackupState{};
+  runtime.backups->last.emplace();
   runtime.durable_waits.add(3'000, 4);
   runtime.durable_waits.add(2'000'000);
   const std::string line = counters_line(world, NetCounters(), {}, runtime);

@@ -103,6 +103,24 @@ TEST_CASE("new materials with shapes are two records, and the rows come first",
   CHECK(place(kKindOf<MaterialsAdded>) < place(kKindOf<ShapesGiven>));
 }
 
+TEST_CASE("a new material has the pattern of plants if it gets their shape",
+          "[world][materials][shapes]") {
+  ShapeBench bench;
+  const MaterialLook blades{1, 2, 3, 4, MaterialPattern::blades};
+  std::vector<MaterialRow> rows = {row_with("slab", kSlab), row_with("stone", {}),
+                                   row_with("plant", kPlant)};
+  for (MaterialRow& row : rows) row.look = blades;
+  REQUIRE(bench.server.changes().add_materials(rows, bench.now()).has_value());
+  const MaterialLook plain{1, 2, 3, 4, MaterialPattern::none};
+  const std::vector<MaterialRow>& recorded =
+      added_materials_of(bench.environment.records[0].edit)->rows;
+  REQUIRE(recorded.size() == 3);
+  CHECK(recorded[0].look == plain);
+  CHECK(recorded[1].look == plain);
+  CHECK(recorded[2].look == blades);
+  CHECK(bench.server.order().materials()[kNew + 2].look == blades);
+}
+
 TEST_CASE("shapes that are given during a handshake follow session accepted",
           "[world][materials][shapes]") {
   ShapeBench bench;

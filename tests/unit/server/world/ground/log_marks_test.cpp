@@ -82,14 +82,64 @@ TEST_CASE("few requests for marks are read at a time, and of each session only t
   CHECK(bench.environment.mark_requests.size() == kLogMarkReadsMax);
   bench.ask(1, 2);
   bench.ask(1, 3);
-  bench.answer_one(FoundLogMarks{});
-  CHECK(bench.environment.mark_requests.back().second.request == 3);  // 2 was replaced
-  bench.server.disconnected(1);
-  while (!bench.environment.mark_requests.empty()) {
+  // The others have their turns before the session that was first.
+  for (SessionId session = 2; session <= 4; ++session) {
     bench.answer_one(FoundLogMarks{});
-    bench.tick();
+    REQUIRE(bench.environment.mark_requests.size() == 1);
+    CHECK(bench.environment.mark_requests[0].first == session);
   }
-  for (SessionId session = 2; session <= 4; ++session) CHECK(bench.answers(session).size() == 1);
+  bench.answer_one(FoundLogMarks{});
+  REQUIRE(bench.environment.mark_requests.size() == 1);
+  CHECK(bench.environment.mark_requests[0].first == 1);
+  CHECK(bench.environment.mark_requests[0].second.request == 3);  // 2 was replaced
+  bench.ask(2, 2);
+  bench.server.disconnected(1);
+  bench.answer_one(FoundLogMarks{});
+  REQUIRE(bench.environment.mark_requests.size() == 1);  // a session that has ended frees its place
+  bench.answer_one(FoundLogMarks{});
+  CHECK(bench.answers(2).size() == 2);
+  for (SessionId session = 3; session <= 4; ++session) CHECK(bench.answers(session).size() == 1);
+}
+
+TEST_CASE("a flood of requests for marks of voxels is limited and delays nobody else", "[world]") {
+  WorldConfig c = config();
+  c.view_interval_us = 50'000;
+  MarksBench bench(c);
+  for (SessionId session = 1; session <= 3; ++session)
+    bench.join_with(session, static_cast<std::uint8_t>(session),
+                    kFeatureLogMarks | kFeatureVoxelAuthors);
+  std::uint32_t asked = 0;
+  const auto flood = [&](SessionId session) {
+    for (int i = 0; i < 200; ++i)
+      bench.server.received(
+          session, LogMarksRequest{++asked, 1, kSequenceMax, 1, VoxelPos{1, -2, 3}}, bench.now());
+  };
+  // Two sessions ask without an end for a voxel that costs much. Each read takes 60 ms.
+  FoundLogMarks dear;
+  dear.cost = 15'000;
+  std::map<SessionId, std::size_t> reads;
+  for (int round = 0; round < 100; ++round) {
+    flood(1);
+    flood(2);
+    if (round == 50) bench.ask(3, ++asked);
+    if (bench.environment.mark_requests.empty()) {
+      bench.tick(60'000);
+      continue;
+    }
+    CHECK(bench.environment.mark_requests.size() == 1);
+    ++reads[bench.environment.mark_requests[0].first];
+    bench.tick(60'000);
+    bench.answer_one(dear);
+    if (round == 51) CHECK(bench.answers(3).size() == 1);
+  }
+  // 6 s, and a pause of 0.6 s behind each read.
+  for (const SessionId session : {SessionId{1}, SessionId{2}}) {
+    CHECK(reads[session] > 5);
+    CHECK(reads[session] <= 10);
+    CHECK(bench.environment.charged[session] >= reads[session] * kVoxelMarkBytes);
+    CHECK(bench.environment.charged[session] <= (reads[session] + 1) * kVoxelMarkBytes);
+  }
+  CHECK(reads[3] == 1);
 }
 
 TEST_CASE("the requests of a session for marks take effect as far apart as its views", "[world]") {

@@ -66,5 +66,28 @@ TEST_CASE("a removed author leaves nothing, and others stay", "[world]") {
   CHECK(marks.of(3, 7) == 4);
 }
 
+TEST_CASE("after a repair that lost watermarks, instances of before are refused", "[world]") {
+  OperationWatermarks marks;
+  const std::vector<HighWater> rows = {
+      {1, 7, 4, 900}, {1, 8, 2, 1'100}, lost_watermarks(2, 1'000), {3, 7, 5, 800}};
+  marks.restore(rows);
+  CHECK(marks.of(1, 7) == 4);
+  CHECK(marks.may_be_applied({1, 7, 5}));        // its watermark may be too low
+  CHECK_FALSE(marks.may_be_applied({1, 8, 3}));  // it began after the repair
+  CHECK(marks.may_be_applied({2, 9, 6}));        // it has no watermark, and edited before
+  CHECK_FALSE(marks.may_be_applied({2, 9, 1}));
+  CHECK_FALSE(marks.may_be_applied({3, 7, 6}));  // the author is newer than the repair
+  marks.raise({2, 9, 1});
+  CHECK_FALSE(marks.may_be_applied({2, 9, 2}));
+  CHECK_FALSE(marks.may_be_applied({0, 5, 9}));  // the server
+}
+
+TEST_CASE("without a repair no instance is refused", "[world]") {
+  OperationWatermarks marks;
+  marks.restore(std::vector<HighWater>{{1, 7, 4, 900}});
+  CHECK_FALSE(marks.may_be_applied({1, 7, 5}));
+  CHECK_FALSE(marks.may_be_applied({1, 9, 6}));
+}
+
 }  // namespace
 }  // namespace runstone

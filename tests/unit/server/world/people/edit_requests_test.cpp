@@ -302,4 +302,42 @@ TEST_CASE("one step decides about a bounded number of waiting edits", "[world]")
   CHECK(bench.environment.records.size() == 300);
 }
 
+TEST_CASE("a pending edit of before a repair that lost its watermark is not applied twice",
+          "[world]") {
+  WorldStart start;
+  for (AuthorId author = 1; author <= 2; ++author)
+    start.players.push_back({author,
+                             key_pair_of(seed_of(static_cast<std::uint8_t>(author))).public_key,
+                             "player" + std::to_string(author)});
+  start.author_max = 2;
+  start.resolved = {lost_watermarks(2, 1), {2, 5, 3, 0}};
+  ActionBench bench(config(), start);
+  const auto refused_twice = [&](SessionId session, ClientSequence seq) {
+    bench.server.received(session, EditRequest{seq, 0, {SetVoxel{{1, 1, 1}}, {}, 1}}, bench.now());
+    bench.server.received(session, EditRequest{seq + 1, 0, {SetVoxel{{2, 1, 1}}, {}, 1}},
+                          bench.now());
+    const auto rejects = bench.rejects(session);
+    REQUIRE(rejects.size() == 2);
+    for (const Reject& reject : rejects) {
+      CHECK(reject.reason == RejectReason::not_permitted);
+      CHECK(reject.detail ==
+            "this world was repaired and does not know which of your edits it has: start your "
+            "client again");
+    }
+  };
+  bench.join(1, 1, 4);  // a client without a watermark, whose pending edits are 9 and 10
+  refused_twice(1, 9);
+  bench.join(2, 2, 5);  // one whose watermark may be too low
+  refused_twice(2, 4);
+  bench.join(3, 1, 6);  // the same player, who has started the client again
+  for (ClientSequence seq = 1; seq <= 2; ++seq)
+    bench.server.received(3, EditRequest{seq, 0, {SetVoxel{{3, 1, 1}}, {}, 1}}, bench.now());
+  bench.join(4, 3, 7);  // a player who is newer than the repair
+  bench.server.received(4, EditRequest{5, 0, {SetVoxel{{4, 1, 1}}, {}, 1}}, bench.now());
+  bench.server.commit(bench.now());
+  CHECK(bench.rejects(3).empty());
+  CHECK(bench.rejects(4).empty());
+  CHECK(bench.environment.records.size() == 3);
+}
+
 }  // namespace runstone::test

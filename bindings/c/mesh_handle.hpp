@@ -1,0 +1,14 @@
+// The object behind runstone_mesh: quads, and the states of the chunks that they were made of.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "bindings/c/handle.hpp"
+#include "common/mesh/chunk_mesh.hpp"
+
+struct runstone_mesh : runstone::c_interface::Handle<0x6873656d> {
+  runstone::ChunkMesh quads;
+  // Revisions; 0: none, or the mesh has to be made anew.
+  std::uint64_t of_chunk = 0, of_visibility = 0;
+  std::array<std::uint64_t, runstone::kDirectionCount> of_neighbours{};
+};

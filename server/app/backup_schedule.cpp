@@ -1,0 +1,201 @@
+#include "server/app/backup_schedule.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/os/low_priority.hpp"
+#include "server/backup/backup_folder.hpp"
+#include "server/backup/world_backup.hpp"
+#include "server/runtime/logging.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr TimeUs kSecondUs = 1'000'000;
+constexpr TimeUs kRetryUs = 600 * kSecondUs;  // after a failure, if backups are not more frequent
+/// The wall clock is read so often while the thread waits: it may be set, and machines sleep.
+constexpr std::chrono::seconds kLookAgain{20};
+
+TimeUs wall_now_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
+
+std::uint64_t seconds_of(TimeUs us) {
+  return us <= 0 ? 0 : static_cast<std::uint64_t>(us / kSecondUs);
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+/// Returns the line that says why the program failed, without the name of the program.
+std::string reason_in(const std::string& text) {
+  const std::vector<std::string> lines = lines_of(text);
+  std::string line = lines.empty() ? "the program said nothing" : lines.back();
+  constexpr std::string_view kProgram = "runstone-server: ";
+  if (line.starts_with(kProgram)) line.erase(0, kProgram.size());
+  return line;
+}
+
+}  // namespace
+
+Result<std::optional<BackupPlan>, std::string> backup_plan_of(const ServerConfig& config) {
+  if (config.backup_every_s == 0) return std::optional<BackupPlan>();
+  const std::string setting = "backup_every = " + config_text(config, "backup_every");
+  if (!config.store.empty())
+    return failure(setting + ": the world is in PostgreSQL: back it up with pg_dump");
+  if (config.backup_folder.empty())
+    return failure(setting + ": backup_folder is missing: name a folder for the backups");
+  const std::string& folder = config.backup_folder;
+  if (is_inside(folder, config.world) || is_inside(config.world, folder)) {
+    return failure("backup_folder = " + folder + ": the folder of the world, " + config.world +
+                   ", and that of the backups must not lie in each other");
+  }
+  return std::optional(
+      BackupPlan{config.world,
+                 folder,
+                 config.backup_every_s,
+                 {config.backup_keep_hourly, config.backup_keep_daily, config.backup_keep_weekly}});
+}
+
+TimeUs next_backup_us(std::optional<TimeUs> last_us, TimeUs now_us, TimeUs every_us) {
+  return last_us ? std::min(*last_us, now_us) + every_us : now_us;
+}
+
+BackupSchedule::BackupSchedule(BackupPlan plan) : plan_(std::move(plan)), child_(plan_.world) {}
+
+void BackupSchedule::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void BackupSchedule::stop() {
+  {
+    const std::lock_guard guard(mutex_);
+    stopping_ = true;
+  }
+  child_.stop();
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+BackupState BackupSchedule::state() const {
+  const TimeUs now_us = wall_now_us();
+  const std::lock_guard guard(mutex_);
+  BackupState state;
+  if (last_) {
+    state.last = last_->backup;
+    state.last->age_s = seconds_of(now_us - last_->taken_us);
+  }
+  state.next_s = seconds_of(next_us_ - now_us);
+  state.is_under_way = is_under_way_;
+  state.failures = failures_;
+  state.failure = failure_;
+  return state;
+}
+
+void BackupSchedule::run() {
+  lower_priority();
+  lower_disk_priority();
+  if (const auto world = open_world(plan_.world, StoreAccess::read_only))
+    world_ = (*world)->meta().world_id;
+  read_last();
+  while (await_due()) {
+    const auto outcome = make_backup();
+    if (!outcome) return;
+    read_last();
+    note(*outcome);
+  }
+}
+
+void BackupSchedule::read_last() {
+  std::optional<Last> last;
+  const auto folder = BackupFolder::open(plan_.folder);
+  if (folder && folder->world() == world_) {
+    if (const auto found = folder->find("")) {
+      last = Last{{found->name, 0, found->manifest.bytes(), found->manifest.new_bytes},
+                  found->taken_us};
+    }
+  }
+  const TimeUs now_us = wall_now_us();
+  const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
+  const std::lock_guard guard(mutex_);
+  last_ = std::move(last);
+  next_us_ =
+      next_backup_us(last_ ? std::optional(last_->taken_us) : std::nullopt, now_us, every_us);
+}
+
+bool BackupSchedule::await_due() {
+  const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const TimeUs now_us = wall_now_us();
+    next_us_ = std::min(next_us_, now_us + every_us);  // the clock may have been set back
+    if (stopping_ || next_us_ <= now_us) return !stopping_;
+    const auto rest = std::chrono::microseconds(next_us_ - now_us);
+    changed_.wait_for(lock, std::min<std::chrono::microseconds>(rest, kLookAgain));
+  }
+}
+
+std::optional<BackupSchedule::Outcome> BackupSchedule::make_backup() {
+  folder_lock_ = FileLock();  // the disk may be another one than last time
+  auto taken = FileLock::take(plan_.folder + "/server.lock");
+  if (!taken && taken.error().is_held)
+    return Outcome{plan_.folder + ": another server makes its backups there", false};
+  if (taken) folder_lock_ = *std::move(taken);
+  {
+    const std::lock_guard guard(mutex_);
+    is_under_way_ = true;
+    outcome_.reset();
+  }
+  child_.run(
+      {"backup", "add", "--world", plan_.world, "--folder", plan_.folder, "--keep-hourly",
+       std::to_string(plan_.policy.hourly), "--keep-daily", std::to_string(plan_.policy.daily),
+       "--keep-weekly", std::to_string(plan_.policy.weekly)},
+      [this](const CommandAnswer& answer) {
+        const std::lock_guard guard(mutex_);
+        outcome_ = Outcome{answer.text, answer.is_ok};
+        changed_.notify_all();
+      });
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return stopping_ || outcome_; });
+  is_under_way_ = false;
+  if (stopping_) return std::nullopt;
+  return outcome_;
+}
+
+void BackupSchedule::note(const Outcome& outcome) {
+  const std::lock_guard guard(mutex_);
+  if (outcome.is_ok) {
+    failures_ = 0;
+    failure_.clear();
+    if (last_) {
+      logger("store").info("BACKED UP: name={} bytes={} new_bytes={} folder={}", last_->backup.name,
+                           last_->backup.bytes, last_->backup.new_bytes, plan_.folder);
+    }
+    for (const std::string& line : lines_of(outcome.text)) {
+      if (line.starts_with("warning")) logger("store").warn("backup: {}", line);
+    }
+    return;
+  }
+  ++failures_;
+  failure_ = reason_in(outcome.text);
+  const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
+  const TimeUs retry_us = std::min(every_us, kRetryUs);
+  next_us_ = wall_now_us() + retry_us;
+  logger("store").error(
+      "BACKUP FAILED: {}: the server goes on, and tries again in {} s; older backups stay",
+      failure_, retry_us / kSecondUs);
+}
+
+}  // namespace runstone

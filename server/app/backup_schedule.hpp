@@ -1,0 +1,88 @@
+// BackupSchedule: makes the backups of a running server by itself. Each one is a program of its own
+// (BackupChild): `runstone-server backup add`, which has low priority. A failure is logged and counted,
+// and ends nothing: the next attempt follows.
+// Threads: state() from any thread, the rest from the one that owns the object.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+#include "common/os/file_lock.hpp"
+#include "server/admin/backup_state.hpp"
+#include "server/admin/server_config.hpp"
+#include "server/app/backup_child.hpp"
+#include "server/backup/backup_policy.hpp"
+#include "server/store/world_info.hpp"
+
+namespace runstone {
+
+struct BackupPlan {
+  std::string world, folder;
+  std::uint64_t every_s = 0;  // above 0
+  BackupPolicy policy;
+  friend bool operator==(const BackupPlan&, const BackupPlan&) = default;
+};
+
+/// Returns the plan that the settings give, or nullopt if `backup_every` is 0. Fails if there is no
+/// folder, if it lies in the world's folder or the other way round, or if the world is in a database.
+/// The error is one line.
+Result<std::optional<BackupPlan>, std::string> backup_plan_of(const ServerConfig& config);
+
+/// Returns when the next backup is due (UTC): `every_us` after the last one, or `now_us` if there is
+/// none. A last one that is after `now_us` counts as one of now, because a clock was set back.
+TimeUs next_backup_us(std::optional<TimeUs> last_us, TimeUs now_us, TimeUs every_us);
+
+class BackupSchedule {
+ public:
+  explicit BackupSchedule(BackupPlan plan);
+  /// Calls stop().
+  ~BackupSchedule() { stop(); }
+  BackupSchedule(const BackupSchedule&) = delete;
+  BackupSchedule& operator=(const BackupSchedule&) = delete;
+
+  /// Starts the thread. Call it once, when the server runs the world.
+  void start();
+  /// Ends a backup that is under way, and the thread. It may be called again.
+  void stop();
+  BackupState state() const;
+
+ private:
+  struct Last {
+    LastBackup backup;
+    TimeUs taken_us = 0;
+  };
+  struct Outcome {
+    std::string text;
+    bool is_ok = false;
+  };
+
+  void run();
+  /// Reads the newest backup of the folder, if its backups are of this world.
+  void read_last();
+  /// Waits until the next backup is due. Returns false if the thread must end.
+  bool await_due();
+  /// Runs the program. Returns nullopt if the thread must end.
+  std::optional<Outcome> make_backup();
+  void note(const Outcome& outcome);
+
+  const BackupPlan plan_;
+  BackupChild child_;
+  FileLock folder_lock_;      // of the thread: no other server makes backups in the folder
+  WorldId world_{};           // of the thread
+  mutable std::mutex mutex_;  // a leaf: guards the members below
+  std::condition_variable changed_;
+  std::optional<Last> last_;
+  std::optional<Outcome> outcome_;  // of the backup under way
+  TimeUs next_us_ = 0;
+  bool is_under_way_ = false, stopping_ = false;
+  std::uint64_t failures_ = 0;
+  std::string failure_;
+  std::thread thread_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,45 @@
+#include "server/backup/file_blocks.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+namespace runstone {
+namespace {
+
+constexpr std::string_view kCopyLock = "partial.lock";
+
+}  // namespace
+
+Result<BackedUpFile, std::string> cut_file(const std::filesystem::path& path,
+                                           const TakeBlock& take) {
+  BackedUpFile file;
+  file.name = path.filename().string();
+  std::ifstream in(path, std::ios::binary);
+  Bytes block(kBlockBytes);
+  while (in) {
+    in.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()));
+    const auto count = static_cast<std::size_t>(in.gcount());
+    if (count == 0) break;
+    const auto hash = take(ByteView(block).first(count));
+    if (!hash) return failure(hash.error());
+    file.blocks.push_back(*hash);
+    file.bytes += count;
+  }
+  if (!in.eof()) return failure(path.string() + ": cannot be read");
+  return file;
+}
+
+Result<std::vector<std::filesystem::path>, std::string> files_of_copy(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().filename() != kCopyLock) files.push_back(entry.path());
+  }
+  if (error) return failure(folder + ": cannot be read: " + error.message());
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace runstone
