@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/core/version.hpp"
+#include "server/admin/amount_text.hpp"
 #include "server/admin/command_table.hpp"
 #include "tests/support/core/text_contains.hpp"
 #include "tests/unit/server/admin/command_bench.hpp"
