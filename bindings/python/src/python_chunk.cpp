@@ -7,7 +7,7 @@
 #include "common/edits/apply/checked_edits.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
-#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/chunks/chunk_codec.hpp"
 #include "python_edit.hpp"
 #include "python_mesh.hpp"
 
