@@ -15,10 +15,10 @@
 namespace runstone::test {
 namespace {
 
-using Voxels = std::set<VoxelPos>;
+using VoxelSet = std::set<VoxelPos>;
 
-Voxels voxels_in(const BoxSet& set) {
-  Voxels out;
+VoxelSet voxels_in(const BoxSet& set) {
+  VoxelSet out;
   for (const VoxelBox& box : set.boxes()) {
     CHECK_FALSE(box.empty());
     for (VoxelPos v = box.min; v.z < box.max.z; ++v.z) {
@@ -40,8 +40,8 @@ VoxelBox random_box(SplitMix64& rng) {
 }
 
 /// Returns the voxels moved by some steps.
-Voxels moved_voxels(const Voxels& from, Direction direction, std::int32_t steps) {
-  Voxels out;
+VoxelSet moved_voxels(const VoxelSet& from, Direction direction, std::int32_t steps) {
+  VoxelSet out;
   for (const VoxelPos v : from) out.insert(moved(v, direction, steps));
   return out;
 }
@@ -53,11 +53,11 @@ TEST_CASE("sets of boxes are what sets of voxels are", "[tools][property]") {
   for (int round = 0; round < 40; ++round) {
     CAPTURE(Catch::rngSeed(), round);
     BoxSet set(random_box(rng));
-    Voxels wanted = voxels_in(set);
+    VoxelSet wanted = voxels_in(set);
     for (int step = 0; step < 6; ++step) {
       const BoxSet box(random_box(rng));
-      const Voxels other = voxels_in(box);
-      Voxels now;
+      const VoxelSet other = voxels_in(box);
+      VoxelSet now;
       std::optional<BoxSet> made;
       if (const std::uint32_t kind = rng.below(4); kind <= 1) {
         made = BoxSet::united(set, box);
@@ -70,7 +70,7 @@ TEST_CASE("sets of boxes are what sets of voxels are", "[tools][property]") {
       } else {
         BoxSet both = box;
         if (auto more = BoxSet::united(box, BoxSet(random_box(rng)))) both = *more;
-        const Voxels all = voxels_in(both);
+        const VoxelSet all = voxels_in(both);
         made = BoxSet::common(set, both);
         std::set_intersection(wanted.begin(), wanted.end(), all.begin(), all.end(),
                               std::inserter(now, now.end()));
@@ -84,10 +84,10 @@ TEST_CASE("sets of boxes are what sets of voxels are", "[tools][property]") {
     const auto direction = static_cast<Direction>(rng.below(kDirectionCount));
     const std::int32_t steps = rng.between(0, 5);
     CHECK(voxels_in(set.moved(direction, steps)) == moved_voxels(wanted, direction, steps));
-    Voxels more = wanted, less = wanted;
+    VoxelSet more = wanted, less = wanted;
     for (std::int32_t i = 1; i <= steps; ++i) {
-      const Voxels ahead = moved_voxels(wanted, direction, i),
-                   behind = moved_voxels(wanted, direction, -i);
+      const VoxelSet ahead = moved_voxels(wanted, direction, i),
+                     behind = moved_voxels(wanted, direction, -i);
       more.insert(ahead.begin(), ahead.end());
       std::erase_if(less, [&](VoxelPos v) { return !behind.contains(v); });
     }
@@ -138,7 +138,7 @@ TEST_CASE("the commands of a selection of several boxes change exactly its voxel
     for (int i = 0; i < 3; ++i)
       REQUIRE(
           box.select(random_box(rng), rng.below(3) == 0 ? SelectMode::remove : SelectMode::add));
-    const Voxels selected = voxels_in(box.selected_boxes());
+    const VoxelSet selected = voxels_in(box.selected_boxes());
     if (selected.empty()) {
       CHECK(box.fill(bench.replica, 2).error() == "nothing is selected");
       continue;
@@ -221,7 +221,7 @@ TEST_CASE("a held key adds a chosen box to the selection or removes it", "[tools
   CHECK_FALSE(box.selected_box());
   box.hold_select_mode(SelectMode::remove);
   choose({2, -1, 0}, {8, -1, 0});
-  CHECK(voxels_in(box.selected_boxes()) == Voxels{{0, -1, 0}, {1, -1, 0}, {9, -1, 0}});
+  CHECK(voxels_in(box.selected_boxes()) == VoxelSet{{0, -1, 0}, {1, -1, 0}, {9, -1, 0}});
   box.hold_select_mode(std::nullopt);
   REQUIRE(box.set_parameter("mode", 1));
   choose({5, -1, 0}, {5, -1, 0});
