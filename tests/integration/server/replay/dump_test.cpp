@@ -17,7 +17,7 @@ using namespace runstone::test;
 
 namespace {
 
-std::string file_text(const std::string& file) {
+std::string npy_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -51,7 +51,7 @@ TEST_CASE("a dump has the head of numpy and the ids of the box, in parts of any 
   REQUIRE(done.code == 0);
   CHECK(done.out.find("20 x 51 x 20580 elements of type uint16") != std::string::npos);
 
-  const std::string bytes = file_text(file);
+  const std::string bytes = npy_text(file);
   REQUIRE(bytes.size() > 128);
   CHECK(bytes.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
   const std::size_t head =
