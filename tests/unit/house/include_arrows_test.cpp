@@ -172,6 +172,9 @@ std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
        {"bindings", "common", "protocol", "server", "client", "bench", "tests"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const auto extension = entry.path().extension();
+      // The module of Python is no room: it is built only with RUNSTONE_PYTHON.
+      if (below(entry.path().lexically_relative(root).generic_string(), "bindings/python"))
+        continue;
       if (!entry.is_regular_file() ||
           (extension != ".hpp" && extension != ".cpp" && extension != ".h"))
         continue;

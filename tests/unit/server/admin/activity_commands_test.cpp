@@ -52,7 +52,7 @@ TEST_CASE("activity as a table says what it has left out", "[admin][activity]") 
   report.players_found = 1;
   const std::string table = activity_table(report, players, {1});
   CHECK(contains(table,
-                 "\n         5          60   1 min 1 s  1970-01-01T00:00:00Z  "
+                 "\n         5          60    1 min 1 s  1970-01-01T00:00:00Z  "
                  "1970-01-01T00:00:01Z  ana #1 "));
   CHECK(table.ends_with(", is here"));
   report.players_found = 4;

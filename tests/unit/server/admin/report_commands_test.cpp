@@ -85,7 +85,7 @@ TEST_CASE("a muted player, the console and an empty text report nothing", "[admi
   ReportBench bench;
   CHECK(contains(bench.give({}, "report help").text, "players report"));
   CHECK(contains(bench.player(kBuilder, "report").text, "report: the text is refused"));
-  CHECK(contains(bench.player(kBuilder, "report \x01").text, "a command is printable"));
+  CHECK(contains(bench.player(kBuilder, "report \x01").text, "report: the text is refused"));
   const Restrict mute{RestrictionKind::mute, ReportBench::key_of(kBuilder), 0, ""};
   REQUIRE(bench.bench.server.changes().change_rights(mute, {}, 0, bench.bench.now()));
   CHECK(contains(bench.player(kBuilder, "report he digs").text, "you are muted"));

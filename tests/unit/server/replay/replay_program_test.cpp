@@ -77,9 +77,10 @@ TEST_CASE("a subcommand that does not exist, or lacks its world, exits with 2",
           "[server][replay]") {
   const ReplayOutcome unknown = run_replay({"verfy", "--world", "w"});
   CHECK(unknown.code == 2);
-  CHECK(unknown.err ==
-        "runstone-replay: \"verfy\" is no subcommand: verify, diff, copy, export, import, play, "
-        "timelapse, keyframes, bench\n");
+  CHECK(
+      unknown.err ==
+      "runstone-replay: \"verfy\" is no subcommand: verify, diff, copy, export, dump, import, play, "
+      "timelapse, keyframes, bench\n");
   const ReplayOutcome extra = run_replay({"verify", "--world", "w", "--fast", "now"});
   CHECK(extra.code == 2);
   CHECK(extra.err == "runstone-replay: unexpected argument \"--fast\"\n");

@@ -58,7 +58,7 @@ TEST_CASE("the line of counters shows each part of the server", "[server]") {
   with_backups.backups = BackupState{};
   with_backups.backups->failures = 16;
   const std::string longer = counters_line(world, net, log, with_backups);
-  CHECK(longer.find(" row_faults=15 backup_next_s=0 backup_failures=16 edit_wait_count=0 ") !=
+  CHECK(longer.find(" row_faults=15 backup_next_s=0 backup_failures=16 uptime_s=0 ") !=
         std::string::npos);
 }
 

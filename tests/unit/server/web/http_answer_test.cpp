@@ -152,7 +152,7 @@ TEST_CASE("the metrics are those of server and gateway", "[web]") {
   CHECK(has(metrics, "\nrunstone_seq 9120\n"));
   CHECK(has(metrics, "\nrunstone_up 1\n"));
   CHECK(has(metrics, "\nrunstone_web_frames_in 77\n"));
-  CHECK(has(metrics, "# TYPE runstone_seq untyped"));
+  CHECK(has(metrics, "# TYPE runstone_seq gauge"));
 }
 
 TEST_CASE("paths come from a table, so no path leads out of it", "[web]") {
