@@ -84,6 +84,11 @@ class AuthorFinder {
   Result<void, std::string> find_pattern(const std::string& option, const std::string& pattern,
                                          Authors& out) {
     const std::string quoted = "\"" + pattern + "\"";
+    // Owners keep names with a "*" from before (name_reference.hpp).
+    if (const std::string called = players_.list_of_named(pattern); !called.empty()) {
+      return failure(option + quoted + ": that is also the name of a player; it may mean " +
+                     called + ", or the pattern (say \"" + pattern + "*\")");
+    }
     Authors found;
     for (const PublicKey& key : players_.matching(pattern)) {
       if (const auto number = players_.author_of(key)) found.insert(*number);

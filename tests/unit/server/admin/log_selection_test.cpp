@@ -92,6 +92,19 @@ TEST_CASE("a pattern that selects everybody, and a filter without a limit, must 
   CHECK(night.give("log author *").is_ok);  // a list changes nothing
 }
 
+TEST_CASE("a pattern that is the name of a player from before is refused with words for both",
+          "[admin][rollback]") {
+  TwelveKeys night;
+  night.bench.environment.players.push_back({99, PublicKey{7}, "player1*"});
+  night.set(kHost, {1, 1, 2}, 2);
+  night.write_log();
+  const CommandAnswer both = night.give("rollback preview author player1*");
+  CHECK_FALSE(both.is_ok);
+  CHECK(contains(both.text, "author \"player1*\": that is also the name of a player; it may mean"));
+  CHECK(contains(both.text, "(say #99), or the pattern (say \"player1**\")"));
+  CHECK(contains(night.give("rollback preview author player1**").text, "would take back 10 edits"));
+}
+
 TEST_CASE("words about players that mean nobody are refused by name", "[admin][rollback]") {
   TwelveKeys night;
   CHECK(night.give("rollback preview author grief*").text ==
