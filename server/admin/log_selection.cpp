@@ -36,12 +36,27 @@ std::vector<std::string> player_words_of(const CommandFilter& filter) {
   return words;
 }
 
+/// The patterns of a filter, in the order in which they are looked up.
+std::vector<std::string> patterns_of(const CommandFilter& filter) {
+  std::vector<std::string> patterns;
+  for (const auto* authors : {&filter.authors, &filter.not_authors}) {
+    for (const CommandFilter::Author& author : *authors) {
+      if (is_name_pattern(author.name)) patterns.push_back(author.name);
+    }
+  }
+  return patterns;
+}
+
 /// Finds the authors that the words of a filter mean. A failure is the end of a refusal.
 class AuthorFinder {
  public:
-  AuthorFinder(const CommandCall& call, const CommandFilter& filter, const KnownPlayers& players,
-               const CommandCall::Keys& keys)
-      : call_(call), filter_(filter), players_(players), key_(keys.begin()) {}
+  AuthorFinder(const CommandCall& call, const CommandFilter& filter,
+               const CommandCall::FoundPlayers& found)
+      : call_(call),
+        filter_(filter),
+        players_(*found.known),
+        key_(found.keys.begin()),
+        match_(found.matches.begin()) {}
 
   /// Finds all of them, each word once.
   Result<void, std::string> find() {
@@ -89,10 +104,7 @@ class AuthorFinder {
       return failure(option + quoted + ": that is also the name of a player; it may mean " +
                      called + ", or the pattern (say \"" + pattern + "*\")");
     }
-    Authors found;
-    for (const PublicKey& key : players_.matching(pattern)) {
-      if (const auto number = players_.author_of(key)) found.insert(*number);
-    }
+    const Authors& found = *match_++;
     if (found.empty()) return failure(option + quoted + ": nobody of such a name is known here");
     const bool is_all = found.size() > 1 && found.size() == players_.author_count();
     if (&out == &wanted_ && (is_all || found.size() > kPatternPlayersMax)) {
@@ -132,6 +144,7 @@ class AuthorFinder {
   const CommandFilter& filter_;
   const KnownPlayers& players_;
   CommandCall::Keys::const_iterator key_;
+  std::vector<Authors>::const_iterator match_;  // of the next pattern
   Authors wanted_, excluded_;
   std::optional<std::string> hazard_;
 };
@@ -178,10 +191,10 @@ void with_selection(const CommandCall& call, const CommandFilter& filter,
                 ": the words about players (author, not author, joined-after, address-of) "
                 "leave nobody");
   };
-  call.with_players(
-      player_words_of(filter),
-      [=](const KnownPlayers& players, const CommandCall::Keys& keys) {
-        AuthorFinder finder(call, filter, players, keys);
+  call.find_players(
+      player_words_of(filter), patterns_of(filter),
+      [=](const CommandCall::FoundPlayers& players) {
+        AuthorFinder finder(call, filter, players);
         if (const auto found = finder.find(); !found)
           return call.refuse(command + " " + found.error());
         std::optional<std::string> hazard = finder.hazard();
