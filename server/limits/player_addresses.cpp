@@ -8,13 +8,12 @@ namespace {
 
 bool is_ipv4(AddressBlock address) { return static_cast<std::uint64_t>(address) >> 32 == 0xffff; }
 
-/// Returns true for the addresses of sessions that come from the host itself.
+}  // namespace
+
 bool is_of_host(AddressBlock address) {
   const auto v4 = static_cast<std::uint32_t>(static_cast<std::uint64_t>(address));
   return address == AddressBlock{} || (is_ipv4(address) && v4 >> 24 == 127);
 }
-
-}  // namespace
 
 void PlayerAddresses::note(const PublicKey& key, AddressBlock address,
                            const HasAuthor& has_author) {

@@ -17,6 +17,10 @@
 
 namespace runstone {
 
+/// Returns true for sessions that have no address of their own: it is not known, or it is the loopback
+/// of the host (127.0.0.0/8, ::1), from where a proxy brings players of everywhere.
+bool is_of_host(AddressBlock address);
+
 class PlayerAddresses {
  public:
   static constexpr std::size_t kAddressesMax = 4'096;
@@ -27,9 +31,7 @@ class PlayerAddresses {
   /// Must not be empty.
   using HasAuthor = std::function<bool(const PublicKey&)>;
 
-  /// Notes that a player has joined from an address. The block of zeros, that of the loopback of
-  /// IPv6 and of sessions without an address, is left out, and so is 127.0.0.0/8: who comes from there
-  /// comes through a program of the host. Cost: O(log addresses + keys of the address); if a limit is
+  /// Notes that a player has joined from an address, unless is_of_host() holds for it. Cost: O(log addresses + keys of the address); if a limit is
   /// passed, also up to kAddressesOfRangeMax * kKeysOfAddressMax calls of `has_author`.
   void note(const PublicKey& key, AddressBlock address, const HasAuthor& has_author);
   /// Returns the players who came from any address from which this one came, the player included,
