@@ -113,8 +113,8 @@ struct CommandCall {
     std::vector<std::set<AuthorId>> matches;
   };
   /// Looks up players on a worker. Calls `go_on` with what is known, with the key of each word, and
-  /// with the authors of each pattern (is_name_pattern). Refuses the command if a word means nobody or
-  /// several players, with a text that begins with `before`.
+  /// with the authors of each pattern (is_name_pattern). Refuses the command if a word means nobody
+  /// or several players, with a text that begins with `before`.
   void find_players(const std::vector<std::string>& words, const std::vector<std::string>& patterns,
                     std::function<void(const FoundPlayers&)> go_on,
                     const std::string& before = "") const;

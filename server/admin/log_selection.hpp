@@ -1,5 +1,5 @@
-// From the filter of a command to the filter of the log: players are looked up, patterns of names and
-// groups of players become author numbers.
+// From the filter of a command to the filter of the log: players are looked up, patterns of names
+// and groups of players become author numbers.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -11,12 +11,13 @@
 
 namespace runstone {
 
-/// A pattern that selects more players than this, or everybody who has built, must be confirmed where
-/// `must_confirm` is set.
+/// A pattern that selects more players than this, or everybody who has built, must be confirmed
+/// where `must_confirm` is set.
 inline constexpr std::size_t kPatternPlayersMax = 64;
-/// An `address-of` that selects more players than this, or everybody who has built, must be confirmed
-/// there, too. So many players who share an address are hardly one person: they come through a proxy, a
-/// provider or a school. It is below the players that are kept of an address (PlayerAddresses).
+/// An `address-of` that selects more players than this, or everybody who has built, must be
+/// confirmed there, too. So many players who share an address are hardly one person: they come
+/// through a proxy, a provider or a school. It is below the players that are kept of an address
+/// (PlayerAddresses).
 inline constexpr std::size_t kSharedPlayersMax = 16;
 
 /// Calls `go_on` with the filter for the log. Players are looked up on a worker, as in all commands.

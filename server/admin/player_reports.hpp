@@ -1,5 +1,5 @@
-// PlayerReports: what players have reported to the moderators, until somebody closes it. It is kept in
-// memory alone: a restart, and another owner of the world, begin without reports.
+// PlayerReports: what players have reported to the moderators, until somebody closes it. It is kept
+// in memory alone: a restart, and another owner of the world, begin without reports.
 // Memory: bounded by the limits below. Thread: one. Times are arguments.
 #pragma once
 #include <cstddef>
@@ -35,10 +35,10 @@ class PlayerReports {
   static constexpr std::size_t kOpenOfRangeMax = 8;  // of one address_range_of()
   static constexpr TimeUs kPauseUs = 10'000'000;     // between two reports of one player
 
-  /// Adds a report and gives it a number. Fails, with a sentence for the player, if the player has too
-  /// many open ones or has reported within the pause, or if there are too many from the range of
-  /// addresses or in all. Addresses for which is_of_host() holds have no bound of their own. `steady_us`: the
-  /// steady clock. Cost: O(reports).
+  /// Adds a report and gives it a number. Fails, with a sentence for the player, if the player has
+  /// too many open ones or has reported within the pause, or if there are too many from the range
+  /// of addresses or in all. Addresses for which is_of_host() holds have no bound of their own.
+  /// `steady_us`: the steady clock. Cost: O(reports).
   Result<std::uint64_t, std::string> add(PlayerReport report, TimeUs steady_us);
   /// Removes a report and returns it, or nullopt if no open one has the number. Cost: O(reports).
   std::optional<PlayerReport> close(std::uint64_t number);
