@@ -41,14 +41,15 @@ void show_activity(const CommandCall& call, const ActivityCommand& command) {
   call.world().commit(call.now);
   const std::vector<std::string> words =
       command.by.empty() ? std::vector<std::string>() : std::vector{command.by};
-  call.with_players(
-      words,
-      [call, command](const KnownPlayers& known, const CommandCall::Keys& keys) {
+  call.find_players(
+      words, {},
+      [call, command](const CommandCall::FoundPlayers& found) {
+        const KnownPlayers& known = *found.known;
         SelectionFilter filter;
         filter.from_us = command.from_us.value_or(filter.from_us);
         filter.until_us = command.until_us.value_or(filter.until_us);
         filter.last = call.world().order().durable();
-        for (const PublicKey& key : keys) {
+        for (const PublicKey& key : found.keys) {
           const auto author = known.author_of(key);
           if (!author) {
             return call.refuse("activity by \"" + command.by + "\": " + known.text_of(key) +
@@ -59,13 +60,13 @@ void show_activity(const CommandCall& call, const ActivityCommand& command) {
         std::set<AuthorId> present;
         for (const OnlinePlayer& player : call.world().people().online())
           present.insert(player.author);
-        const auto players = std::make_shared<const KnownPlayers>(known);
         call.on_worker(
             "activity: ",
             [filter, limit = command.limit](WorldReader& reader) {
               return read_activity(reader, filter, limit);
             },
-            [call, players, present, is_csv = command.is_csv](const ActivityReport& report) {
+            [call, players = found.known, present,
+             is_csv = command.is_csv](const ActivityReport& report) {
               call.answer((is_csv ? activity_csv : activity_table)(report, *players, present));
             });
       },

@@ -40,16 +40,10 @@ KnownPlayers::Sources sources_of(const WorldServer& world, const std::vector<std
   return sources;
 }
 
-/// The facts that a worker finds out about the players that a command means.
-struct PlayerLookUp {
-  KnownPlayers players;
-  std::vector<PublicKey> keys;
-};
-
-Result<PlayerLookUp, std::string> look_up_players(WorldReader& reader,
-                                                  KnownPlayers::Sources sources,
-                                                  const std::vector<std::string>& words) {
-  PlayerLookUp found;
+Result<CommandCall::FoundPlayers, std::string> look_up_players(
+    WorldReader& reader, KnownPlayers::Sources sources, const std::vector<std::string>& words,
+    const std::vector<std::string>& patterns) {
+  CommandCall::FoundPlayers found;
   auto stored = reader.players();
   auto used = reader.player_names();
   auto claims = reader.name_claims();
@@ -59,11 +53,17 @@ Result<PlayerLookUp, std::string> look_up_players(WorldReader& reader,
   sources.stored = *std::move(stored);
   sources.used = *std::move(used);
   sources.claims = *std::move(claims);
-  found.players = KnownPlayers(sources);
+  found.known = std::make_shared<const KnownPlayers>(sources);
   for (const std::string& word : words) {
-    const auto key = found.players.find(word);
+    const auto key = found.known->find(word);
     if (!key) return failure("\"" + word + "\": " + key.error());
     found.keys.push_back(*key);
+  }
+  for (const std::string& pattern : patterns) {
+    std::set<AuthorId>& authors = found.matches.emplace_back();
+    for (const PublicKey& key : found.known->matching(pattern)) {
+      if (const auto author = found.known->author_of(key)) authors.insert(*author);
+    }
   }
   return found;
 }
@@ -141,15 +141,25 @@ void CommandCall::answer_when_durable(Sequence record, std::uint64_t name_change
        now.steady_us + kAnswerUnsavedUs, false, name_change});
 }
 
-void CommandCall::with_players(const std::vector<std::string>& words,
-                               std::function<void(const KnownPlayers&, const Keys&)> go_on,
+void CommandCall::find_players(const std::vector<std::string>& words,
+                               const std::vector<std::string>& patterns,
+                               std::function<void(const FoundPlayers&)> go_on,
                                const std::string& before) const {
   on_worker(
       before,
-      [sources = sources_of(world(), words), words](WorldReader& reader) {
-        return look_up_players(reader, sources, words);
+      [sources = sources_of(world(), words), words, patterns](WorldReader& reader) {
+        return look_up_players(reader, sources, words, patterns);
       },
-      [go_on = std::move(go_on)](const PlayerLookUp& found) { go_on(found.players, found.keys); });
+      std::move(go_on));
+}
+
+void CommandCall::with_players(const std::vector<std::string>& words,
+                               std::function<void(const KnownPlayers&, const Keys&)> go_on,
+                               const std::string& before) const {
+  find_players(
+      words, {},
+      [go_on = std::move(go_on)](const FoundPlayers& found) { go_on(*found.known, found.keys); },
+      before);
 }
 
 bool CommandCall::refuse_unless_confirmed(const std::optional<std::string>& hazard) const {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -104,9 +105,20 @@ struct CommandCall {
   void on_worker(const std::string& name, Work work, GoOn go_on) const;
 
   using Keys = std::vector<PublicKey>;  // one for each word that was looked up
-  /// Looks up players on a worker. Calls `go_on` with what is known and with the key of each word,
-  /// or refuses the command if a word means nobody or several players, with a text that begins with
-  /// `before`.
+  /// What a worker finds out about players.
+  struct FoundPlayers {
+    std::shared_ptr<const KnownPlayers> known;  // never null
+    Keys keys;
+    /// For each pattern of names the author numbers of the players whom it selects.
+    std::vector<std::set<AuthorId>> matches;
+  };
+  /// Looks up players on a worker. Calls `go_on` with what is known, with the key of each word, and
+  /// with the authors of each pattern (is_name_pattern). Refuses the command if a word means nobody
+  /// or several players, with a text that begins with `before`.
+  void find_players(const std::vector<std::string>& words, const std::vector<std::string>& patterns,
+                    std::function<void(const FoundPlayers&)> go_on,
+                    const std::string& before = "") const;
+  /// Does what find_players() does, without patterns.
   void with_players(const std::vector<std::string>& words,
                     std::function<void(const KnownPlayers&, const Keys&)> go_on,
                     const std::string& before = "") const;

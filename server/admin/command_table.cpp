@@ -29,7 +29,8 @@ constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME, author #N or author NA* (several: any of them), not author NAME,\n"
     "  address-of NAME, joined-after 2d, "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import|rights|materials|library|clock|textures";
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z,\n"
+    "  cause player|console|rollback|undo|redo|import|rights|materials|library|clock|textures|gap";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
   if (rule.is_local) return is_local;

@@ -15,9 +15,6 @@
 
 namespace runstone {
 
-/// Returns true if a word for a player is a pattern of names: it contains a "*".
-inline bool is_name_pattern(const std::string& word) { return word.find('*') != std::string::npos; }
-
 class KnownPlayers {
  public:
   /// Where players are known from.

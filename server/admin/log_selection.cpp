@@ -36,12 +36,48 @@ std::vector<std::string> player_words_of(const CommandFilter& filter) {
   return words;
 }
 
+/// The patterns of a filter, in the order in which they are looked up.
+std::vector<std::string> patterns_of(const CommandFilter& filter) {
+  std::vector<std::string> patterns;
+  for (const auto* authors : {&filter.authors, &filter.not_authors}) {
+    for (const CommandFilter::Author& author : *authors) {
+      if (is_name_pattern(author.name)) patterns.push_back(author.name);
+    }
+  }
+  return patterns;
+}
+
+/// Returns the words of a hazard: what selects how many players.
+std::string selects_text(const std::string& what, bool is_all, std::size_t players) {
+  return what + " selects " + (is_all ? "everybody who has built, " : "") +
+         counted(players, "player");
+}
+
+/// The players who joined after a time.
+struct FreshPlayers {
+  std::vector<AuthorId> authors;  // ascending
+  std::size_t built = 0;          // how many players have built in all
+};
+
+/// Finds them. Blocks on the disk.
+StoreResult<FreshPlayers> read_fresh(WorldReader& reader, TimeUs since_us) {
+  auto authors = joined_after(reader, since_us);
+  if (!authors) return failure(authors.error());
+  const auto players = reader.players();
+  if (!players) return failure(players.error());
+  return FreshPlayers{*std::move(authors), players->size()};
+}
+
 /// Finds the authors that the words of a filter mean. A failure is the end of a refusal.
 class AuthorFinder {
  public:
-  AuthorFinder(const CommandCall& call, const CommandFilter& filter, const KnownPlayers& players,
-               const CommandCall::Keys& keys)
-      : call_(call), filter_(filter), players_(players), key_(keys.begin()) {}
+  AuthorFinder(const CommandCall& call, const CommandFilter& filter,
+               const CommandCall::FoundPlayers& found)
+      : call_(call),
+        filter_(filter),
+        players_(*found.known),
+        key_(found.keys.begin()),
+        match_(found.matches.begin()) {}
 
   /// Finds all of them, each word once.
   Result<void, std::string> find() {
@@ -56,7 +92,7 @@ class AuthorFinder {
   }
   const Authors& wanted() const { return wanted_; }
   const Authors& excluded() const { return excluded_; }
-  /// Returns why the patterns select suspiciously many players, or nullopt.
+  /// Returns why the words select suspiciously many players, or nullopt.
   const std::optional<std::string>& hazard() const { return hazard_; }
 
  private:
@@ -84,16 +120,14 @@ class AuthorFinder {
   Result<void, std::string> find_pattern(const std::string& option, const std::string& pattern,
                                          Authors& out) {
     const std::string quoted = "\"" + pattern + "\"";
-    Authors found;
-    for (const PublicKey& key : players_.matching(pattern)) {
-      if (const auto number = players_.author_of(key)) found.insert(*number);
+    // Owners keep names with a "*" from before (name_reference.hpp).
+    if (const std::string called = players_.list_of_named(pattern); !called.empty()) {
+      return failure(option + quoted + ": that is also the name of a player; it may mean " +
+                     called + ", or the pattern (say \"" + pattern + "*\")");
     }
+    const Authors& found = *match_++;
     if (found.empty()) return failure(option + quoted + ": nobody of such a name is known here");
-    const bool is_all = found.size() > 1 && found.size() == players_.author_count();
-    if (&out == &wanted_ && (is_all || found.size() > kPatternPlayersMax)) {
-      hazard_ = quoted + " selects " + (is_all ? "everybody who has built, " : "") +
-                counted(found.size(), "player");
-    }
+    if (&out == &wanted_) warn_of_many(quoted, found, kPatternPlayersMax);
     report_group(option + quoted, found);
     out.insert(found.begin(), found.end());
     return {};
@@ -106,10 +140,18 @@ class AuthorFinder {
     for (const PublicKey& each : keys) {
       if (const auto number = players_.author_of(each)) found.insert(*number);
     }
-    report_group("address-of \"" + word + "\"", found);
+    const std::string quoted = "address-of \"" + word + "\"";
+    warn_of_many(quoted, found, kSharedPlayersMax);
+    report_group(quoted, found);
     wanted_.insert(found.begin(), found.end());
   }
-  /// Shows whom a word means, because nobody has typed these names.
+  /// Sets the hazard, unless there is one, if a word selects everybody or more than `players_max`.
+  void warn_of_many(const std::string& word, const Authors& authors, std::size_t players_max) {
+    const bool is_all = authors.size() > 1 && authors.size() == players_.author_count();
+    if (hazard_ || (!is_all && authors.size() <= players_max)) return;
+    hazard_ = selects_text(word, is_all, authors.size());
+  }
+  /// Shows whom a word means, because the line does not name these players.
   void report_group(const std::string& word, const Authors& authors) {
     constexpr std::size_t kListed = 20;
     std::string text = word + ": " + counted(authors.size(), "player");
@@ -127,6 +169,7 @@ class AuthorFinder {
   const CommandFilter& filter_;
   const KnownPlayers& players_;
   CommandCall::Keys::const_iterator key_;
+  std::vector<Authors>::const_iterator match_;  // of the next pattern
   Authors wanted_, excluded_;
   std::optional<std::string> hazard_;
 };
@@ -173,10 +216,10 @@ void with_selection(const CommandCall& call, const CommandFilter& filter,
                 ": the words about players (author, not author, joined-after, address-of) "
                 "leave nobody");
   };
-  call.with_players(
-      player_words_of(filter),
-      [=](const KnownPlayers& players, const CommandCall::Keys& keys) {
-        AuthorFinder finder(call, filter, players, keys);
+  call.find_players(
+      player_words_of(filter), patterns_of(filter),
+      [=](const CommandCall::FoundPlayers& players) {
+        AuthorFinder finder(call, filter, players);
         if (const auto found = finder.find(); !found)
           return call.refuse(command + " " + found.error());
         std::optional<std::string> hazard = finder.hazard();
@@ -193,14 +236,18 @@ void with_selection(const CommandCall& call, const CommandFilter& filter,
         call.on_worker(
             command + ": ",
             [since_us = *filter.joined_after_us](WorldReader& reader) {
-              return joined_after(reader, since_us);
+              return read_fresh(reader, since_us);
             },
-            [=, wanted = finder.wanted(),
-             excluded = finder.excluded()](const std::vector<AuthorId>& fresh) {
+            [=, wanted = finder.wanted(), excluded = finder.excluded()](const FreshPlayers& fresh) {
               SelectionFilter chosen = out;
-              if (!choose_authors(wanted, excluded, Authors(fresh.begin(), fresh.end()),
+              if (!choose_authors(wanted, excluded,
+                                  Authors(fresh.authors.begin(), fresh.authors.end()),
                                   names_players, chosen))
                 return nobody_left();
+              std::optional<std::string> everybody;
+              if (chosen.authors.size() > 1 && chosen.authors.size() == fresh.built)
+                everybody = selects_text("joined-after", true, fresh.built);
+              if (must_confirm && call.refuse_unless_confirmed(everybody)) return;
               go_on(chosen);
             });
       },

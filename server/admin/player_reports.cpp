@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/limits/player_addresses.hpp"
+
 namespace runstone {
 
 Result<std::uint64_t, std::string> PlayerReports::add(PlayerReport report, TimeUs steady_us) {
@@ -16,6 +18,13 @@ Result<std::uint64_t, std::string> PlayerReports::add(PlayerReport report, TimeU
   if (of_player >= kOpenOfPlayerMax) {
     return failure("you have " + std::to_string(of_player) +
                    " open reports: wait until a moderator closes one");
+  }
+  const auto is_near = [&](const PlayerReport& other) {
+    return !is_of_host(other.from) && address_range_of(other.from) == address_range_of(report.from);
+  };
+  if (static_cast<std::size_t>(std::ranges::count_if(open_, is_near)) >= kOpenOfRangeMax) {
+    return failure("there are " + std::to_string(kOpenOfRangeMax) +
+                   " open reports from your range of addresses: wait until a moderator closes one");
   }
   if (open_.size() >= kOpenMax)
     return failure("there are " + std::to_string(open_.size()) +

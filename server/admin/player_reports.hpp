@@ -1,5 +1,5 @@
-// PlayerReports: what players have reported to the moderators, until somebody closes it. It is kept in
-// memory alone: a restart, and another owner of the world, begin without reports.
+// PlayerReports: what players have reported to the moderators, until somebody closes it. It is kept
+// in memory alone: a restart, and another owner of the world, begin without reports.
 // Memory: bounded by the limits below. Thread: one. Times are arguments.
 #pragma once
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "common/core/address_block.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/public_key.hpp"
@@ -19,9 +20,10 @@ namespace runstone {
 struct PlayerReport {
   std::uint64_t number = 0;  // from 1, in the order of the reports
   PublicKey key{};
-  std::string who;     // name, author number and fingerprint, as they were
-  TimeUs time_us = 0;  // UTC
-  VoxelPos at;         // where the player was
+  AddressBlock from{};  // of the player's session; never written or shown
+  std::string who;      // name, author number and fingerprint, as they were
+  TimeUs time_us = 0;   // UTC
+  VoxelPos at;          // where the player was
   std::string text;
 };
 
@@ -29,11 +31,14 @@ class PlayerReports {
  public:
   static constexpr std::size_t kOpenMax = 256;
   static constexpr std::size_t kOpenOfPlayerMax = 4;
-  static constexpr TimeUs kPauseUs = 10'000'000;  // between two reports of one player
+  // So that nobody closes the reports for all others with many keys.
+  static constexpr std::size_t kOpenOfRangeMax = 8;  // of one address_range_of()
+  static constexpr TimeUs kPauseUs = 10'000'000;     // between two reports of one player
 
-  /// Adds a report and gives it a number. Fails, with a sentence for the player, if the player has too
-  /// many open ones or has reported within the pause, or if there are too many in all. `steady_us`: the
-  /// steady clock. Cost: O(reports).
+  /// Adds a report and gives it a number. Fails, with a sentence for the player, if the player has
+  /// too many open ones or has reported within the pause, or if there are too many from the range
+  /// of addresses or in all. Addresses for which is_of_host() holds have no bound of their own.
+  /// `steady_us`: the steady clock. Cost: O(reports).
   Result<std::uint64_t, std::string> add(PlayerReport report, TimeUs steady_us);
   /// Removes a report and returns it, or nullopt if no open one has the number. Cost: O(reports).
   std::optional<PlayerReport> close(std::uint64_t number);

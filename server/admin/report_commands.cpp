@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,7 @@ void take_report(const CommandCall& call, const std::string& text) {
   if (player == online.end()) return call.refuse("report: you are not here any more");
   PlayerReport report;
   report.key = key;
+  report.from = player->from;
   report.who = player->name + " #" + std::to_string(player->author) + " " + key_fingerprint(key);
   report.time_us = call.rights_time();
   report.at = {static_cast<std::int32_t>(std::floor(player->at.x)),
@@ -69,20 +71,30 @@ void list_reports(const CommandCall& call) {
   call.answer(text.empty() ? "no report is open" : text);
 }
 
-Result<std::uint64_t, std::string> parse_close(WordReader& reader) {
-  const auto number = static_cast<std::uint64_t>(
-      reader.number("reports close", 1, std::numeric_limits<std::int64_t>::max()));
-  reader.expect_end("reports close N");
-  return reader.result(number);
+using ReportNumbers = std::set<std::uint64_t>;
+
+Result<ReportNumbers, std::string> parse_close(WordReader& reader) {
+  ReportNumbers numbers;
+  do {
+    numbers.insert(static_cast<std::uint64_t>(
+        reader.number("reports close", 1, std::numeric_limits<std::int64_t>::max())));
+  } while (!reader.at_end());
+  return reader.result(numbers);
 }
 
-void close_report(const CommandCall& call, const std::uint64_t& number) {
-  const auto report = call.services.reports.close(number);
-  if (!report) {
+void close_reports(const CommandCall& call, const ReportNumbers& numbers) {
+  PlayerReports& reports = call.services.reports;
+  for (const std::uint64_t number : numbers) {
+    if (std::ranges::find(reports.open(), number, &PlayerReport::number) != reports.open().end())
+      continue;
     return call.refuse("reports close " + std::to_string(number) +
-                       ": no open report has that number (reports lists them)");
+                       ": no open report has that number (reports lists them)" +
+                       (numbers.size() > 1 ? "; none of these was closed" : ""));
   }
-  call.answer("closed: " + report_line(*report));
+  std::string text;
+  for (const std::uint64_t number : numbers)
+    text += (text.empty() ? "closed: " : "\nclosed: ") + report_line(*reports.close(number));
+  call.answer(text);
 }
 
 constexpr CommandRule kModerate = needs(Right::moderate);
@@ -95,8 +107,8 @@ constexpr std::array<CommandRow, 3> kReportRows = {{
      .takes_text = true},
     {"reports", kModerate, "reports                   what players have reported",
      alone<list_reports>()},
-    {"reports close", kModerate, "reports close N           remove a report from the list",
-     parsed_by<parse_close, close_report>()},
+    {"reports close", kModerate, "reports close N ...       remove reports from the list",
+     parsed_by<parse_close, close_reports>()},
 }};
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "server/admin/rights_change_text.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/history/edit_text.hpp"
+#include "server/names/name_reference.hpp"
 #include "server/rollback/count_text.hpp"
 #include "server/rollback/newest_actions.hpp"
 #include "server/rollback/preview_edits.hpp"
@@ -53,12 +55,26 @@ CommandFilter::Author author_of(const std::string& word, WordReader& reader) {
   return {word, std::nullopt};
 }
 
+/// Records an error if the last word for authors is one pattern too many.
+void check_patterns(WordReader& reader, const CommandFilter& filter, const std::string& word) {
+  const auto is_pattern = [](const CommandFilter::Author& author) {
+    return is_name_pattern(author.name);
+  };
+  const auto patterns = std::ranges::count_if(filter.authors, is_pattern) +
+                        std::ranges::count_if(filter.not_authors, is_pattern);
+  if (is_name_pattern(word) && patterns > static_cast<std::ptrdiff_t>(kPatternsMax)) {
+    reader.wrong("author \"" + word + "\": a line has at most " + std::to_string(kPatternsMax) +
+                 " patterns of names");
+  }
+}
+
 /// Reads one filter with its values. Returns false if the next word is no filter.
 bool take_filter(WordReader& reader, CommandFilter& filter) {
   const std::string word = reader.peek();
   if (word == "author") {
     reader.take("", "");
     filter.authors.push_back(author_of(reader.take(word, std::string(kPlayerWord) + ","), reader));
+    check_patterns(reader, filter, filter.authors.back().name);
   } else if (word == "not") {
     reader.take("", "");
     if (!reader.take_word("author")) {
@@ -68,6 +84,7 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
     }
     filter.not_authors.push_back(
         author_of(reader.take("not author", std::string(kPlayerWord) + ","), reader));
+    check_patterns(reader, filter, filter.not_authors.back().name);
   } else if (word == "address-of") {
     reader.take("", "");
     filter.address_of.push_back(reader.player(word));

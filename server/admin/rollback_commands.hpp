@@ -1,5 +1,6 @@
 // The commands that search the log and take the edits of others back: log and rollback.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -37,6 +38,9 @@ struct CommandFilter {
   }
   friend bool operator==(const CommandFilter&, const CommandFilter&) = default;
 };
+
+/// Patterns of names in one line at most. Each is compared with all names of the world.
+inline constexpr std::size_t kPatternsMax = 8;
 
 inline constexpr std::uint64_t kLogLinesMax = 1000;
 struct LogCommand {

@@ -45,6 +45,7 @@ std::optional<std::string> read_as_reference(std::string_view folded) {
   if (is_key(folded)) return "a key";
   if (is_address(folded)) return "an address";
   if (folded.starts_with(kRolePrefix)) return "a role";
+  if (is_name_pattern(folded)) return "a pattern of names";
   return std::nullopt;
 }
 

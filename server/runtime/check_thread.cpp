@@ -97,9 +97,10 @@ bool CheckThread::check_log(Store& reader) {
   if (!has_range) return false;
   if (!range) return true;
   Sequence skipped = 1;
+  bool is_ended = false, is_whole = true;
   std::uint64_t bytes = 0;
   Bytes descriptor;
-  for (Sequence next = range->first; next <= range->last.version.seq;) {
+  for (Sequence next = range->first; !is_ended && next <= range->last.version.seq;) {
     const bool goes_on = check([&] {
       const auto begun = CheckClock::now();
       const Sequence first = next;
@@ -111,6 +112,10 @@ bool CheckThread::check_log(Store& reader) {
             bytes += descriptor.size() + kLogRowBytes;
             return CheckClock::now() - begun < kCheckPartMax;
           });
+      if (!read) is_whole = false;
+      // Says nothing about the records behind it. They are read in the next round.
+      is_ended = !read && read.error().may_pass();
+      if (is_ended) return read;
       // The record behind the last sound one is damaged.
       if (next != first) skipped = 1;
       if (read && next == first) {
@@ -123,7 +128,7 @@ bool CheckThread::check_log(Store& reader) {
     });
     if (!goes_on) return false;
   }
-  log_bytes_ = static_cast<std::int64_t>(bytes);
+  if (is_whole) log_bytes_ = static_cast<std::int64_t>(bytes);
   return true;
 }
 

@@ -55,8 +55,9 @@ class CheckThread {
   /// Returns how many faults the last round found, or the present one if it has found more. Thread:
   /// any.
   std::uint64_t faults() const { return faults_.load(); }
-  /// Returns the bytes of the log of edits as the last round counted them, or nullopt before the
-  /// first one. A record counts as its descriptor and kLogRowBytes. Thread: any.
+  /// Returns the bytes of the log of edits, as the last round that read all of it counted them, or
+  /// nullopt before the first such round. A record counts as its descriptor and kLogRowBytes.
+  /// Thread: any.
   std::optional<std::uint64_t> log_bytes() const;
   /// About what a record takes besides its descriptor: columns and entries of indexes.
   static constexpr std::uint64_t kLogRowBytes = 64;

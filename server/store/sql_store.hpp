@@ -209,8 +209,8 @@ class SqlStore final : public Store {
   /// Marks the world as one with gaps if a record is one.
   StoreResult<void> mark_gaps(std::span<const EditRecord> records);
   /// Marks the world as one with shapes if a record gives some or has a look with a silhouette, and
-  /// records the rules of tiles that follow. Deletes the tiles if a voxel of such a material may be below one. Call it before the
-  /// records are inserted.
+  /// records the rules of tiles that follow. Deletes the tiles if a voxel of such a material may be
+  /// below one. Call it before the records are inserted.
   StoreResult<void> mark_shapes(std::span<const EditRecord> records);
   /// Notes the clock that the newest of these records sets, in the caller's transaction.
   StoreResult<void> set_clock(std::span<const EditRecord> records);

@@ -25,8 +25,8 @@ inline constexpr std::uint32_t kWorldFormatOfEras = 6;
 /// log may have records that programs of format 6 do not know.
 inline constexpr std::uint32_t kWorldFormatOfLibrary = 7;
 /// The format of a world in which a material has, or had once, a shape or a look with a silhouette
-/// (kShapesKey): its material table and its log have what programs of format 7 do not know. It has the tables of a library
-/// only if it has a library.
+/// (kShapesKey): its material table and its log have what programs of format 7 do not know. It has
+/// the tables of a library only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfShapes = 8;
 /// The format of a world to which a texture was given (kTexturesKey): its log has, or had, records
 /// that programs of format 8 do not know.

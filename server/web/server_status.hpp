@@ -45,10 +45,10 @@ struct EditWaits {
 std::vector<EditWaits> edit_waits(const ServerStatus& status, std::string_view name);
 
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
-/// are "counters NAME=VALUE NAME=VALUE ...", "version TEXT", "read_only WHY", "player NAME" and "place X
-/// Y Z NAME". Values that are
-/// no whole numbers and lines of other kinds are skipped, because a later server may have more of
-/// them.
+/// are "counters NAME=VALUE NAME=VALUE ...", "version TEXT", "read_only WHY", "player NAME" and
+/// "place X Y Z NAME".
+/// Values that are no whole numbers and lines of other kinds are skipped, because a later server may
+/// have more of them.
 Result<ServerStatus> parse_server_status(std::string_view answer);
 
 }  // namespace runstone

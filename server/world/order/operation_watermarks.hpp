@@ -9,9 +9,9 @@
 // A start restores the watermarks from the store, which knows accepted edits only. Rejections are
 // lost when the server stops.
 // A repaired world may lack watermarks. Then an operation above the known watermark may have been
-// applied before the repair. The instances of that time are refused, and those that began later are
-// not. An instance without a watermark began before the repair if its first operation is not 1,
-// because each client counts from 1.
+// applied before the repair. Those of the instances of that time are refused. An instance without a
+// watermark counts as one if its first operation is not 1, because each client counts from 1. So a
+// newer one counts, too, if it had only rejected edits when the server stopped.
 #pragma once
 #include <algorithm>
 #include <list>

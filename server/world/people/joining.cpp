@@ -283,7 +283,8 @@ void Joining::open(Session& session, const Clocks& now) {
   const ClientSequence resolved = world_.order.resolved(session.author, session.instance);
   const bool is_open = send_accepted(session, resolved, place, now);
   world_.visits.joined(session, goes_on, now);
-  world_.addresses.note(session.key, session.address);
+  world_.addresses.note(session.key, session.address,
+                        [&](const PublicKey& key) { return players.author_of(key).has_value(); });
   if (!is_open || goes_on) return;
   world_.presence.send_all_poses_to(session);
   world_.chat.send_recent(session, now);

@@ -30,7 +30,8 @@ People::People(const World& world, const WorldStart& start, const RandomBytes& r
 std::vector<OnlinePlayer> People::online() const {
   std::vector<OnlinePlayer> out;
   for (const Session* session : std::as_const(world_.sessions).open())
-    out.push_back({session->id, session->author, session->name, session->key, session->pose.at});
+    out.push_back({session->id, session->author, session->name, session->key, session->pose.at,
+                   session->address});
   return out;
 }
 

@@ -18,6 +18,7 @@ struct OnlinePlayer {
   std::string name;
   PublicKey key{};
   WorldPos at;
+  AddressBlock from{};  // of the session
 };
 
 class People {

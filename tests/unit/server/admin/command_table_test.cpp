@@ -101,6 +101,17 @@ TEST_CASE("a filter selects groups of players", "[admin][command]") {
   CHECK_FALSE(command_of("rollback preview address-of anyway").is_confirmed);
 }
 
+TEST_CASE("a line has a bounded number of patterns of names", "[admin][command]") {
+  std::string line = "rollback preview not author z*";
+  for (std::size_t i = 1; i < kPatternsMax; ++i) line += " author a*";
+  CHECK(mistake(line) == "no mistake");
+  CHECK(mistake(line + " author ana") == "no mistake");
+  CHECK(mistake(line + " author b*") ==
+        "rollback preview author \"b*\": a line has at most 8 patterns of names");
+  CHECK(mistake(line + " not author b*") ==
+        "rollback preview author \"b*\": a line has at most 8 patterns of names");
+}
+
 TEST_CASE("a rollback command takes one id", "[admin][command]") {
   CHECK(row_of("rollback apply p1") == "rollback apply");
   CHECK(parsed<std::string>("rollback apply p1") == "p1");

@@ -92,6 +92,57 @@ TEST_CASE("a pattern that selects everybody, and a filter without a limit, must 
   CHECK(night.give("log author *").is_ok);  // a list changes nothing
 }
 
+TEST_CASE("an address that very many players or all of them share must be confirmed",
+          "[admin][rollback]") {
+  TwelveKeys night;
+  for (std::uint8_t i = 0; i < 5; ++i) {
+    const auto who = static_cast<std::uint8_t>(30 + i);
+    night.come(who, address_block_v4(99));
+    night.set(who, {i, 4, 3}, 1);
+  }
+  night.write_log();
+  const CommandAnswer many = night.give("rollback preview address-of player14");
+  CHECK_FALSE(many.is_ok);
+  CHECK(contains(many.text, "address-of \"player14\" selects 17 players"));
+  CHECK(contains(night.give("rollback preview address-of player14 anyway").text,
+                 "would take back 17 edits"));
+  CHECK(night.give("log address-of player14").is_ok);
+
+  CommandBench proxy;
+  for (std::uint8_t who = 1; who <= 2; ++who) {
+    proxy.bench.join(who, who, 1, address_block_v4(99));
+    proxy.bench.view(who, View{1, {0, 0, 0}, 4, 1});
+    proxy.set(who, {who, 2, 3}, 1);
+  }
+  proxy.write_log();
+  CommandServices services{proxy.bench.server,
+                           proxy.service,
+                           proxy,
+                           proxy.placing,
+                           proxy.folder.path(),
+                           {},
+                           [](const PublicKey&) { return false; }};
+  give_command({services, {}, proxy.bench.now(), proxy.reply()},
+               "rollback preview address-of player1");
+  proxy.run_all();
+  CHECK_FALSE(proxy.answer().is_ok);
+  CHECK(contains(proxy.answer().text,
+                 "address-of \"player1\" selects everybody who has built, 2 players"));
+}
+
+TEST_CASE("a pattern that is the name of a player from before is refused with words for both",
+          "[admin][rollback]") {
+  TwelveKeys night;
+  night.bench.environment.players.push_back({99, PublicKey{7}, "player1*"});
+  night.set(kHost, {1, 1, 2}, 2);
+  night.write_log();
+  const CommandAnswer both = night.give("rollback preview author player1*");
+  CHECK_FALSE(both.is_ok);
+  CHECK(contains(both.text, "author \"player1*\": that is also the name of a player; it may mean"));
+  CHECK(contains(both.text, "(say #99), or the pattern (say \"player1**\")"));
+  CHECK(contains(night.give("rollback preview author player1**").text, "would take back 10 edits"));
+}
+
 TEST_CASE("words about players that mean nobody are refused by name", "[admin][rollback]") {
   TwelveKeys night;
   CHECK(night.give("rollback preview author grief*").text ==
@@ -105,7 +156,14 @@ TEST_CASE("words about players that mean nobody are refused by name", "[admin][r
 
 TEST_CASE("joined-after selects new players, and narrows a list of authors", "[admin][rollback]") {
   TwelveKeys night;
-  CHECK(contains(night.give("rollback preview joined-after 1w").text, "would take back 13 edits"));
+  const CommandAnswer all = night.give("rollback preview joined-after 1w");
+  CHECK_FALSE(all.is_ok);
+  CHECK(contains(all.text, "joined-after selects everybody who has built, 13 players"));
+  CHECK(contains(night.give("rollback preview joined-after 1w anyway").text,
+                 "would take back 13 edits"));
+  CHECK(contains(night.give("rollback preview joined-after 1w not author player5").text,
+                 "would take back 12 edits"));
+  CHECK(night.give("log joined-after 1w").is_ok);  // a list changes nothing
   CHECK(contains(night.give("rollback preview author player1* joined-after 1w").text,
                  "would take back 10 edits"));
 }

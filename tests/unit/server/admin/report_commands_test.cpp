@@ -81,6 +81,42 @@ TEST_CASE("a player reports with the place, and moderators are told, list and cl
   CHECK(bench.give({}, "reports").text == "no report is open");
 }
 
+TEST_CASE("several reports are closed in one line, all or none", "[admin][report]") {
+  ReportBench bench;
+  for (int i = 0; i < 3; ++i) {
+    CHECK(bench.player(kBuilder, "report he digs").is_ok);
+    bench.bench.time_us += kPauseUs;
+  }
+  CHECK(bench.give({}, "reports close 1 9 3").text ==
+        "reports close 9: no open report has that number (reports lists them); none of these was "
+        "closed");
+  const std::string list = bench.give({}, "reports").text;
+  CHECK(bench.give({}, "reports close 3 1 3").text ==
+        "closed: " + list.substr(0, list.find('\n')) +
+            "\nclosed: " + list.substr(list.rfind('\n') + 1));
+  CHECK(bench.give({}, "reports").text.starts_with("2 "));
+  CHECK(contains(bench.give({}, "reports close 2 all").text, "reports close \"all\""));
+}
+
+TEST_CASE("one range of addresses does not close the reports for everybody", "[admin][report]") {
+  PlayerReports reports;
+  const auto taken = [&](std::uint8_t first_key, AddressBlock from) {
+    std::size_t count = 0;
+    for (std::uint8_t i = 0; i < 2 * PlayerReports::kOpenOfRangeMax; ++i) {
+      PlayerReport report = report_of(static_cast<std::uint8_t>(first_key + i));
+      report.from = from;
+      if (reports.add(report, 1'000)) ++count;
+    }
+    return count;
+  };
+  CHECK(taken(20, address_block_v4(0xc000'0207)) == PlayerReports::kOpenOfRangeMax);
+  CHECK(taken(40, address_block_v4(0xc000'0208)) == 0);  // the same /24
+  CHECK(taken(60, address_block_v4(0xc000'0307)) == PlayerReports::kOpenOfRangeMax);
+  CHECK(taken(80, address_block_v4(0x7f00'0001)) == 2 * PlayerReports::kOpenOfRangeMax);  // a proxy
+  REQUIRE(reports.close(1).has_value());
+  CHECK(taken(100, address_block_v4(0xc000'0208)) == 1);
+}
+
 TEST_CASE("a muted player, the console and an empty text report nothing", "[admin][report]") {
   ReportBench bench;
   CHECK(contains(bench.give({}, "report help").text, "players report"));

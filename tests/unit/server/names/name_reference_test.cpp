@@ -4,7 +4,7 @@
 
 using namespace runstone;
 
-TEST_CASE("names that commands read as a number, a key, an address or a role are found",
+TEST_CASE("names that commands read as a number, a key, an address, a role or a pattern are found",
           "[names]") {
   for (const char* name : {"#1", "#", "#ana"}) {
     CAPTURE(name);
@@ -18,6 +18,10 @@ TEST_CASE("names that commands read as a number, a key, an address or a role are
   CHECK(read_as_reference(std::string(64, 'a')) == "a key");
   CHECK(read_as_reference("role:builder") == "a role");
   CHECK(read_as_reference("role:") == "a role");
+  for (const char* name : {"an*", "*", "* ana *"}) {
+    CAPTURE(name);
+    CHECK(read_as_reference(name) == "a pattern of names");
+  }
   for (const char* name : {"ana", "ana #1", "192", "1.2", "9m1q-z7cr", "abba", "7/8", "address",
                            "role", "role builder", "a role:builder"}) {
     CAPTURE(name);

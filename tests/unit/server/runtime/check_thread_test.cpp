@@ -76,6 +76,19 @@ TEST_CASE("a check counts damage and reads on", "[server][sqlite]") {
   CHECK(faults_of(folder / "world") == 4);
 }
 
+TEST_CASE("a check that cannot read a record of the log gives no size of it", "[server][sqlite]") {
+  TempFolder folder;
+  make_world(folder / "world");
+  REQUIRE(raw_sql(folder / "world/world.sqlite",
+                  "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 10; SELECT changes()") ==
+          "1");
+  start_logging(LogLevel::error, LogFormat::text);
+  CheckThread check(folder / "world");
+  wait_until([&] { return check.rounds() == 1; });
+  CHECK(check.faults() == 1);
+  CHECK(check.log_bytes() == std::nullopt);
+}
+
 TEST_CASE("a check of a log that is all damaged costs few errors and ends", "[server][sqlite]") {
   TempFolder folder;
   make_world(folder / "world");

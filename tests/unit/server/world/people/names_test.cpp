@@ -201,6 +201,7 @@ TEST_CASE("nobody newly gets a name that looks reserved, like a role, or like a 
   CHECK(refused("192.0.2.7").find("an address") != std::string::npos);
   CHECK(refused("role:builder").find("commands read it as a role") != std::string::npos);
   CHECK(refused("Role\uff1amason").find("commands read it as a role") != std::string::npos);
+  CHECK(refused("an*").find("commands read it as a pattern of names") != std::string::npos);
   CHECK(refused(key_fingerprint(public_key_of(2))).find("a key") != std::string::npos);
   CHECK(bench.environment.names.empty());
 
