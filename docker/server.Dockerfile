@@ -9,6 +9,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
 WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json LICENSE CHANGELOG.md ./
 COPY cmake cmake
+COPY bindings bindings
 COPY common common
 COPY packaging packaging
 COPY protocol protocol

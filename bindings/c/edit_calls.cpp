@@ -4,6 +4,7 @@
 #include "bindings/c/buffer.hpp"
 #include "bindings/c/chunk_handle.hpp"
 #include "bindings/c/runstone.h"
+#include "bindings/c/scratch.hpp"
 #include "bindings/c/versioned.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -44,11 +45,6 @@ const EditDescriptor& edit_at(const runstone_edits* edits, std::size_t index) {
   if (index >= list.size())
     refuse(RUNSTONE_BAD_ARGUMENT, "index", "is not below the number of edits");
   return list[index];
-}
-
-ApplyScratch& apply_scratch() {
-  thread_local ApplyScratch scratch;
-  return scratch;
 }
 
 void write_layers(const DirtyLayers& dirty, runstone_changes& out) {
@@ -170,7 +166,9 @@ runstone_status runstone_chunk_apply(runstone_chunk* chunk, runstone_pos at,
     Digest digest = changed.digest ? *changed.digest : digest_of(changed.runs);
     ApplyResult result;
     change_runs(changed, [&] {
-      apply_stack(changed.runs, digest, origin, list, apply_scratch(), result);
+      with_scratch<ApplyScratch>([&](ApplyScratch& scratch) {
+        apply_stack(changed.runs, digest, origin, list, scratch, result);
+      });
       if (result.changed) changed.note_change(result.dirty);
       changed.digest = digest;
     });

@@ -5,6 +5,7 @@
 
 #include "bindings/c/mesh_handle.hpp"
 #include "bindings/c/runstone.h"
+#include "bindings/c/scratch.hpp"
 #include "bindings/c/visibility_handle.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 
@@ -12,11 +13,6 @@ using namespace runstone;
 using namespace runstone::c_interface;
 
 namespace {
-
-RdmScratch& mesh_scratch() {
-  thread_local RdmScratch scratch;
-  return scratch;
-}
 
 /// The checked arguments of a call that meshes.
 struct MeshInput {
@@ -106,8 +102,9 @@ void note_made_of(runstone_mesh& mesh, const MeshInput& in) {
 
 void make_whole(runstone_mesh& mesh, const MeshInput& in) {
   mesh.of_chunk = 0;  // so that a mesh that memory ran out for is made anew
-  mesh_rdm(in.chunk.runs, in.neighbours, in.borders, in.visibility.table, mesh_scratch(),
-           mesh.quads);
+  with_scratch<RdmScratch>([&](RdmScratch& scratch) {
+    mesh_rdm(in.chunk.runs, in.neighbours, in.borders, in.visibility.table, scratch, mesh.quads);
+  });
 }
 
 }  // namespace
@@ -146,8 +143,10 @@ runstone_status runstone_mesh_update(runstone_mesh* mesh, const runstone_chunk* 
       make_whole(made, in);
     } else if (stale->any()) {
       made.of_chunk = 0;
-      in_part = mesh_rdm_layers(in.chunk.runs, in.neighbours, in.borders, in.visibility.table,
-                                stale->inside, stale->beyond, mesh_scratch(), made.quads);
+      in_part = with_scratch<RdmScratch>([&](RdmScratch& scratch) {
+        return mesh_rdm_layers(in.chunk.runs, in.neighbours, in.borders, in.visibility.table,
+                               stale->inside, stale->beyond, scratch, made.quads);
+      });
     }
     note_made_of(made, in);
     if (is_whole != nullptr) *is_whole = in_part ? 0 : 1;

@@ -122,7 +122,7 @@ typedef struct runstone_vec {
 } runstone_vec; /* voxels */
 typedef struct runstone_body {
   runstone_vec min, max;
-} runstone_body; /* a box that moves; min < max */
+} runstone_body; /* a box that moves; max - min is above 2e-6 voxels on each axis */
 typedef struct runstone_local_box {
   uint8_t min[3], max[3];
 } runstone_local_box; /* half-open, in a chunk */

@@ -59,8 +59,9 @@ static inline runstone_runs_error runstone_runs_open(runstone_runs* out, const u
                                       {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   runstone_runs runs;
   uint32_t i, begin = 0;
-  if (bytes == NULL || size < 12) return RUNSTONE_RUNS_WRONG_SIZE;
+  if (bytes == NULL || size < 2) return RUNSTONE_RUNS_WRONG_SIZE;
   if (bytes[0] != 1 || bytes[1] != 1) return RUNSTONE_RUNS_NOT_RAW;
+  if (size < 12) return RUNSTONE_RUNS_WRONG_SIZE; /* other encodings can be shorter */
   if (bytes[2] > 5 || bytes[3] != 0 || bytes[7] != 0) return RUNSTONE_RUNS_BAD_HEAD;
   for (i = 0; i < 3; ++i) {
     runs.sides[i] = bytes[4 + i];

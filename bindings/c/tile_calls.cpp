@@ -2,6 +2,7 @@
 #include <array>
 
 #include "bindings/c/runstone.h"
+#include "bindings/c/scratch.hpp"
 #include "bindings/c/visibility_handle.hpp"
 #include "common/tiles/tile_builder.hpp"
 #include "common/tiles/veil.hpp"
@@ -25,8 +26,9 @@ runstone_status runstone_tile_build(const runstone_chunk* const children[8], uin
       if (of[i]->extent != Extent::cube(tile_edge))
         refuse(RUNSTONE_BAD_ARGUMENT, "children", "are no cubes of the edge");
     }
-    thread_local TileScratch scratch;
-    create(out, build_tile(of, tile_edge, axis_order, table, scratch));
+    create(out, with_scratch<TileScratch>([&](TileScratch& scratch) {
+             return build_tile(of, tile_edge, axis_order, table, scratch);
+           }));
   });
 }
 
@@ -34,8 +36,8 @@ runstone_status runstone_tile_veil(runstone_chunk* tile, const runstone_visibili
   return answer([&] {
     runstone_chunk& changed = whole(tile, "tile");
     const VisibilityTable& table = live(visibility, "visibility").table;
-    thread_local VeilScratch scratch;
-    auto veil = veiled(changed.runs, table, scratch);
+    auto veil = with_scratch<VeilScratch>(
+        [&](VeilScratch& scratch) { return veiled(changed.runs, table, scratch); });
     if (!veil) return;
     changed.runs = *std::move(veil);
     changed.digest.reset();

@@ -25,7 +25,7 @@ class CMakeBuild(build_ext):
     def build_extension(self, extension):
         target = Path(self.get_ext_fullpath(extension.name)).resolve()
         folder = Path(os.environ.get("RUNSTONE_BUILD") or Path(self.build_temp).resolve() / "cmake")
-        if not (folder / "CMakeCache.txt").exists():
+        if not (folder / "build.ninja").exists():
             subprocess.run(
                 ["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
                  "-DCMAKE_UNITY_BUILD_BATCH_SIZE=20", "-DRUNSTONE_PYTHON=ON", "-DRUNSTONE_CLIENT=OFF",
@@ -34,6 +34,9 @@ class CMakeBuild(build_ext):
         built = list((folder / "python/runstone").glob("_runstone.*.so"))
         if len(built) != 1:
             sys.exit(f"setup.py: {folder}/python/runstone must hold one module, but holds {built}")
+        if built[0].name != target.name:
+            sys.exit(f"setup.py: {folder} builds {built[0].name}, which is for another Python than {sys.executable}, which "
+                     f"needs {target.name}. Give RUNSTONE_BUILD another folder")
         target.parent.mkdir(parents=True, exist_ok=True)
         self.copy_file(str(built[0]), str(target))
 

@@ -194,8 +194,10 @@ std::optional<SweepHit> sweep_shapes(const VoxelSpace& space, const Obstacles& s
 Result<void> validate_move(const BodyBox& box, const WorldPos& move) {
   const Numbers min = numbers_of(box.min), max = numbers_of(box.max), by = numbers_of(move);
   for (std::size_t a = 0; a < 3; ++a) {
-    // A comparison with a number that is none is false.
-    if (!(min[a] < max[a])) return fail(ErrorCode::bad_value, "body without a size on an axis");
+    // A comparison with a number that is none is false. A thinner body overlaps no voxel, and a move
+    // could round both of its ends to one number.
+    if (!(max[a] - min[a] > 2 * kTouchDepth))
+      return fail(ErrorCode::bad_value, "body without a size on an axis");
     if (!(std::abs(by[a]) <= kSweepMax))
       return fail(ErrorCode::bad_value, "move of more than 256 voxels on an axis");
     if (!(min[a] + std::min(by[a], 0.0) >= -kWorldLimit &&

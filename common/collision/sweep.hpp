@@ -36,7 +36,7 @@ struct SweepHit {
 };
 
 /// Returns success if sweep() and slide() can move the box so. Fails with bad_value if a number is
-/// not finite, the box is empty on an axis, the move is longer than kSweepMax on an axis, or the
+/// not finite, the box has 2 * kTouchDepth or less on an axis, the move is longer than kSweepMax on an axis, or the
 /// way leaves the world.
 Result<void> validate_move(const BodyBox& box, const WorldPos& move);
 

@@ -18,13 +18,15 @@ class WirePalette {
   template <class Runs>
   void find(const Runs& runs) {
     Material highest = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) highest = std::max(highest, runs.material(i));
+    // All memory is allocated before a bit is set, so that bits are zero again if there is none.
+    index_of_.resize(std::max<std::size_t>(index_of_.size(), highest + 1u));
+    ids_.clear();
+    ids_.reserve(std::min<std::size_t>(runs.size(), highest + 1u));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const Material id = runs.material(i);
       present_[id / 64u] |= 1ULL << (id % 64u);
-      highest = std::max(highest, id);
     }
-    ids_.clear();
-    index_of_.resize(std::max<std::size_t>(index_of_.size(), highest + 1u));
     for (std::size_t word = 0; word <= highest / 64u; ++word) {
       for (std::uint64_t bits = present_[word]; bits != 0; bits &= bits - 1) {
         const auto id =

@@ -19,7 +19,8 @@ std::vector<std::int32_t> section_cuts(std::size_t side) {
   return grid_cuts(static_cast<std::int32_t>(side), kSectionEdge);
 }
 
-/// Makes a build of an array. Cell numbers are those of the builder.
+/// Makes a build of an array. Cell numbers are those of the builder. Thread: any; Python's lock is
+/// not needed.
 Result<BuildPtr> build_of(const VoxelGrid& grid) {
   auto builder = BuildBuilder::of(
       {section_cuts(grid.sides[0]), section_cuts(grid.sides[1]), section_cuts(grid.sides[2])});
@@ -88,7 +89,7 @@ MaterialRow row_of_material(Material id, const std::vector<Self<PythonMaterial>>
 std::uint64_t write_build(const py::object& path, const py::array& array,
                           const std::optional<std::vector<Self<PythonMaterial>>>& materials,
                           const Triple& origin, double metres_per_voxel, std::int64_t levels) {
-  const auto file = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  const std::string file = path_of(path);
   if (auto why = file_refusal(file, true); !why.empty()) refuse(why);
   if (!(metres_per_voxel > 0) || metres_per_voxel > 1e6)
     refuse("metres_per_voxel is above 0 and at most 1000000");
@@ -99,7 +100,10 @@ std::uint64_t write_build(const py::object& path, const py::array& array,
     if (side < 1 || side > static_cast<std::size_t>(kBuildSideMax))
       refuse("a build has 1 to " + std::to_string(kBuildSideMax) + " voxels a side");
   }
-  auto build = build_of(grid);
+  auto build = [&] {
+    const py::gil_scoped_release released;
+    return build_of(grid);
+  }();
   if (!build) refuse("array", build.error(), "cell");
   FileBuild out;
   out.build = *std::move(build);

@@ -10,6 +10,7 @@
 #include "protocol/chunks/chunk_codec.hpp"
 #include "python_edit.hpp"
 #include "python_mesh.hpp"
+#include "python_scratch.hpp"
 
 namespace runstone::python {
 namespace {
@@ -128,8 +129,9 @@ ChunkObject applied(const Self<PythonChunk>& self, const py::object& edits, cons
   auto out = std::make_shared<PythonChunk>(*self);
   const auto done = [&] {
     const py::gil_scoped_release released;
-    thread_local ApplyScratch scratch;
-    auto result = try_apply_stack(out->voxels, out->digest, first, stack, scratch);
+    auto result = with_scratch<ApplyScratch>([&](ApplyScratch& scratch) {
+      return try_apply_stack(out->voxels, out->digest, first, stack, scratch);
+    });
     out->voxels.runs.shrink_to_fit();
     return result;
   }();

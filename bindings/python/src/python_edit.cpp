@@ -13,6 +13,9 @@
 namespace runstone::python {
 namespace {
 
+/// More chunks than this are not listed.
+constexpr std::uint64_t kTouchedChunksMax = 1 << 20;
+
 // One class for each class of Python, all of them with the descriptor alone.
 struct PythonSetVoxel : PythonEdit {};
 struct PythonFillBox : PythonEdit {};
@@ -131,9 +134,17 @@ Orientation orientation_of(std::int64_t turns, const std::string& mirror) {
 py::list chunk_list(const Self<PythonEdit>& self, std::int64_t edge) {
   if (edge != 16 && edge != 32 && edge != 64 && edge != 128)
     refuse("the edge of a chunk of a world is 16, 32, 64 or 128, got " + std::to_string(edge));
+  const auto chunk_edge = static_cast<std::int32_t>(edge);
+  if (touched_chunks_bound(self->edit, chunk_edge) > kTouchedChunksMax) {
+    refuse("the edit may touch more than " + std::to_string(kTouchedChunksMax) +
+           " chunks; a greater edge has fewer");
+  }
+  const std::vector<ChunkCoord> chunks = [&] {
+    const py::gil_scoped_release released;
+    return touched_chunks(self->edit, chunk_edge);
+  }();
   py::list out;
-  for (const ChunkCoord& at : touched_chunks(self->edit, static_cast<std::int32_t>(edge)))
-    out.append(py::make_tuple(at.x, at.y, at.z));
+  for (const ChunkCoord& at : chunks) out.append(py::make_tuple(at.x, at.y, at.z));
   return out;
 }
 
@@ -176,7 +187,8 @@ void define_base(py::module_& module) {
       .def(
           "chunks", &chunk_list, py::arg("edge"),
           "Return the chunks that the shape touches, as a list of (x, y, z) in ascending order.\n\n"
-          "edge is the edge of the world's chunks: 16, 32, 64 or 128.")
+          "edge is the edge of the world's chunks: 16, 32, 64 or 128.\n"
+          "Raise ValueError if the edit may touch more than 1048576 chunks.")
       .def(
           "encode", [](const Self<PythonEdit>& self) { return bytes_of(encode(self->edit)); },
           "Return the canonical bytes of the edit (docs/edit-log.md).")

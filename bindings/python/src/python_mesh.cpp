@@ -6,6 +6,7 @@
 
 #include "common/mesh/quad_corners.hpp"
 #include "common/mesh/rdm/checked_mesh.hpp"
+#include "python_scratch.hpp"
 
 namespace runstone::python {
 
@@ -114,8 +115,9 @@ std::shared_ptr<PythonMesh> make_mesh(const PythonChunk& chunk,
   auto out = std::make_shared<PythonMesh>();
   const auto made = [&] {
     const py::gil_scoped_release released;
-    thread_local RdmScratch scratch;
-    return try_mesh_rdm(chunk.voxels, around, table, scratch, out->mesh);
+    return with_scratch<RdmScratch>([&](RdmScratch& scratch) {
+      return try_mesh_rdm(chunk.voxels, around, table, scratch, out->mesh);
+    });
   }();
   if (!made) refuse("mesh", made.error(), "direction");
   return out;

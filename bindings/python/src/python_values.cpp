@@ -29,6 +29,10 @@ void refuse(const std::string& subject, const Error& error, const char* counted)
   throw py::value_error(text);
 }
 
+std::string path_of(const py::object& path) {
+  return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+}
+
 VoxelPos position_of(const Triple& at) {
   for (const std::int64_t number : at) {
     if (number < -kWorldLimit || number >= kWorldLimit) {

@@ -56,6 +56,10 @@ class Self {
 [[noreturn]] void refuse(const std::string& subject, const Error& error,
                          const char* counted = "byte");
 
+/// Returns the path of a str or an os.PathLike, as the bytes that the file system has. Throws a
+/// TypeError for other objects.
+std::string path_of(const py::object& path);
+
 /// Returns a position of three numbers, each of them in the range of a world.
 VoxelPos position_of(const Triple& at);
 /// Returns a whole number. `subject` begins the error if it is none, or has more than 64 bits.

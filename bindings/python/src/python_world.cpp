@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -209,40 +210,53 @@ struct PythonRecord {
   EditRecord record;
 };
 
-/// Walks over the log in blocks of records.
+/// Walks over the log in blocks of records. Threads: any; each record is given once.
 class PythonLog {
  public:
   PythonLog(WorldObject world, Sequence first, Sequence last)
       : world_(std::move(world)), next_(first), last_(last) {}
 
   PythonRecord next() {
-    read_world([&] { return world_->require_open(); });
-    if (at_ == block_.size()) {
-      if (next_ > last_) throw py::stop_iteration();
-      block_ = read_world([&] { return world_->records(next_, last_, kBlockRecords); });
-      at_ = 0;
-      if (block_.empty()) throw py::stop_iteration();
-      next_ = block_.back().version.seq + 1;
-    }
-    return {block_[at_++]};
+    auto record = read_world([&] { return read_next(); });
+    if (!record) throw py::stop_iteration();
+    return {*std::move(record)};
   }
 
  private:
+  /// Returns the next record, or nullopt behind the last one. Must be called without Python's lock,
+  /// which another thread that has mutex_ may wait for.
+  ViewResult<std::optional<EditRecord>> read_next() {
+    const std::lock_guard lock(mutex_);
+    if (const auto open = world_->require_open(); !open) return failure(open.error());
+    if (at_ == block_.size()) {
+      if (next_ > last_) return std::nullopt;
+      auto block = world_->records(next_, last_, kBlockRecords);
+      if (!block) return failure(block.error());
+      block_ = *std::move(block);
+      at_ = 0;
+      if (block_.empty()) return std::nullopt;
+      next_ = block_.back().version.seq + 1;
+    }
+    return block_[at_++];
+  }
+
   static constexpr std::size_t kBlockRecords = 256;
-  WorldObject world_;
-  Sequence next_, last_;
+  const WorldObject world_;
+  std::mutex mutex_;
+  Sequence next_;
+  const Sequence last_;
   std::vector<EditRecord> block_;
   std::size_t at_ = 0;  // in block_
 };
 
-PythonLog world_log(const Self<OpenWorldView>& self, std::int64_t first,
-                    std::optional<std::int64_t> last) {
+std::shared_ptr<PythonLog> world_log(const Self<OpenWorldView>& self, std::int64_t first,
+                                     std::optional<std::int64_t> last) {
   if (first < 1) refuse("the first sequence is 1, got " + std::to_string(first));
   if (last && *last < 0) refuse("a sequence is 0 or greater, got " + std::to_string(*last));
   const LogEnd end = read_world([&] { return self->end(); });
   const Sequence until =
       last ? std::min(static_cast<Sequence>(*last), end.version.seq) : end.version.seq;
-  return {self.pointer(), static_cast<Sequence>(first), until};
+  return std::make_shared<PythonLog>(self.pointer(), static_cast<Sequence>(first), until);
 }
 
 void define_material(py::module_& module) {
@@ -353,7 +367,8 @@ void define_world(py::module_& module) {
       "ValueError.")
       .def_static(
           "open",
-          [](const std::string& place) {
+          [](const py::object& path) {
+            const std::string place = path_of(path);
             return read_world([&] { return OpenWorldView::open(place, std::nullopt); });
           },
           py::arg("place"),

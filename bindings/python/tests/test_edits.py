@@ -153,6 +153,7 @@ CELLS = np.ones((2, 2, 2), np.uint16)
     (lambda: runstone.Paste((0, 0, 0), np.arange(64 ** 3).astype(np.uint16).reshape((64,) * 3)), "cells of a paste"),
     (lambda: runstone.Edit.decode(b"\x02"), "bytes of an edit"),
     (lambda: runstone.SetVoxel((0, 0, 0), 1).chunks(48), "16, 32, 64 or 128"),
+    (lambda: runstone.FillBox((0, 0, 0), (4096, 4096, 4096), 1).chunks(16), "more than 1048576 chunks"),
 ])
 def test_bad_edits_are_refused_in_words(call, words):
     with pytest.raises(ValueError, match=words):

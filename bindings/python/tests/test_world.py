@@ -2,6 +2,7 @@
 import datetime
 import subprocess
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -176,6 +177,25 @@ def test_bad_moments_places_and_chunks_are_refused_in_words(history, tmp_path):
     (tmp_path / "world.sqlite").write_bytes(b"no database" * 100)
     with pytest.raises(runstone.Error, match="world.sqlite"):
         runstone.World.open(str(tmp_path))
+
+
+def test_a_place_can_be_a_path(history):
+    with runstone.World.open(Path(history.place)) as world, runstone.World.open(str(history.place)) as other:
+        assert world.world_id == other.world_id
+    with pytest.raises(TypeError):
+        runstone.World.open(3)
+
+
+def test_threads_that_share_an_iterator_get_each_record_once(history):
+    with runstone.World.open(history.place) as world:
+        expected = [record.sequence for record in world.log()]
+        log, seen = world.log(), []
+        threads = [threading.Thread(target=lambda: seen.extend(record.sequence for record in log)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert sorted(seen) == expected and len(expected) > 1
 
 
 def test_the_world_can_be_served_while_it_is_open(history):

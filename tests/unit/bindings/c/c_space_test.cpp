@@ -111,6 +111,8 @@ TEST_CASE("bodies, rays and chunks that a space cannot take are refused", "[c_in
   };
   CHECK(swept({{0, 0, 0}, {1, 1, 1}}, {0, 0, 0}) == RUNSTONE_OK);
   CHECK(swept({{0, 0, 0}, {1, 0, 1}}, {0, 0, 0}) == RUNSTONE_BAD_ARGUMENT);
+  CHECK(swept({{0, 1, 1}, {1e-17, 2, 2}}, {100, 5, 0}) == RUNSTONE_BAD_ARGUMENT);
+  CHECK(swept({{0, 0, 0}, {1, 1, 1e-6}}, {0, 0, 0}) == RUNSTONE_BAD_ARGUMENT);
   CHECK(swept({{0, nan, 0}, {1, 1, 1}}, {0, 0, 0}) == RUNSTONE_BAD_ARGUMENT);
   CHECK(swept({{0, 0, 0}, {1, infinite, 1}}, {0, 0, 0}) == RUNSTONE_BAD_ARGUMENT);
   CHECK(swept({{0, 0, 0}, {257, 1, 1}}, {0, 0, 0}) == RUNSTONE_BAD_ARGUMENT);

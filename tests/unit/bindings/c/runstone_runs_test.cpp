@@ -70,7 +70,10 @@ TEST_CASE("the header for raw chunks refuses what the codec refuses", "[c_interf
     }
   }
   for (const auto encoding : {ChunkEncoding::packed, ChunkEncoding::coded})
-    CHECK(opened(encode_chunk(chunk, encoding)) != RUNSTONE_RUNS_OK);
+    CHECK(opened(encode_chunk(chunk, encoding)) == RUNSTONE_RUNS_NOT_RAW);
+  const Bytes shortest = encode_chunk(uniform_chunk(Extent::cube(16), 1), ChunkEncoding::packed);
+  REQUIRE(shortest.size() < 12);
+  CHECK(opened(shortest) == RUNSTONE_RUNS_NOT_RAW);
   runstone_runs runs{};
   CHECK(runstone_runs_open(&runs, nullptr, 0) == RUNSTONE_RUNS_WRONG_SIZE);
 }
