@@ -8,6 +8,7 @@
 
 #include "common/core/hex.hpp"
 #include "common/os/file_writer.hpp"
+#include "common/os/folder_entries.hpp"
 #include "common/os/private_file.hpp"
 
 namespace runstone {
@@ -37,13 +38,12 @@ Result<WorldId, std::string> read_folder_mark(const std::string& folder) {
 
 /// Returns true if nothing but what a file system or a first try leaves is in the folder.
 Result<bool, std::string> is_unused(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const auto name = entry.path().filename();
-    if (name != "lost+found" && name != "backups.lock" && name != "server.lock") return false;
-  }
-  if (error) return failure(folder + ": cannot be read: " + error.message());
-  return true;
+  const auto entries = folder_entries(folder);
+  if (!entries) return failure(entries.error());
+  return std::ranges::all_of(*entries, [](const std::filesystem::path& entry) {
+    const std::string name = entry.filename().string();
+    return name == "lost+found" || name == "backups.lock" || name == "server.lock";
+  });
 }
 
 }  // namespace
@@ -110,15 +110,15 @@ Result<void, std::string> BackupFolder::lock() {
 }
 
 Result<std::vector<std::string>, std::string> BackupFolder::names() const {
+  const auto entries = folder_entries(path_);
+  if (!entries) return failure(entries.error());
   std::vector<std::string> all;
-  std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(path_, error)) {
-    std::string name = file.path().filename().string();
+  for (const std::filesystem::path& file : *entries) {
+    std::string name = file.filename().string();
     if (!name.ends_with(kManifestEnd)) continue;
     name.resize(name.size() - kManifestEnd.size());
     if (time_of_backup(name)) all.push_back(std::move(name));
   }
-  if (error) return failure(path_ + ": cannot be read: " + error.message());
   std::ranges::sort(all);  // the order of the names is that of the times
   return all;
 }
