@@ -147,15 +147,17 @@ void BackupSchedule::read_world() {
 }
 
 void BackupSchedule::read_last() {
+  const TimeUs now_us = wall_now_us();
   std::optional<Last> last;
   const auto folder = BackupFolder::open(plan_.folder);
   if (folder && folder->world() == world_) {
-    if (const auto found = folder->find("")) {
-      last = Last{{found->name, 0, found->manifest.bytes(), found->manifest.new_bytes},
-                  found->taken_us};
+    const auto newest = folder->newest(now_us);
+    const auto found = newest ? folder->read_sizes(*newest) : BackupFolder::Entry{};
+    if (newest && found.error.empty()) {
+      last =
+          Last{{found.name, 0, found.manifest.bytes(), found.manifest.new_bytes}, found.taken_us};
     }
   }
-  const TimeUs now_us = wall_now_us();
   const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
   const std::lock_guard guard(mutex_);
   last_ = std::move(last);
