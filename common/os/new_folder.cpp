@@ -11,6 +11,8 @@
 #include <system_error>
 #include <vector>
 
+#include "common/os/folder_entries.hpp"
+
 namespace runstone {
 namespace {
 
@@ -30,8 +32,10 @@ struct Unfinished {
 };
 
 bool is_empty(const std::string& folder, std::error_code& error) {
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const auto name = entry.path().filename();
+  const fs::directory_iterator end;
+  for (fs::directory_iterator entry(folder, error); !error && entry != end;
+       entry.increment(error)) {
+    const auto name = entry->path().filename();
     if (name != kInside && name != kFileSystems) return false;
   }
   return true;
@@ -131,13 +135,13 @@ NewFolder::~NewFolder() {
 Made NewFolder::move_up(const std::string& last) {
   std::error_code error;
   if (!is_empty(target_, error) || error) return failure(target_ + ": is not empty any more");
-  std::vector<fs::path> files;
-  for (const auto& file : fs::directory_iterator(path_, error)) {
-    if (file.path() != lock_in(path_) && file.path().filename() != last)
-      files.push_back(file.path());
-  }
-  if (fs::exists(path_ + "/" + last, error)) files.push_back(path_ + "/" + last);
-  for (const fs::path& file : files) {
+  auto files = folder_entries(path_);
+  if (!files) return failure(files.error());
+  std::erase_if(*files, [&](const fs::path& file) {
+    return file == lock_in(path_) || file.filename() == last;
+  });
+  if (fs::exists(path_ + "/" + last, error)) files->push_back(path_ + "/" + last);
+  for (const fs::path& file : *files) {
     fs::rename(file, target_ / file.filename(), error);
     if (error)
       return failure(target_ + ": cannot get " + file.filename().string() + ": " + error.message());
@@ -163,9 +167,10 @@ Made NewFolder::rename() {
 }
 
 Made NewFolder::finish(const std::string& last) {
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(path_, error)) {
-    if (auto synced = sync(file.path()); !synced) return synced;
+  const auto files = folder_entries(path_);
+  if (!files) return failure(files.error());
+  for (const fs::path& file : *files) {
+    if (auto synced = sync(file); !synced) return synced;
   }
   if (auto synced = sync(path_); !synced) return synced;
   return is_inside_ ? move_up(last) : rename();

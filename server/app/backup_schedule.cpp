@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -79,14 +80,19 @@ void BackupSchedule::start() {
   thread_ = std::thread([this] { run(); });
 }
 
-void BackupSchedule::stop() {
+void BackupSchedule::ask_to_stop() {
   {
     const std::lock_guard guard(mutex_);
     stopping_ = true;
   }
-  child_.stop();
+  child_.ask_to_stop();
   changed_.notify_all();
+}
+
+void BackupSchedule::stop() {
+  ask_to_stop();
   if (thread_.joinable()) thread_.join();
+  child_.stop();
 }
 
 BackupState BackupSchedule::state() const {
@@ -107,32 +113,57 @@ BackupState BackupSchedule::state() const {
 void BackupSchedule::run() {
   lower_priority();
   lower_disk_priority();
-  if (const auto world = open_world(plan_.world, StoreAccess::read_only))
-    world_ = (*world)->meta().world_id;
-  read_last();
-  while (await_due()) {
-    const auto outcome = make_backup();
-    if (!outcome) return;
+  try {
+    read_world();
     read_last();
-    note(*outcome);
+  } catch (const std::exception& error) {
+    logger("store").warn("backup: {}: {}", plan_.folder, error.what());
+  }
+  while (await_due()) {
+    try {
+      if (!make_and_note()) return;
+    } catch (const std::exception& error) {
+      // Nothing that goes wrong with a backup may end the server.
+      note({plan_.folder + ": " + error.what(), false});
+    }
   }
 }
 
+bool BackupSchedule::make_and_note() {
+  read_world();
+  const TimeUs begun_us = wall_now_us();
+  const auto outcome = make_backup();
+  if (!outcome) return false;
+  if (outcome->is_ok) made_us_ = begun_us;
+  read_last();
+  note(*outcome);
+  return true;
+}
+
+void BackupSchedule::read_world() {
+  if (world_ != WorldId{}) return;
+  if (const auto world = open_world(plan_.world, StoreAccess::read_only))
+    world_ = (*world)->meta().world_id;
+}
+
 void BackupSchedule::read_last() {
+  const TimeUs now_us = wall_now_us();
   std::optional<Last> last;
   const auto folder = BackupFolder::open(plan_.folder);
   if (folder && folder->world() == world_) {
-    if (const auto found = folder->find("")) {
-      last = Last{{found->name, 0, found->manifest.bytes(), found->manifest.new_bytes},
-                  found->taken_us};
+    const auto newest = folder->newest(now_us);
+    const auto found = newest ? folder->read_sizes(*newest) : BackupFolder::Entry{};
+    if (newest && found.error.empty()) {
+      last =
+          Last{{found.name, 0, found.manifest.bytes(), found.manifest.new_bytes}, found.taken_us};
     }
   }
-  const TimeUs now_us = wall_now_us();
   const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
   const std::lock_guard guard(mutex_);
   last_ = std::move(last);
-  next_us_ =
-      next_backup_us(last_ ? std::optional(last_->taken_us) : std::nullopt, now_us, every_us);
+  const auto last_us = last_ ? std::optional(last_->taken_us) : std::nullopt;
+  // One that was made and cannot be read counts: otherwise the next one followed it at once.
+  next_us_ = next_backup_us(std::max(last_us, made_us_), now_us, every_us);
 }
 
 bool BackupSchedule::await_due() {
@@ -176,6 +207,7 @@ std::optional<BackupSchedule::Outcome> BackupSchedule::make_backup() {
 
 void BackupSchedule::note(const Outcome& outcome) {
   const std::lock_guard guard(mutex_);
+  is_under_way_ = false;
   if (outcome.is_ok) {
     failures_ = 0;
     failure_.clear();

@@ -47,7 +47,10 @@ class BackupSchedule {
 
   /// Starts the thread. Call it once, when the server runs the world.
   void start();
-  /// Ends a backup that is under way, and the thread. It may be called again.
+  /// Begins to end a backup that is under way, and the thread. Does not wait for the disk.
+  void ask_to_stop();
+  /// Calls ask_to_stop(), and waits for the end of the thread. A backup disk that hangs can hold it
+  /// up, so the server stops the world first. It may be called again.
   void stop();
   BackupState state() const;
 
@@ -62,6 +65,10 @@ class BackupSchedule {
   };
 
   void run();
+  /// Makes a backup that is due, and notes what came of it. Returns false if the thread must end.
+  bool make_and_note();
+  /// Reads which world the backups must be of, unless it is known. The next call tries again.
+  void read_world();
   /// Reads the newest backup of the folder, if its backups are of this world.
   void read_last();
   /// Waits until the next backup is due. Returns false if the thread must end.
@@ -72,8 +79,10 @@ class BackupSchedule {
 
   const BackupPlan plan_;
   BackupChild child_;
-  FileLock folder_lock_;      // of the thread: no other server makes backups in the folder
-  WorldId world_{};           // of the thread
+  FileLock folder_lock_;  // of the thread: no other server makes backups in the folder
+  WorldId world_{};       // of the thread
+  /// Of the thread: when the last backup that this object made began, also if it cannot be read.
+  std::optional<TimeUs> made_us_;
   mutable std::mutex mutex_;  // a leaf: guards the members below
   std::condition_variable changed_;
   std::optional<Last> last_;

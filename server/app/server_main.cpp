@@ -272,8 +272,9 @@ int run(const ServerOptions& options) {
     running->reload(read_config(options), [](const CommandAnswer& /*the log has it*/) {});
   });
   watch.reset();
-  backup.stop();
-  if (schedule) schedule->stop();
+  // The world is stopped before anything waits for a backup, whose disk may hang.
+  backup.ask_to_stop();
+  if (schedule) schedule->ask_to_stop();
   if (console) console->close();
   logger("app").info("stopping");
   const OwnershipState part = running->ownership();
@@ -284,6 +285,8 @@ int run(const ServerOptions& options) {
     return has_failed(part) ? kFailed : kStopped;
   }
   log_stop(report, *config);
+  backup.stop();
+  if (schedule) schedule->stop();
   bool is_written = true;
   if (!options.digests_file.empty()) {
     const auto written = write_digests_json(options.digests_file, report.digests);

@@ -1,13 +1,19 @@
 #include "server/backup/backup_folder.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 
 #include "common/core/hex.hpp"
-#include "common/os/file_writer.hpp"
+#include "common/os/folder_entries.hpp"
 #include "common/os/private_file.hpp"
 
 namespace runstone {
@@ -16,6 +22,9 @@ namespace {
 constexpr std::string_view kFolderMark = "runstone-backups", kManifestEnd = ".backup";
 constexpr std::string_view kMarkLine = "runstone backups 1\nworld ";
 constexpr std::size_t kManifestBytesMax = std::size_t{4} << 30;  // of a world of about 2 TiB
+constexpr std::size_t kHeadBytesMax = 512;  // the lines above the first file have at most 200
+constexpr std::string_view kHeld =
+    ": another program is using it: try again when its backup is made, removed or read";
 
 std::string mark_of(const std::string& folder) { return folder + "/" + std::string(kFolderMark); }
 
@@ -35,15 +44,30 @@ Result<WorldId, std::string> read_folder_mark(const std::string& folder) {
   return failure(file + ": is damaged");
 }
 
+/// Returns true for the name of a file that was written and did not get its name: FILE.new or FILE.new7.
+bool is_unfinished(std::string_view name, std::string_view file) {
+  constexpr std::string_view kNew = ".new";
+  if (!name.starts_with(file) || !name.substr(file.size()).starts_with(kNew)) return false;
+  return name.find_first_not_of("0123456789", file.size() + kNew.size()) == name.npos;
+}
+
+/// Returns the newest of the backups whose manifests have these heads. Requires one.
+const BackupManifest& newest_of(const std::vector<BackupManifest>& heads, TimeUs now_us) {
+  const auto rank = [now_us](const BackupManifest& head) {
+    return std::tuple(head.epoch, head.seq, head.taken_us <= now_us, head.taken_us);
+  };
+  return *std::ranges::max_element(heads, {}, rank);
+}
+
 /// Returns true if nothing but what a file system or a first try leaves is in the folder.
 Result<bool, std::string> is_unused(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const auto name = entry.path().filename();
-    if (name != "lost+found" && name != "backups.lock" && name != "server.lock") return false;
-  }
-  if (error) return failure(folder + ": cannot be read: " + error.message());
-  return true;
+  const auto entries = folder_entries(folder);
+  if (!entries) return failure(entries.error());
+  return std::ranges::all_of(*entries, [](const std::filesystem::path& entry) {
+    const std::string name = entry.filename().string();
+    return name == "lost+found" || name == "backups.lock" || name == "server.lock" ||
+           is_unfinished(name, kFolderMark);
+  });
 }
 
 }  // namespace
@@ -80,7 +104,7 @@ Result<BackupFolder, std::string> BackupFolder::open_for(const std::string& fold
   }
   auto lock = FileLock::take(folder + "/backups.lock");
   if (!lock) {
-    return failure(folder + (lock.error().is_held ? ": another program is using it"
+    return failure(folder + (lock.error().is_held ? std::string(kHeld)
                                                   : "/backups.lock: " + lock.error().what));
   }
   opened.lock_ = *std::move(lock);
@@ -100,65 +124,112 @@ Result<BackupFolder, std::string> BackupFolder::open_for(const std::string& fold
 
 Result<void, std::string> BackupFolder::lock() {
   if (lock_) return {};
-  auto lock = FileLock::take(path_ + "/backups.lock");
-  if (lock) {
-    lock_ = *std::move(lock);
-  } else if (lock.error().is_held) {
-    return failure(path_ + ": another program is using it");
-  }
+  const std::string file = path_ + "/backups.lock";
+  auto lock = FileLock::take(file);
+  if (!lock)
+    return failure(lock.error().is_held ? path_ + std::string(kHeld)
+                                        : file + ": " + lock.error().what);
+  lock_ = *std::move(lock);
   return {};
 }
 
+Result<std::string, std::string> BackupFolder::lock_for_reading() {
+  auto locked = lock();
+  if (locked) return std::string();
+  const std::string file = path_ + "/backups.lock";
+  const std::string& place = ::access(file.c_str(), F_OK) == 0 ? file : path_;
+  if (::access(place.c_str(), W_OK) == 0) return failure(locked.error());
+  if (errno == EROFS) return std::string();
+  if (errno != EACCES) return failure(locked.error());
+  return locked.error() +
+         ": it is read without a lock, so a backup that is removed meanwhile is missed";
+}
+
 Result<std::vector<std::string>, std::string> BackupFolder::names() const {
+  const auto entries = folder_entries(path_);
+  if (!entries) return failure(entries.error());
   std::vector<std::string> all;
-  std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(path_, error)) {
-    std::string name = file.path().filename().string();
+  for (const std::filesystem::path& file : *entries) {
+    std::string name = file.filename().string();
     if (!name.ends_with(kManifestEnd)) continue;
     name.resize(name.size() - kManifestEnd.size());
     if (time_of_backup(name)) all.push_back(std::move(name));
   }
-  if (error) return failure(path_ + ": cannot be read: " + error.message());
   std::ranges::sort(all);  // the order of the names is that of the times
   return all;
 }
 
-BackupFolder::Entry BackupFolder::read(const std::string& name) const {
+BackupFolder::Entry BackupFolder::entry_of(const std::string& name,
+                                           Result<BackupManifest, std::string> read) const {
   Entry entry{name, time_of_backup(name).value_or(0), {}, {}};
-  const std::string file = file_of(name);
-  const auto text = read_file(file, kManifestBytesMax);
-  if (!text) {
-    entry.error = text.error();
-  } else if (auto manifest = parse_manifest(*text); !manifest) {
-    entry.error = file + ": " + manifest.error();
-  } else if (manifest->world != world_ || manifest->taken_us != entry.taken_us) {
-    entry.error = file + ": is of another world or another time";
+  if (!read) {
+    entry.error = file_of(name) + ": " + read.error();
+  } else if (read->world != world_ || read->taken_us != entry.taken_us) {
+    entry.error = file_of(name) + ": is of another world or another time";
   } else {
-    entry.manifest = *std::move(manifest);
+    entry.manifest = *std::move(read);
   }
   return entry;
+}
+
+BackupFolder::Entry BackupFolder::read(const std::string& name) const {
+  const auto text = read_file(file_of(name), kManifestBytesMax);
+  if (!text) return Entry{name, time_of_backup(name).value_or(0), {}, text.error()};
+  return entry_of(name, parse_manifest(*text));
+}
+
+BackupFolder::Entry BackupFolder::read_sizes(const std::string& name) const {
+  const std::string file = file_of(name);
+  if (const auto checked = check_file_kind(file); !checked)
+    return Entry{name, time_of_backup(name).value_or(0), {}, checked.error()};
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return entry_of(name, failure(std::string("cannot be read")));
+  return entry_of(name, read_manifest_sizes(in));
 }
 
 Result<std::vector<BackupFolder::Entry>, std::string> BackupFolder::entries() const {
   const auto all = names();
   if (!all) return failure(all.error());
   std::vector<Entry> entries;
-  for (const std::string& name : *all) {
-    entries.push_back(read(name));
-    for (BackedUpFile& file : entries.back().manifest.files) file.blocks = {};
-  }
+  for (const std::string& name : *all) entries.push_back(read_sizes(name));
   return entries;
 }
 
-Result<BackupFolder::Entry, std::string> BackupFolder::find(const std::string& name) const {
+Result<std::string, std::string> BackupFolder::newest(TimeUs now_us) const {
   const auto all = names();
   if (!all) return failure(all.error());
   if (all->empty()) return failure(path_ + ": holds no backup yet");
+  std::vector<BackupManifest> heads;
+  std::string damaged;  // the last one that is not of the future
+  for (const std::string& name : *all) {
+    std::array<char, kHeadBytesMax> text{};
+    std::ifstream in(file_of(name), std::ios::binary);
+    in.read(text.data(), text.size());
+    auto head = parse_manifest_head({text.data(), static_cast<std::size_t>(in.gcount())});
+    const TimeUs taken_us = time_of_backup(name).value_or(0);
+    if (head && head->world == world_ && head->taken_us == taken_us) {
+      heads.push_back(*std::move(head));
+    } else if (taken_us <= now_us || damaged.empty()) {
+      damaged = name;
+    }
+  }
+  if (heads.empty()) return damaged;
+  std::string found = backup_name(newest_of(heads, now_us).taken_us);
+  const bool is_doubtful = damaged > found && time_of_backup(damaged).value_or(0) <= now_us;
+  return is_doubtful ? damaged : found;
+}
+
+Result<BackupFolder::Entry, std::string> BackupFolder::find(const std::string& name,
+                                                            TimeUs now_us) const {
+  const auto all = names();
+  if (!all) return failure(all.error());
   if (!name.empty() && std::ranges::find(*all, name) == all->end()) {
     return failure(path_ + ": holds no backup " + name +
                    ": `runstone-server backup list` names them");
   }
-  Entry found = read(name.empty() ? all->back() : name);
+  const auto wanted = name.empty() ? newest(now_us) : name;
+  if (!wanted) return failure(wanted.error());
+  Entry found = read(*wanted);
   if (found.error.empty()) return found;
   return failure(found.error + ": choose an older backup, which `backup list` names");
 }
@@ -172,18 +243,36 @@ Result<void, std::string> BackupFolder::add(const BackupManifest& manifest) {
   return write_private_file(file, manifest_text(manifest));
 }
 
-Result<std::vector<std::string>, std::string> BackupFolder::to_remove(
-    const BackupPolicy& policy) const {
-  const auto all = entries();
+Result<std::vector<std::string>, std::string> BackupFolder::to_remove(const BackupPolicy& policy,
+                                                                      TimeUs now_us) const {
+  const auto all = names();
   if (!all) return failure(all.error());
   std::vector<TimeUs> times;
-  for (const Entry& entry : *all) {
-    if (entry.error.empty()) times.push_back(entry.taken_us);
+  for (const std::string& name : *all) times.push_back(time_of_backup(name).value_or(0));
+  // Damaged ones that do not count only let more of the others stay, so no manifest is read if
+  // nothing is to be removed with them.
+  if (backups_to_remove(times, policy, now_us).empty()) return std::vector<std::string>();
+  std::erase_if(times, [&](TimeUs time) { return !read_sizes(backup_name(time)).error.empty(); });
+  std::vector<std::string> removed;
+  for (const TimeUs time : backups_to_remove(std::move(times), policy, now_us))
+    removed.push_back(backup_name(time));
+  return removed;
+}
+
+Result<void, std::string> BackupFolder::remove_unfinished() {
+  const auto entries = folder_entries(path_);
+  if (!entries) return failure(entries.error());
+  for (const std::filesystem::path& path : *entries) {
+    const std::string file = path.filename().string();
+    const std::string name = file.substr(0, file.find('.'));
+    if (!is_unfinished(file, kFolderMark) &&
+        !(time_of_backup(name) && is_unfinished(file, name + std::string(kManifestEnd))))
+      continue;
+    std::error_code error;
+    std::filesystem::remove(path, error);
+    if (error) return failure(path.string() + ": cannot be removed: " + error.message());
   }
-  std::vector<std::string> names;
-  for (const TimeUs time : backups_to_remove(std::move(times), policy))
-    names.push_back(backup_name(time));
-  return names;
+  return {};
 }
 
 Result<BackupFolder::Pruned, std::string> BackupFolder::remove(
@@ -195,8 +284,9 @@ Result<BackupFolder::Pruned, std::string> BackupFolder::remove(
       return failure(file_of(name) + ": cannot be removed: " + error.message());
     pruned.names.push_back(name);
   }
+  if (auto removed = remove_unfinished(); !removed) return failure(removed.error());
   // The removed names must be on disk before the first of their blocks is gone.
-  if (!names.empty()) sync_folder_of(file_of(names.front()));
+  if (auto synced = sync_names(path_); !synced) return failure(synced.error());
   const auto left = this->names();
   if (!left) return failure(left.error());
   std::set<BlockHash> used;

@@ -3,7 +3,9 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <istream>
 
 #include "common/core/hex.hpp"
 #include "common/core/utc_text.hpp"
@@ -16,6 +18,7 @@ static_assert(sizeof(BlockHash) == crypto_generichash_BYTES);
 constexpr std::string_view kFirstLine = "runstone backup 1", kEndWord = "end ";
 constexpr std::size_t kEndLineBytes = 4 + 2 * sizeof(BlockHash) + 1;
 constexpr std::size_t kNameBytesMax = 255;
+constexpr const char* kNotUnderstood = "is no manifest that this version understands";
 
 ByteView bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -65,20 +68,79 @@ bool is_plain_name(std::string_view name) {
          name.find('/') == std::string_view::npos && name.find('\0') == std::string_view::npos;
 }
 
-BackedUpFile read_backed_up_file(ManifestLines& lines) {
+/// Reads the lines between the first one and those of the files.
+BackupManifest read_head(ManifestLines& lines) {
+  BackupManifest out;
+  lines.require(read_hex(lines.take("world"), out.world));
+  std::string_view line = lines.take("taken");
+  out.taken_us = lines.take_number<TimeUs>(line);
+  line = lines.take("moment");
+  out.epoch = lines.take_number<Epoch>(line);
+  out.seq = lines.take_number<Sequence>(line);
+  line = lines.take("new");
+  out.new_bytes = lines.take_number<std::uint64_t>(line);
+  return out;
+}
+
+/// Reads the line of a file, which its blocks follow.
+BackedUpFile read_file_line(ManifestLines& lines) {
   BackedUpFile file;
   std::string_view line = lines.take("file");
   file.bytes = lines.take_number<std::uint64_t>(line);
   file.name = line;
   lines.require(is_plain_name(file.name));
+  return file;
+}
+
+std::uint64_t blocks_of(std::uint64_t bytes) {
+  return bytes / kBlockBytes + (bytes % kBlockBytes != 0 ? 1 : 0);
+}
+
+BackedUpFile read_backed_up_file(ManifestLines& lines) {
+  BackedUpFile file = read_file_line(lines);
   while (lines.is_good() && lines.is_next("block ")) {
     BlockHash hash{};
     lines.require(read_hex(lines.take("block"), hash));
     file.blocks.push_back(hash);
   }
-  lines.require(file.blocks.size() == file.bytes / kBlockBytes + (file.bytes % kBlockBytes != 0));
+  lines.require(file.blocks.size() == blocks_of(file.bytes));
   return file;
 }
+
+/// Gets the lines of a manifest one after the other, and keeps what they say without the blocks.
+class ManifestSizes {
+ public:
+  /// Takes the next line, without its end. Returns false if it cannot be in a manifest.
+  bool take(std::string_view line) {
+    ++lines_;
+    if (lines_ <= kHeadLines) {
+      head_ += line;
+      head_ += '\n';
+      if (lines_ < kHeadLines) return true;
+      auto head = parse_manifest_head(head_);
+      if (head) out_ = *head;
+      return head.has_value();
+    }
+    if (line.starts_with("block ")) {
+      BlockHash hash{};
+      return blocks_left_-- > 0 && read_hex(line.substr(6), hash);
+    }
+    const std::string whole = std::string(line) + '\n';
+    ManifestLines lines(whole);
+    out_.files.push_back(read_file_line(lines));
+    const bool is_good = lines.is_good() && blocks_left_ == 0;
+    blocks_left_ = blocks_of(out_.files.back().bytes);
+    return is_good;
+  }
+  bool is_complete() const { return lines_ >= kHeadLines && blocks_left_ == 0; }
+  BackupManifest manifest() && { return std::move(out_); }
+
+ private:
+  static constexpr int kHeadLines = 5;
+  std::uint64_t lines_ = 0, blocks_left_ = 0;  // the blocks of the last file that did not come yet
+  std::string head_;
+  BackupManifest out_;
+};
 
 }  // namespace
 
@@ -124,18 +186,49 @@ Result<BackupManifest, std::string> parse_manifest(std::string_view text) {
     return failure("is cut off");
   if (hash_of_block(bytes_of(body)) != wanted) return failure("is damaged");
   ManifestLines lines(body.substr(kFirstLine.size() + 1));
-  BackupManifest out;
-  lines.require(read_hex(lines.take("world"), out.world));
-  std::string_view line = lines.take("taken");
-  out.taken_us = lines.take_number<TimeUs>(line);
-  line = lines.take("moment");
-  out.epoch = lines.take_number<Epoch>(line);
-  out.seq = lines.take_number<Sequence>(line);
-  line = lines.take("new");
-  out.new_bytes = lines.take_number<std::uint64_t>(line);
+  BackupManifest out = read_head(lines);
   while (lines.is_good() && !lines.at_end()) out.files.push_back(read_backed_up_file(lines));
-  if (!lines.is_good()) return failure("is no manifest that this version understands");
+  if (!lines.is_good()) return failure(kNotUnderstood);
   return out;
+}
+
+std::optional<BackupManifest> parse_manifest_head(std::string_view text) {
+  if (!text.starts_with(std::string(kFirstLine) + "\n")) return std::nullopt;
+  ManifestLines lines(text.substr(kFirstLine.size() + 1));
+  BackupManifest head = read_head(lines);
+  if (!lines.is_good()) return std::nullopt;
+  return head;
+}
+
+Result<BackupManifest, std::string> read_manifest_sizes(std::istream& in) {
+  const BlockHash nothing = hash_of_block({});  // makes the library ready
+  BlockHash hash = nothing, wanted{};
+  ::crypto_generichash_state hashing;
+  ::crypto_generichash_init(&hashing, nullptr, 0, hash.size());
+  ManifestSizes sizes;
+  bool is_understood = true;
+  std::array<char, 2 * kNameBytesMax> line{};  // the longest line has a name and a number
+  for (bool is_first = true; in.getline(line.data(), line.size()) && !in.eof(); is_first = false) {
+    const std::string_view text(line.data(), static_cast<std::size_t>(in.gcount()) - 1);
+    if (is_first && text != kFirstLine) {
+      return failure(text.starts_with("runstone backup ") ? "is of a newer version of Runstone"
+                                                          : "is no manifest of a backup");
+    }
+    if (text.starts_with(kEndWord)) {
+      ::crypto_generichash_final(&hashing, hash.data(), hash.size());
+      if (!read_hex(text.substr(kEndWord.size()), wanted) ||
+          in.peek() != std::istream::traits_type::eof())
+        return failure("is cut off");
+      if (hash != wanted) return failure("is damaged");
+      if (!is_understood || !sizes.is_complete()) return failure(kNotUnderstood);
+      return std::move(sizes).manifest();
+    }
+    line[text.size()] = '\n';
+    const ByteView bytes = bytes_of(std::string_view(line.data(), text.size() + 1));
+    ::crypto_generichash_update(&hashing, bytes.data(), bytes.size());
+    is_understood = is_understood && sizes.take(text);
+  }
+  return failure(in.eof() ? "is cut off" : "is damaged");
 }
 
 std::string backup_name(TimeUs taken_us) {

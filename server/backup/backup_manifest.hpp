@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,6 +51,13 @@ std::string manifest_text(const BackupManifest& manifest);
 /// Parses the text of a manifest. Fails if a byte of it has changed or is missing, or if the text is
 /// of a newer version. The error is a part of a sentence.
 Result<BackupManifest, std::string> parse_manifest(std::string_view text);
+
+/// Parses the lines of a manifest that are above its first file. `text` may end behind them. Returns
+/// nullopt if they are no such lines. The hash at the end is not looked at.
+std::optional<BackupManifest> parse_manifest_head(std::string_view text);
+/// Reads a manifest as parse_manifest() does, but its files get no blocks, so it needs no memory for
+/// them.
+Result<BackupManifest, std::string> read_manifest_sizes(std::istream& in);
 
 /// Returns the name of a backup, such as "20261118T033000Z". The time is rounded down to the second.
 std::string backup_name(TimeUs taken_us);

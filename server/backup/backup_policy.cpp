@@ -29,7 +29,9 @@ void mark_newest(const std::vector<TimeUs>& times, TimeUs begin, TimeUs length, 
 
 }  // namespace
 
-std::vector<TimeUs> backups_to_remove(std::vector<TimeUs> times, const BackupPolicy& policy) {
+std::vector<TimeUs> backups_to_remove(std::vector<TimeUs> times, const BackupPolicy& policy,
+                                      TimeUs now_us) {
+  std::erase_if(times, [now_us](TimeUs time) { return time > now_us; });
   if (times.empty() || policy.keeps_all()) return {};
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());

@@ -42,8 +42,10 @@ Result<WorldBackup, std::string> copy_of_backup(const RestoreRequest& request, T
     return failure(request.world + ": lies in " + request.from);
   auto backups = BackupFolder::open(request.from);
   if (!backups) return failure(backups.error());
-  if (auto locked = backups->lock(); !locked) return failure(locked.error());
-  const auto found = backups->find(request.backup);
+  const auto unlocked = backups->lock_for_reading();
+  if (!unlocked) return failure(unlocked.error());
+  if (!unlocked->empty()) out << "warning     " << *unlocked << '\n';
+  const auto found = backups->find(request.backup, now_us);
   if (!found) return failure(found.error());
   auto folder = NewFolder::make(request.world, out);
   if (!folder) return failure(folder.error());

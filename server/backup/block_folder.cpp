@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "common/core/hex.hpp"
+#include "common/os/folder_entries.hpp"
 
 namespace runstone {
 namespace {
@@ -35,7 +36,9 @@ class BlockDescriptor {
 };
 
 Unexpected<std::string> block_failure(const std::string& file, const char* verb) {
-  return failure(file + ": cannot be " + verb + ": " + std::generic_category().message(errno));
+  const bool is_full = errno == ENOSPC || errno == EDQUOT;
+  return failure(file + ": cannot be " + verb + ": " + std::generic_category().message(errno) +
+                 (is_full ? ": `runstone-server backup prune` removes older backups" : ""));
 }
 
 /// Returns the bytes of a file, at most one more than a block has, or nullopt with errno.
@@ -71,17 +74,22 @@ Result<void, std::string> write_block(const std::string& file, ByteView block) {
   return {};
 }
 
-Result<void, std::string> sync_names(const std::string& folder) {
-  const BlockDescriptor opened(folder, O_RDONLY | O_DIRECTORY);
-  if (opened.get() < 0 || ::fsync(opened.get()) != 0) return block_failure(folder, "synced");
-  return {};
-}
-
 bool make_folder(const std::string& folder) {
   return ::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST;
 }
 
 }  // namespace
+
+Result<void, std::string> sync_names(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return block_failure(folder, "synced");
+  const bool is_synced = ::fsync(descriptor) == 0;
+  const int wrong = errno;
+  ::close(descriptor);
+  errno = wrong;
+  if (!is_synced) return block_failure(folder, "synced");
+  return {};
+}
 
 std::string BlockFolder::folder_of(const std::string& name) const {
   return folder_ + "/" + name.substr(0, 2);
@@ -92,7 +100,11 @@ Result<BlockFolder::Stored, std::string> BlockFolder::put(ByteView block) {
   const std::string name = to_hex(stored.hash);
   const std::string file = folder_of(name) + "/" + name;
   const auto there = read_block(file);
-  if (there && std::ranges::equal(*there, block)) return stored;
+  if (there && std::ranges::equal(*there, block)) {
+    // Its name may not be on disk yet: the program that wrote it may have been killed before sync().
+    written_.insert(folder_of(name));
+    return stored;
+  }
   if (!make_folder(folder_)) return block_failure(folder_, "made");
   if (!make_folder(folder_of(name))) return block_failure(folder_of(name), "made");
   const std::string fresh = file + std::string(kUnfinished);
@@ -129,24 +141,35 @@ Result<Bytes, std::string> BlockFolder::get(const BlockHash& hash, std::size_t b
 Result<std::uint64_t, std::string> BlockFolder::keep_only(const std::set<BlockHash>& used) const {
   namespace fs = std::filesystem;
   std::uint64_t freed = 0;
-  std::error_code error;
-  if (!fs::exists(folder_, error)) return freed;
-  for (fs::recursive_directory_iterator entry(folder_, error), end; !error && entry != end;
-       entry.increment(error)) {
-    std::string name = entry->path().filename().string();
-    const bool is_unfinished = name.ends_with(kUnfinished);
-    if (is_unfinished) name.resize(name.size() - kUnfinished.size());
-    BlockHash hash{};
-    std::error_code ignored;
-    if (!read_hex(name, hash) || !entry->is_regular_file(ignored)) continue;
-    if (!is_unfinished && used.contains(hash)) continue;
-    const std::uint64_t bytes = entry->file_size(ignored);
-    if (!fs::remove(entry->path(), ignored) || ignored) {
-      return failure(entry->path().string() + ": cannot be removed: " + ignored.message());
-    }
-    freed += bytes;
+  std::error_code ignored;
+  const auto kind = fs::symlink_status(folder_, ignored);
+  if (!fs::exists(kind)) return freed;
+  if (fs::is_symlink(kind)) {
+    return failure(folder_ +
+                   ": is a symbolic link, so no block is removed: the other folder may "
+                   "hold files of others");
   }
-  if (error) return failure(folder_ + ": cannot be read: " + error.message());
+  const auto parts = folder_entries(folder_);
+  if (!parts) return failure(parts.error());
+  for (const fs::path& part : *parts) {
+    if (!fs::is_directory(fs::symlink_status(part, ignored))) continue;
+    const auto files = folder_entries(part.string());
+    if (!files) return failure(files.error());
+    for (const fs::path& file : *files) {
+      std::string name = file.filename().string();
+      const bool is_unfinished = name.ends_with(kUnfinished);
+      if (is_unfinished) name.resize(name.size() - kUnfinished.size());
+      BlockHash hash{};
+      if (!read_hex(name, hash) || part != folder_of(name) ||
+          !fs::is_regular_file(fs::symlink_status(file, ignored)))
+        continue;
+      if (!is_unfinished && used.contains(hash)) continue;
+      const std::uint64_t bytes = fs::file_size(file, ignored);
+      if (!fs::remove(file, ignored) || ignored)
+        return failure(file.string() + ": cannot be removed: " + ignored.message());
+      freed += bytes;
+    }
+  }
   return freed;
 }
 

@@ -20,17 +20,6 @@ Unexpected<StoreError> target_failure(StoreError::Kind kind, const std::string& 
   return {{kind, "", "", what}};
 }
 
-/// Fails if the disk of `to` has no room for `bytes` and the reserve.
-StoreResult<void> check_room(const std::string& to, std::uint64_t bytes, std::uint64_t spare) {
-  const auto free = free_bytes(std::filesystem::path(to).parent_path().string());
-  if (!free || (*free >= bytes && *free - bytes >= spare)) return {};
-  constexpr std::uint64_t kMib = 1ULL << 20;
-  return target_failure(StoreError::Kind::full, to + ": needs " + std::to_string(bytes / kMib + 1) +
-                                                    " MiB, and " + std::to_string(spare / kMib) +
-                                                    " MiB must stay free, but the disk has " +
-                                                    std::to_string(*free / kMib) + " MiB");
-}
-
 /// Reads the numbers of the moment. The first read of a transaction decides what it sees.
 StoreResult<BackupMoment> begin_moment(sql::Database& from) {
   if (auto begun = from.run("BEGIN"); !begun) return failed(begun.error());
@@ -81,6 +70,17 @@ StoreResult<void> copy_pages(sql::Database& source, const std::string& to, Uncac
 
 }  // namespace
 
+Result<void, std::string> check_room(const std::string& name, const std::string& folder,
+                                     std::uint64_t bytes, std::uint64_t spare) {
+  const auto free = free_bytes(folder);
+  if (!free || (*free >= bytes && *free - bytes >= spare)) return {};
+  constexpr std::uint64_t kMib = 1ULL << 20;
+  const std::string needs =
+      bytes == 0 ? "" : "needs " + std::to_string(bytes / kMib + 1) + " MiB, and ";
+  return failure(name + ": " + needs + std::to_string(spare / kMib) +
+                 " MiB must stay free, but the disk has " + std::to_string(*free / kMib) + " MiB");
+}
+
 BackupPace gentle_pace() {
   BackupPace pace;
   pace.rest = [](std::chrono::nanoseconds worked) { std::this_thread::sleep_for(worked); };
@@ -95,8 +95,9 @@ StoreResult<BackupMoment> copy_database(const std::string& from, SourceUse use,
   if (!source) return failed(source.error());
   const auto moment = begin_moment(*source);
   if (!moment) return moment;
-  if (auto room = check_room(to, moment->bytes, pace.spare_bytes); !room)
-    return failed(room.error());
+  const std::string folder = std::filesystem::path(to).parent_path().string();
+  if (auto room = check_room(to, folder, moment->bytes, pace.spare_bytes); !room)
+    return target_failure(StoreError::Kind::full, room.error());
   auto file = UncachedFile::make(to);
   if (!file) return target_failure(StoreError::Kind::exists, file.error());
   if (auto reserved = file->reserve(moment->bytes); !reserved)

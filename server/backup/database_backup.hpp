@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/core/ids.hpp"
+#include "common/core/result.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {
@@ -25,6 +26,11 @@ struct BackupPace {
 };
 /// Returns the pace of the program: rest() sleeps as long as the part took.
 BackupPace gentle_pace();
+
+/// Fails unless the disk of `folder` has room for `bytes` and `spare` more. The error is one line that
+/// begins with `name`.
+Result<void, std::string> check_room(const std::string& name, const std::string& folder,
+                                     std::uint64_t bytes, std::uint64_t spare);
 
 enum class SourceUse {
   live,  // a server may be writing the world

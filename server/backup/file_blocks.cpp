@@ -1,9 +1,9 @@
 #include "server/backup/file_blocks.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <string_view>
-#include <system_error>
+
+#include "common/os/folder_entries.hpp"
 
 namespace runstone {
 namespace {
@@ -32,13 +32,8 @@ Result<BackedUpFile, std::string> cut_file(const std::filesystem::path& path,
 }
 
 Result<std::vector<std::filesystem::path>, std::string> files_of_copy(const std::string& folder) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().filename() != kCopyLock) files.push_back(entry.path());
-  }
-  if (error) return failure(folder + ": cannot be read: " + error.message());
-  std::ranges::sort(files);
+  auto files = folder_entries(folder);
+  if (files) std::erase_if(*files, [](const auto& file) { return file.filename() == kCopyLock; });
   return files;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "common/os/file_writer.hpp"
@@ -39,44 +41,61 @@ Result<void, std::string> write_file_of_backup(const BackedUpFile& file, const B
   return {};
 }
 
+/// Stores the blocks of the copy in `folder`, and makes the backup of them.
+Result<void, std::string> store_copy(const std::string& folder, BackupFolder& into,
+                                     const BackupPace& pace, BackupManifest& manifest) {
+  int blocks = 0;
+  auto part_begun = std::chrono::steady_clock::now();
+  const TakeBlock store = [&](ByteView block) -> Result<BlockHash, std::string> {
+    if (blocks++ % kBlocksAtOnce == 0) {
+      if (pace.rest && blocks > 1) pace.rest(std::chrono::steady_clock::now() - part_begun);
+      part_begun = std::chrono::steady_clock::now();
+      if (auto room = check_room(into.path(), into.path(), 0, pace.spare_bytes); !room) {
+        return failure(room.error() + ": `runstone-server backup prune` removes older backups");
+      }
+    }
+    const auto stored = into.blocks().put(block);
+    if (!stored) return failure(stored.error());
+    manifest.new_bytes += stored->written;
+    return stored->hash;
+  };
+  const auto files = files_of_copy(folder);
+  if (!files) return failure(files.error());
+  for (const auto& path : *files) {
+    auto file = cut_file(path, store);
+    if (!file) return failure(file.error());
+    manifest.files.push_back(*std::move(file));
+  }
+  return into.add(manifest);
+}
+
 }  // namespace
 
 Result<AddedBackup, std::string> add_backup(const std::string& from, BackupFolder& into,
                                             TimeUs now_us, const BackupPace& pace,
                                             const BackupProgress& progress, std::ostream& out) {
-  // It is never finished: its end removes the copy.
-  auto folder = NewFolder::make(into.path() + "/copy", out);
+  AddedBackup added;
+  const std::string copy = into.path() + "/copy";
+  std::error_code ignored;
+  added.found_interrupted = std::filesystem::exists(copy + ".partial", ignored);
+  // The folder is not finished on purpose: its destructor removes the copy.
+  auto folder = NewFolder::make(copy, out);
   if (!folder) return failure(folder.error());
   auto copied = back_up_world(from, SourceUse::live, folder->path(), now_us, pace, progress);
   if (!copied) return failure(copied.error());
   const auto begun = std::chrono::steady_clock::now();
-  AddedBackup added;
   added.copy = *std::move(copied);
   constexpr TimeUs kSecondUs = 1'000'000;
   added.manifest.world = added.copy.world;
   added.manifest.taken_us = now_us / kSecondUs * kSecondUs;
   added.manifest.epoch = added.copy.moment.epoch;
   added.manifest.seq = added.copy.moment.seq;
-  int stored_blocks = 0;
-  auto part_begun = begun;
-  const TakeBlock store = [&](ByteView block) -> Result<BlockHash, std::string> {
-    const auto stored = into.blocks().put(block);
-    if (!stored) return failure(stored.error());
-    added.manifest.new_bytes += stored->written;
-    if (++stored_blocks % kBlocksAtOnce == 0) {
-      if (pace.rest) pace.rest(std::chrono::steady_clock::now() - part_begun);
-      part_begun = std::chrono::steady_clock::now();
-    }
-    return stored->hash;
-  };
-  const auto files = files_of_copy(folder->path());
-  if (!files) return failure(files.error());
-  for (const auto& path : *files) {
-    auto file = cut_file(path, store);
-    if (!file) return failure(file.error());
-    added.manifest.files.push_back(*std::move(file));
+  if (auto stored = store_copy(folder->path(), into, pace, added.manifest); !stored) {
+    // No backup names the blocks that were stored. Without room for a backup, they would fill the
+    // disk for ever. If they cannot be removed now, the next removal of a backup removes them.
+    static_cast<void>(into.remove({}));
+    return failure(stored.error());
   }
-  if (auto made = into.add(added.manifest); !made) return failure(made.error());
   added.store_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return added;
 }

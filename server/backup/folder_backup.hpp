@@ -19,11 +19,13 @@ struct AddedBackup {
   BackupManifest manifest;
   WorldBackup copy;
   double store_s = 0;
+  bool found_interrupted = false;  // a backup before this one was killed, and may have left blocks
 };
 
 /// Makes a backup of the world in the folder `from`. A server may run the world. Requires that `into`
-/// is locked. Reports to `out` what an interrupted backup left and this one has removed. The error is
-/// one line; the folder then has no new backup.
+/// is locked. Reports to `out` what an interrupted backup left and this one has removed. While it
+/// stores blocks, `pace.spare_bytes` of the disk stay free. The error is one line; the folder then has
+/// no new backup, and the blocks that this one has stored are removed.
 Result<AddedBackup, std::string> add_backup(const std::string& from, BackupFolder& into,
                                             TimeUs now_us, const BackupPace& pace,
                                             const BackupProgress& progress, std::ostream& out);

@@ -50,7 +50,8 @@ Result<void, std::string> add_to_folder(const BackupFolderRequest& request, Time
   print_copy(added->copy, out);
   out << "stored      " << added->manifest.new_bytes << " new bytes of " << added->manifest.bytes()
       << ", in " << seconds_text(added->store_s) << '\n';
-  const auto names = folder->to_remove(request.policy);
+  const auto names = folder->to_remove(request.policy, now_us);
+  if (names && names->empty() && !added->found_interrupted) return {};  // nothing to remove
   const auto pruned = names ? folder->remove(*names)
                             : Result<BackupFolder::Pruned, std::string>(failure(names.error()));
   if (pruned) {
@@ -97,16 +98,22 @@ void print_entries(const BackupFolder& folder, const Entries& entries, bool json
   for (const auto& entry : entries) print_entry(entry, out);
 }
 
-Result<void, std::string> list_folder(const BackupFolderRequest& request, std::ostream& out) {
+Result<void, std::string> list_folder(const BackupFolderRequest& request, TimeUs now_us,
+                                      std::ostream& out) {
   const auto folder = BackupFolder::open(request.folder);
   if (!folder) return failure(folder.error());
   const auto entries = folder->entries();
   if (!entries) return failure(entries.error());
   print_entries(*folder, *entries, request.json, out);
+  if (request.json || entries->empty() || entries->back().taken_us <= now_us) return {};
+  out << "warning     " << entries->back().name
+      << " is dated in the future: a clock was wrong, or is. It stays, and takes no place of another "
+         "backup\n";
   return {};
 }
 
-Result<void, std::string> prune_folder(const BackupFolderRequest& request, std::ostream& out) {
+Result<void, std::string> prune_folder(const BackupFolderRequest& request, TimeUs now_us,
+                                       std::ostream& out) {
   if (request.policy.keeps_all()) {
     return failure(
         "prune: say what stays: --keep-hourly, --keep-daily or --keep-weekly with a number above 0");
@@ -114,7 +121,7 @@ Result<void, std::string> prune_folder(const BackupFolderRequest& request, std::
   auto folder = BackupFolder::open(request.folder);
   if (!folder) return failure(folder.error());
   if (auto locked = folder->lock(); !locked) return failure(locked.error());
-  const auto names = folder->to_remove(request.policy);
+  const auto names = folder->to_remove(request.policy, now_us);
   if (!names) return failure(names.error());
   if (request.is_rehearsal) {
     for (const std::string& name : *names) out << "would go    " << name << '\n';
@@ -131,7 +138,9 @@ Result<void, std::string> prune_folder(const BackupFolderRequest& request, std::
 Result<void, std::string> verify_folder(const BackupFolderRequest& request, std::ostream& out) {
   auto folder = BackupFolder::open(request.folder);
   if (!folder) return failure(folder.error());
-  if (auto locked = folder->lock(); !locked) return failure(locked.error());
+  const auto unlocked = folder->lock_for_reading();
+  if (!unlocked) return failure(unlocked.error());
+  if (!unlocked->empty() && !request.json) out << "warning     " << *unlocked << '\n';
   auto names = folder->names();
   if (!names) return failure(names.error());
   if (!request.backup.empty()) {
@@ -169,9 +178,9 @@ Result<void, std::string> run_backup_folder(const BackupFolderRequest& request, 
     case BackupFolderRequest::Action::add:
       return add_to_folder(request, now_us, pace, out);
     case BackupFolderRequest::Action::list:
-      return list_folder(request, out);
+      return list_folder(request, now_us, out);
     case BackupFolderRequest::Action::prune:
-      return prune_folder(request, out);
+      return prune_folder(request, now_us, out);
     case BackupFolderRequest::Action::verify:
       break;
   }

@@ -26,7 +26,8 @@ struct BackupFolderRequest {
 ///   - add makes a verified backup, and then removes those that the policy does not keep. It fails
 ///     if the folder lies in the world's folder, or the other way round. If a backup was made and
 ///     others could not be removed, a line begins with "warning".
-///   - list prints all backups. It needs no lock and writes nothing.
+///   - list prints all backups, and a warning if one is dated after `now_us`. It needs no lock and
+///     writes nothing.
 ///   - prune removes the backups that the policy does not keep. It fails if the policy keeps all.
 ///   - verify reads every block of the backups. It fails if one of them is damaged.
 Result<void, std::string> run_backup_folder(const BackupFolderRequest& request, TimeUs now_us,

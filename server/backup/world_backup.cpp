@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/os/folder_entries.hpp"
 #include "common/os/private_file.hpp"
 #include "common/sqlite/sqlite_file.hpp"
 #include "server/store/sql_result.hpp"
@@ -40,10 +41,10 @@ Result<void, std::string> copy_small(const fs::path& from, const fs::path& to) {
   return write_private_file(to.string(), *bytes);
 }
 
-bool is_configuration(const fs::directory_entry& entry) {
+bool is_configuration(const fs::path& file) {
   std::error_code error;
-  return !entry.is_symlink(error) && entry.is_regular_file(error) &&
-         entry.path().extension() == ".toml" && entry.file_size(error) <= kConfigurationBytesMax;
+  return fs::is_regular_file(fs::symlink_status(file, error)) && file.extension() == ".toml" &&
+         fs::file_size(file, error) <= kConfigurationBytesMax;
 }
 
 /// Moves the write-ahead log of a closed database into it. Closing it does the same, and says nothing
@@ -133,20 +134,19 @@ Result<void, std::string> complete_copy(const std::string& to, TimeUs now_us, Wo
 Result<std::vector<std::string>, std::string> copy_configuration(const std::string& from,
                                                                  const std::string& to) {
   std::vector<std::string> left_out;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(from, error)) {
-    const std::string name = entry.path().filename().string();
+  const auto entries = folder_entries(from);
+  if (!entries) return failure(entries.error());
+  for (const fs::path& path : *entries) {
+    const std::string name = path.filename().string();
     if (name == kDatabase || name == kMark ||
         std::find(kMadeAnew.begin(), kMadeAnew.end(), name) != kMadeAnew.end())
       continue;
-    if (!is_configuration(entry)) {
+    if (!is_configuration(path)) {
       left_out.push_back(name);
-    } else if (auto copied = copy_small(entry.path(), fs::path(to) / name); !copied) {
+    } else if (auto copied = copy_small(path, fs::path(to) / name); !copied) {
       return failure(copied.error());
     }
   }
-  if (error) return failure(from + ": cannot be read: " + error.message());
-  std::sort(left_out.begin(), left_out.end());
   return left_out;
 }
 

@@ -1,6 +1,11 @@
 #include "server/backup/world_pack.hpp"
 
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -66,6 +71,9 @@ Result<BackedUpFile, std::string> pack_file(const fs::path& path, PackWriter& pa
     if (++blocks % kBlocksToRest == 0) {
       if (pace.rest) pace.rest(std::chrono::steady_clock::now() - part_begun);
       part_begun = std::chrono::steady_clock::now();
+      const std::string folder = path.parent_path().string();
+      if (auto room = check_room("the pack", folder, 0, pace.spare_bytes); !room)
+        return failure(room.error());
     }
     return hash_of_block(block);
   });
@@ -102,6 +110,18 @@ Result<std::string, std::string> write_pack(const std::string& folder, const Wor
   if (auto finished = file->finish(); !finished)
     return failure("cannot be written: " + finished.error());
   return fresh;
+}
+
+/// Gives a file the name `to`. Fails if there is a file of this name, also one that was made a moment
+/// ago. The error is that of the system.
+Result<void, std::string> rename_to_new(const std::string& from, const std::string& to) {
+  const auto wrong = [] { return failure(std::generic_category().message(errno)); };
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return {};
+  if (errno != EINVAL && errno != ENOSYS) return wrong();
+  // Some file systems of networks cannot do this. A link does not replace a file either.
+  if (::link(from.c_str(), to.c_str()) != 0) return wrong();
+  ::unlink(from.c_str());
+  return {};
 }
 
 /// Reads the entries of a pack.
@@ -203,7 +223,7 @@ Result<void, std::string> pack_world(const PackRequest& request, TimeUs now_us, 
   std::error_code error;
   if (fs::exists(fs::symlink_status(request.file, error)))
     return failure(request.file + ": is there: a pack replaces no file");
-  // It is never finished: its end removes the copy.
+  // The folder is not finished on purpose: its destructor removes the copy.
   auto folder = NewFolder::make(request.file + ".copy", out);
   if (!folder) return failure(folder.error());
   const auto copied = [&] {
@@ -215,8 +235,8 @@ Result<void, std::string> pack_world(const PackRequest& request, TimeUs now_us, 
   const auto fresh = write_pack(folder->path(), *copied, now_us, pace);
   if (!fresh) return failure(request.file + ": " + fresh.error());
   const std::uint64_t bytes = fs::file_size(*fresh, error);
-  fs::rename(*fresh, request.file, error);
-  if (error) return failure(request.file + ": cannot be made: " + error.message());
+  if (auto named = rename_to_new(*fresh, request.file); !named)
+    return failure(request.file + ": cannot be made: " + named.error());
   sync_folder_of(request.file);
   out << "packed      " << request.world << " to " << request.file << ", " << bytes << " bytes\n";
   print_copy(*copied, out);

@@ -63,9 +63,12 @@ TEST_CASE("a policy keeps the newest backup of each of the last hours, days and 
     const std::vector<TimeUs> times = random_times(rng);
     const BackupPolicy policy{rng.below(30), rng.below(12), rng.below(6)};
     CAPTURE(round, times.size(), policy.hourly, policy.daily, policy.weekly);
-    const std::vector<TimeUs> removed = backups_to_remove(times, policy);
+    // Some times may be after the clock, which was ahead.
+    const TimeUs now = kNow - static_cast<TimeUs>(rng.below(200)) * kDay;
+    const std::vector<TimeUs> removed = backups_to_remove(times, policy, now);
     REQUIRE(std::is_sorted(removed.begin(), removed.end()));
-    const std::set<TimeUs> all(times.begin(), times.end());
+    std::set<TimeUs> all(times.begin(), times.end());
+    all.erase(all.upper_bound(now), all.end());
     const std::set<TimeUs> gone(removed.begin(), removed.end());
     REQUIRE(gone.size() == removed.size());
     std::vector<TimeUs> left;
@@ -79,8 +82,8 @@ TEST_CASE("a policy keeps the newest backup of each of the last hours, days and 
       if (stays) left.push_back(time);
     }
     REQUIRE(gone.size() + left.size() == all.size());
-    REQUIRE((times.empty() || !left.empty()));
-    CHECK(backups_to_remove(left, policy).empty());
+    REQUIRE((all.empty() || !left.empty()));
+    CHECK(backups_to_remove(left, policy, now).empty());
   }
 }
 
@@ -91,7 +94,7 @@ TEST_CASE("backups of every hour that are pruned each time cover days and weeks"
   for (int hour = 0; hour < 24 * 60; ++hour) {
     now = kNow + hour * kHour;
     kept.push_back(now);
-    const auto removed = backups_to_remove(kept, policy);
+    const auto removed = backups_to_remove(kept, policy, now);
     for (const TimeUs time : removed) std::erase(kept, time);
     REQUIRE(kept.back() == now);
     REQUIRE(kept.size() <= 24 + 7 + 4);
@@ -108,10 +111,12 @@ TEST_CASE("backups of every hour that are pruned each time cover days and weeks"
 }
 
 TEST_CASE("a policy without numbers keeps every backup, and one backup always stays", "[backup]") {
-  CHECK(backups_to_remove({1, 2, 3}, {0, 0, 0}).empty());
-  CHECK(backups_to_remove({}, {1, 1, 1}).empty());
-  CHECK(backups_to_remove({5}, {0, 1, 0}).empty());
-  CHECK(backups_to_remove({3, 1, 2}, {1, 0, 0}) == std::vector<TimeUs>{1, 2});
+  CHECK(backups_to_remove({1, 2, 3}, {0, 0, 0}, 9).empty());
+  CHECK(backups_to_remove({}, {1, 1, 1}, 9).empty());
+  CHECK(backups_to_remove({5}, {0, 1, 0}, 9).empty());
+  CHECK(backups_to_remove({3, 1, 2}, {1, 0, 0}, 9) == std::vector<TimeUs>{1, 2});
+  CHECK(backups_to_remove({3, 1, 2}, {1, 0, 0}, 2) == std::vector<TimeUs>{1});
+  CHECK(backups_to_remove({3, 1, 2}, {1, 0, 0}, 0).empty());
 }
 
 }  // namespace runstone::test

@@ -2,8 +2,13 @@
 #include "server/app/backup_schedule.hpp"
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
+#include <thread>
 
+#include "server/runtime/logging.hpp"
 #include "tests/support/core/temp_folder.hpp"
+#include "tests/unit/server/app/backup_script.hpp"
 
 namespace runstone::test {
 
@@ -12,6 +17,25 @@ TEST_CASE("the next backup follows the last one, whatever the clock did", "[back
   CHECK(next_backup_us(990, 1'000, 60) == 1'050);
   CHECK(next_backup_us(10, 1'000, 60) == 70);  // long ago: at once
   CHECK(next_backup_us(5'000, 1'000, 60) == 1'060);
+}
+
+TEST_CASE("a backup that was made and cannot be read is not made again at once", "[backup]") {
+  start_logging(LogLevel::error, LogFormat::text);
+  const BackupScript script("echo made >> \"$FOLDER/calls\"\n");
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "backups");
+  // No world is there, so it cannot be known which backups are of it.
+  BackupSchedule schedule({folder / "world", folder / "backups", 86'400, BackupPolicy{}});
+  schedule.start();
+  CHECK(script.written("calls") == "made\n");
+  for (int i = 0; i < 600 && schedule.state().next_s < 80'000; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const BackupState state = schedule.state();
+  CHECK(state.next_s >= 80'000);
+  CHECK(state.failures == 0);
+  CHECK_FALSE(state.last.has_value());
+  schedule.stop();
+  CHECK(script.written("calls") == "made\n");
 }
 
 TEST_CASE("settings without a sound plan for backups are refused with words", "[backup]") {

@@ -12,73 +12,13 @@
 #include <set>
 
 #include "common/core/hex.hpp"
-#include "server/backup/folder_program.hpp"
-#include "tests/unit/server/backup/backup_bench.hpp"
+#include "tests/unit/server/backup/folder_bench.hpp"
 
 namespace runstone::test {
 namespace {
 
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
-
-constexpr TimeUs kHourUs = 3'600'000'000;
-
-/// A world with a folder for its backups.
-struct FolderBench : BackupBench {
-  FolderBench() { fs::create_directory(backups); }
-
-  /// Carries out a request, and returns the error or an empty text. `printed` is then what it printed.
-  std::string run(BackupFolderRequest request, TimeUs now_us = kBackupTimeUs,
-                  const BackupPace& pace = {}) {
-    std::ostringstream out;
-    request.folder = backups;
-    const auto done = run_backup_folder(request, now_us, out, pace);
-    printed = out.str();
-    return done ? "" : done.error();
-  }
-  std::string add(int hour, const BackupPolicy& policy = {0, 0, 0}, const BackupPace& pace = {}) {
-    BackupFolderRequest request;
-    request.action = BackupFolderRequest::Action::add;
-    request.world = world;
-    request.policy = policy;
-    return run(request, kBackupTimeUs + hour * kHourUs, pace);
-  }
-  std::string ask(BackupFolderRequest::Action action, const std::string& backup = "") {
-    BackupFolderRequest request;
-    request.action = action;
-    request.backup = backup;
-    return run(request);
-  }
-  std::string verify() { return ask(BackupFolderRequest::Action::verify); }
-  std::string restore_backup(const std::string& name, const std::string& to) {
-    std::ostringstream out;
-    const auto done = restore({backups, to, false, name}, kBackupTimeUs + 100 * kHourUs, out);
-    printed = out.str();
-    return done ? "" : done.error();
-  }
-  std::vector<BackupFolder::Entry> entries() {
-    auto folder_of_backups = BackupFolder::open(backups);
-    REQUIRE(folder_of_backups.has_value());
-    auto all = folder_of_backups->entries();
-    REQUIRE(all.has_value());
-    return *std::move(all);
-  }
-  /// Returns the files of blocks.
-  std::vector<fs::path> blocks() const {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(backups + "/blocks")) {
-      if (entry.is_regular_file()) files.push_back(entry.path());
-    }
-    return files;
-  }
-  std::uint64_t block_bytes() const {
-    std::uint64_t bytes = 0;
-    for (const auto& file : blocks()) bytes += fs::file_size(file);
-    return bytes;
-  }
-
-  const std::string backups = folder / "backups";
-};
 
 }  // namespace
 
@@ -140,18 +80,19 @@ TEST_CASE_METHOD(FolderBench, "pruning removes what no other backup needs, and t
   CHECK_THAT(run(prune), Contains("say what stays"));
   prune.policy.hourly = 2;
   prune.is_rehearsal = true;
-  REQUIRE(run(prune) == "");
+  const TimeUs now_us = kBackupTimeUs + 5 * kBackupHourUs;
+  REQUIRE(run(prune, now_us) == "");
   CHECK_THAT(printed, Contains("would go    " + backup_name(kBackupTimeUs)));
   CHECK(entries().size() == 5);
   prune.is_rehearsal = false;
   const std::uint64_t before = block_bytes();
-  REQUIRE(run(prune) == "");
+  REQUIRE(run(prune, now_us) == "");
   CHECK_THAT(printed, Contains("removed     " + backup_name(kBackupTimeUs)));
   REQUIRE(entries().size() == 2);
   CHECK(block_bytes() < before);
   CHECK(fs::exists(backups + "/blocks/notes.txt"));
   CHECK(verify() == "");
-  REQUIRE(restore_backup(backup_name(kBackupTimeUs + 3 * kHourUs), back) == "");
+  REQUIRE(restore_backup(backup_name(kBackupTimeUs + 3 * kBackupHourUs), back) == "");
   CHECK(opened(back)->check().has_value());
   // The blocks are exactly those that the two manifests name.
   std::set<std::string> needed;
@@ -172,7 +113,7 @@ TEST_CASE_METHOD(FolderBench, "a backup with a policy removes older ones", "[bac
   REQUIRE(add(1, {1, 0, 0}) == "");
   CHECK_THAT(printed, Contains("removed     " + backup_name(kBackupTimeUs)));
   REQUIRE(entries().size() == 1);
-  CHECK(entries()[0].taken_us == kBackupTimeUs + kHourUs);
+  CHECK(entries()[0].taken_us == kBackupTimeUs + kBackupHourUs);
 }
 
 TEST_CASE_METHOD(FolderBench, "a damaged block is found, named, and made anew by the next backup",

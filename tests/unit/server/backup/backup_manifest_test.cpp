@@ -2,6 +2,7 @@
 #include "server/backup/backup_manifest.hpp"
 
 #include <catch2/catch.hpp>
+#include <sstream>
 
 #include "common/core/hex.hpp"
 
@@ -21,6 +22,12 @@ BackupManifest sample_manifest() {
                     {"world of mine.sqlite", kBlockBytes + 1, {hash, hash_of_block({})}},
                     {"world.durable", 0, {}}};
   return manifest;
+}
+
+/// Reads the text without its blocks.
+Result<BackupManifest, std::string> sizes_of(const std::string& text) {
+  std::istringstream in(text);
+  return read_manifest_sizes(in);
 }
 
 /// Returns the text with the hash at its end made anew.
@@ -68,11 +75,29 @@ TEST_CASE("a manifest has the text that the documents describe", "[backup]") {
   CHECK(back->bytes() == 3 + kBlockBytes + 1);
 }
 
+TEST_CASE("the sizes and the head of a manifest are those of all of it", "[backup]") {
+  const std::string text = manifest_text(sample_manifest());
+  BackupManifest expected = sample_manifest();
+  for (BackedUpFile& file : expected.files) file.blocks.clear();
+  const auto sizes = sizes_of(text);
+  REQUIRE(sizes.has_value());
+  CHECK(*sizes == expected);
+  expected.files.clear();
+  CHECK(parse_manifest_head(text) == expected);
+  const std::size_t head_bytes = text.find("file 3");
+  CHECK(parse_manifest_head(text.substr(0, head_bytes)) == expected);
+  for (std::size_t bytes = 0; bytes < head_bytes; ++bytes) {
+    CAPTURE(bytes);
+    CHECK_FALSE(parse_manifest_head(text.substr(0, bytes)).has_value());
+  }
+}
+
 TEST_CASE("a manifest that is cut off or changed is refused", "[backup]") {
   const std::string text = manifest_text(sample_manifest());
   for (std::size_t bytes = 0; bytes < text.size(); ++bytes) {
     CAPTURE(bytes);
     REQUIRE_FALSE(parse_manifest(text.substr(0, bytes)).has_value());
+    REQUIRE_FALSE(sizes_of(text.substr(0, bytes)).has_value());
   }
   for (std::size_t i = 0; i < text.size(); ++i) {
     CAPTURE(i);
@@ -80,8 +105,14 @@ TEST_CASE("a manifest that is cut off or changed is refused", "[backup]") {
     changed[i] = static_cast<char>(changed[i] ^ 1);
     // A digit of the last hash in the other case is the same hash; bit 0 does not change the case.
     REQUIRE_FALSE(parse_manifest(changed).has_value());
+    REQUIRE_FALSE(sizes_of(changed).has_value());
   }
   CHECK_FALSE(parse_manifest(text + "\n").has_value());
+  CHECK_FALSE(sizes_of(text + "\n").has_value());
+  CHECK(sizes_of(replaced(text, "backup 1", "backup 2")).error() ==
+        "is of a newer version of Runstone");
+  CHECK(sizes_of("dear diary\n").error() == "is no manifest of a backup");
+  CHECK(sizes_of(replaced(text, "server.toml", std::string(1'000, 'a'))).error() == "is damaged");
   CHECK(parse_manifest(replaced(text, "backup 1", "backup 2")).error() ==
         "is of a newer version of Runstone");
   CHECK(parse_manifest("dear diary").error() == "is no manifest of a backup");
@@ -105,6 +136,7 @@ TEST_CASE("a manifest whose hash is right and whose lines are wrong is refused",
   for (const auto& [from, to] : changes) {
     CAPTURE(from, to);
     CHECK_FALSE(parse_manifest(with_right_end(replaced(text, from, to))).has_value());
+    CHECK_FALSE(sizes_of(with_right_end(replaced(text, from, to))).has_value());
   }
 }
 

@@ -51,6 +51,17 @@ TEST_CASE_METHOD(PackBench, "a world is made of its pack, as it was at one momen
   CHECK(fs::exists(back + "/server.toml"));
 }
 
+TEST_CASE_METHOD(PackBench, "a file that is made while a world is packed is not replaced",
+                 "[backup]") {
+  BackupPace pace;
+  pace.part_pages = 4;
+  pace.rest = [&](std::chrono::nanoseconds) { write_file(file, "mine"); };
+  CHECK_THAT(pack(file, pace), Contains(file + ": cannot be made: File exists"));
+  std::ifstream in(file);
+  CHECK(std::string(std::istreambuf_iterator<char>(in), {}) == "mine");
+  CHECK_FALSE(fs::exists(file + ".copy.partial"));
+}
+
 TEST_CASE_METHOD(PackBench, "tar unpacks a pack to a world", "[backup]") {
   REQUIRE(pack(file) == "");
   fs::create_directory(copy);
