@@ -35,7 +35,9 @@ std::optional<PastedBuild> PastedBuild::of(const ToolAction& made, const ToolCli
                                            const Replica& replica) {
   if (made.edits.size() != 1 || !made.pastes.empty() || !clipboard.build) return std::nullopt;
   const auto* const paste = std::get_if<Paste>(&made.edits.front().shape);
-  if (paste == nullptr || clipboard.build->volume() > kVolumeMax) return std::nullopt;
+  // Another clipboard is that of the copies of a symmetry.
+  if (paste == nullptr || paste->clipboard != clipboard.whole) return std::nullopt;
+  if (clipboard.build->volume() > kVolumeMax) return std::nullopt;
   PastedBuild out;
   out.build_ = clipboard.build;
   out.at_ = paste->at;

@@ -18,9 +18,9 @@ class PastedBuild {
   /// The cells of a build that may be moved, touched or not.
   static constexpr std::uint64_t kVolumeMax = std::uint64_t{1} << 18;
 
-  /// Returns the clipboard where the paste tool puts it with `made`. Returns nullopt if it is larger
-  /// than kVolumeMax, or not all voxels there are shown. Call it before the edits are applied. Requires
-  /// an open replica. Cost: O(volume * log cells).
+  /// Returns the clipboard where the paste tool puts it with `made`. Returns nullopt if `made` has
+  /// mirrored copies, if the clipboard is larger than kVolumeMax, or if not all voxels there are shown.
+  /// Call it before the edits are applied. Requires an open replica. Cost: O(volume * log cells).
   static std::optional<PastedBuild> of(const ToolAction& made, const ToolClipboard& clipboard,
                                        const Replica& replica);
 

@@ -363,7 +363,9 @@ void ToolBox::keep_pasted(const Replica& replica, ToolEdits& made) {
 }
 
 ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
-  if (!pasted_) return failure("the arrows move what you have just pasted: up to 262,144 voxels");
+  if (!pasted_)
+    return failure(
+        "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)");
   ++revision_;
   return pasted_->move(direction, replica);
 }
