@@ -108,6 +108,7 @@ Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us
     if (made->has_followers && i > 0) {
       follow(edits[i], now_us);
     } else if (auto done = propose(edits[i], now_us, now_us, part); !done) {
+      box_.forget_pasted();
       return done;
     }
   }
@@ -125,8 +126,10 @@ bool EditTool::needs_build(const ToolAction& action) const {
 
 Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,
                                           OnRefusal on_refusal) {
-  if (sender_ != nullptr)
+  if (sender_ != nullptr) {
+    box_.forget_pasted();  // the build may be its paste
     return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  }
   box_.begin_action();
   sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
   build_name_ = std::move(name);
@@ -141,6 +144,7 @@ Result<void, std::string> EditTool::build(const ToolAction& action) {
 }
 
 void EditTool::take(const ReplicaChanges& changes, TimeUs now_us) {
+  if (!changes.rejects.empty()) box_.forget_pasted();
   if (sender_ != nullptr) sender_->take(changes, now_us);
 }
 

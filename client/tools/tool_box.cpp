@@ -367,7 +367,14 @@ ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
     return failure(
         "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)");
   ++revision_;
-  return pasted_->move(direction, replica);
+  PastedBuild next = *pasted_;
+  auto made = next.move(direction, replica);
+  if (!made) return made;
+  // As a build it would become an action of its own.
+  if (!is_small(*made, replica.edit_limits()))
+    return failure("the build is too large to be moved here");
+  pasted_ = std::move(next);
+  return made;
 }
 
 void ToolBox::hold_copied(const ToolEdits& made) {

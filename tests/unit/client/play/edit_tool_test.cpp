@@ -56,6 +56,26 @@ struct Fixture {
   Result<void, std::string> propose(VoxelPos at) {
     return tool.propose({SetVoxel{at}, {}, 1}, kNow, kNow);
   }
+  /// Shows one empty chunk, and copies a cube of 2 voxels a side from it.
+  void copy_cube() {
+    ChunkSnapshot snapshot;
+    snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty);
+    snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+    receive(runstone::test::chunks_of(std::move(snapshot)));
+    box.select(VoxelBox{{0, 0, 0}, {2, 2, 2}});
+    REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
+    REQUIRE(box.copy(session.replica(), true).has_value());
+    REQUIRE(box.choose("paste").has_value());
+  }
+  Result<void, std::string> paste_cube() {
+    TypedPlaces typed;
+    typed.places = {{6, 6, 6}};
+    box.type_places(typed);
+    return tool.propose(box.apply_typed(session.replica(), 1), kNow);
+  }
+  Result<void, std::string> nudge(Direction direction = Direction::pos_y) {
+    return tool.propose(box.nudge(session.replica(), direction), kNow);
+  }
   std::uint64_t infinite(EditPath path) const {
     return recorder.report()[path]
         .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
@@ -290,26 +310,50 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
 
 TEST_CASE_METHOD(Fixture, "the steps of a paste that is moved belong to its action",
                  "[client_app]") {
-  ChunkSnapshot snapshot;
-  snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty);
-  snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
-  receive(runstone::test::chunks_of(std::move(snapshot)));
-  box.select(VoxelBox{{0, 0, 0}, {2, 2, 2}});
-  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
-  REQUIRE(box.copy(session.replica(), true).has_value());
-  REQUIRE(box.choose("paste").has_value());
-  TypedPlaces typed;
-  typed.places = {{6, 6, 6}};
-  box.type_places(typed);
-  REQUIRE(tool.propose(box.apply_typed(session.replica(), 1), kNow).has_value());
-  for (int i = 0; i < 2; ++i)
-    REQUIRE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  for (int i = 0; i < 2; ++i) REQUIRE(nudge().has_value());
   REQUIRE(propose({9, 9, 9}).has_value());
-  CHECK_FALSE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  CHECK_FALSE(nudge().has_value());
   std::vector<ClientSequence> actions;
   for (const auto& [seq, local] : session.replica().local_edits().all())
     actions.push_back(local.action);
   CHECK(actions == std::vector<ClientSequence>{0, 2, 2, 2, 0});
+}
+
+TEST_CASE_METHOD(Fixture, "a paste of which an edit was refused cannot be moved", "[client_app]") {
+  const std::string none =
+      "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)";
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  REQUIRE(nudge().has_value());
+  SECTION("by the client") {
+    while (session.replica().local_edits().all().size() < kLocalEditsMax)
+      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    REQUIRE_FALSE(nudge().has_value());
+  }
+  SECTION("by the client, when it is pasted") {
+    while (session.replica().local_edits().all().size() < kLocalEditsMax)
+      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    REQUIRE_FALSE(paste_cube().has_value());
+  }
+  SECTION("by the server") {
+    const ClientSequence last = session.replica().local_edits().all().rbegin()->first;
+    receive(Reject{last, RejectReason::not_permitted, "the ground is protected: spawn", 0});
+    tool.take(session.replica().drain_changes(), kNow);
+  }
+  CHECK(box.nudge(session.replica(), Direction::pos_y).error() == none);
+}
+
+TEST_CASE_METHOD(Fixture, "a step that cannot be made leaves the paste where it is",
+                 "[client_app]") {
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  for (int i = 0; i < 8; ++i) REQUIRE(nudge().has_value());
+  for (int i = 0; i < 2; ++i) CHECK(nudge().error() == "the ground is not loaded there");
+  REQUIRE(nudge(Direction::neg_y).has_value());
+  CHECK(session.replica().shown_at({6, 13, 6}) == Material{1});
+  CHECK(session.replica().shown_at({6, 15, 6}) == kEmpty);
 }
 
 TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one action",
