@@ -121,7 +121,8 @@ void EditTool::follow(const EditDescriptor& edit, TimeUs now_us) {
 }
 
 bool EditTool::needs_build(const ToolAction& action) const {
-  return !is_small(action, session_.replica().edit_limits());
+  const bool is_long = !action.has_followers && action.edits.size() > kBuildEdits;
+  return is_long || !is_small(action, session_.replica().edit_limits());
 }
 
 Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,

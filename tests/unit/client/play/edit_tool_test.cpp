@@ -383,6 +383,25 @@ TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one 
   CHECK_FALSE(tool.stop_building());
 }
 
+TEST_CASE_METHOD(Fixture,
+                 "a fill of many boxes waits for the budget instead of ending in the middle",
+                 "[client_app]") {
+  receive(Permissions{"builder", 2, 0, "", {1, 3}});
+  const auto select = [&](std::int32_t count) {
+    box.select(std::nullopt);
+    for (std::int32_t i = 0; i < count; ++i)
+      REQUIRE(box.select({{2 * i, 0, 0}, {2 * i + 1, 1, 1}}, SelectMode::add).has_value());
+  };
+  select(8);
+  CHECK_FALSE(tool.needs_build(box.fill(session.replica(), 1).value()));
+  select(9);
+  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
+  CHECK(tool.is_building());
+  CHECK(tool.refused() == 0);
+  REQUIRE_FALSE(tool.step_build(kNow).has_value());
+  CHECK(session.replica().local_edits().all().size() == 1);  // the first one names the action
+}
+
 TEST_CASE_METHOD(Fixture, "a clear of any size begins where the selection was copied",
                  "[client_app]") {
   box.select(VoxelBox{{0, 0, 0}, {8, 8, 8}});
