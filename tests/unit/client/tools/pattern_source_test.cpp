@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "client/tools/preview_words.hpp"
 #include "common/patterns/pattern_parser.hpp"
+#include "tests/unit/client/build/fake_port.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone::test {
@@ -145,6 +147,27 @@ TEST_CASE_METHOD(PatternBench,
     CHECK(at(p) == *default_material_table().find("stone"));
     CHECK(at({p.x, p.y - 1, p.z}) == 1);
   }
+}
+
+TEST_CASE_METHOD(PatternBench, "a turn of the sender does the work of one turn, not of one an edit",
+                 "[tools]") {
+  show_flat();
+  // Each part of 16 x 16 columns takes 256 units and more, and makes one edit.
+  const PatternWorkPtr work = work_of("stone where is grass", {{-32, -16, -32}, {32, 0, 32}});
+  FakePort port;
+  ActionSender sender(std::make_unique<PatternSource>(work, replica.edit_limits(),
+                                                      PatternSteps{{16, 16, 16}, 600}));
+  std::size_t before = 0, turns = 0;
+  for (; !sender.has_ended(); ++turns) {
+    REQUIRE(turns < 64);
+    sender.step(port, 1'000'000);
+    CHECK(port.offered.size() - before <= 2);
+    before = port.offered.size();
+    port.apply_all();
+  }
+  CHECK(sender.state() == ActionSender::State::done);
+  CHECK(before >= 16);
+  CHECK(turns >= 8);
 }
 
 TEST_CASE_METHOD(PatternBench, "each copy of a pattern is that of its box, mirrored", "[tools]") {
