@@ -76,7 +76,8 @@ Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs
   const BoxSet selected = box_.selected_boxes();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
-  if (!done) box_.select(selected);  // it did not move
+  // It did not move. An equal selection is not set again, because that ends the preview.
+  if (!done && box_.selected_boxes() != selected) box_.select(selected);
   return done;
 }
 

@@ -129,6 +129,7 @@ Result<void, std::string> ToolBox::choose(std::string_view name) {
   if (it == tools_.end()) return failure("there is no tool " + std::string(name));
   chosen_ = static_cast<std::size_t>(it - tools_.begin());
   points_.clear();
+  pattern_.set(nullptr);  // its chunks are kept no longer
   ++revision_;
   return {};
 }

@@ -199,6 +199,11 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 9, 15});
   CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  // A script may set one plane to a border and the other one to a middle. The plane in use counts.
+  box.set_symmetry({SymmetryKind::z, 8, 15});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::z, 8, 14});
+  box.set_symmetry({SymmetryKind::x, 8, 14});
   CHECK(act(Action::preview) == "previews are hidden");
   CHECK(act(Action::select) == "tool: select");
   CHECK(act(Action::larger) == "tool: select, mode add, mirrored along x");
@@ -286,6 +291,17 @@ TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the pa
   past.past = true;
   receive(past);
   CHECK(tool.ghosts().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a command that fails leaves the preview as it is", "[client_app]") {
+  copy_cube();
+  tool.fix_aim(FixedAim{{6, 6, 6}, Direction::pos_y});
+  for (int turn = 0; turn < 50; ++turn) tool.step_preview();
+  REQUIRE_FALSE(tool.ghosts().empty());
+  REQUIRE_FALSE(tool.step_preview());
+  CHECK_FALSE(tool.carry_out(PasteNudge{Direction::pos_x}, kNow).has_value());
+  for (int turn = 0; turn < 50; ++turn) CHECK_FALSE(tool.step_preview());
+  CHECK_FALSE(tool.ghosts().empty());
 }
 
 TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next action is another one",

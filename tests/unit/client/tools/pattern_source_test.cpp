@@ -240,6 +240,23 @@ TEST_CASE_METHOD(PatternBench, "a large box of the tool mix is one action with a
   CHECK(box.press(replica, aim, ToolButton::place).error() == "a chunk of the box is not loaded");
 }
 
+TEST_CASE_METHOD(PatternBench, "another tool ends the preview of a pattern", "[tools]") {
+  show_flat();
+  REQUIRE(box.choose("mix"));
+  REQUIRE(box.set_text("pattern", "50% stone, 50% sand"));
+  REQUIRE(box.set_parameter("region", 1));
+  box.select(VoxelBox{{-32, -32, -32}, {32, 32, 32}});
+  REQUIRE(box.select({{-32, -32, -32}, {0, 0, 0}}, SelectMode::remove));
+  const Aim aim = aim_at({0, -1, 0}, Direction::pos_y);
+  for (unsigned turns = 0; box.is_preview_complete() || turns <= ToolBox::kRestCalls; ++turns) {
+    REQUIRE(turns < 2 * ToolBox::kRestCalls);
+    box.step_preview(replica, aim, 64);
+  }
+  REQUIRE_FALSE(box.is_preview_complete());
+  REQUIRE(box.choose("voxel"));
+  CHECK(box.is_preview_complete());
+}
+
 TEST_CASE_METHOD(PatternBench,
                  "a preview of too many single voxels is given up, and the click is not",
                  "[tools]") {
