@@ -235,7 +235,7 @@ bool Play::act(Action action, TimeUs now_us) {
       return true;
     case Action::stop_building:
       notify(tool_.stop_building() ? "it stops when the server has answered what was sent"
-                                   : "no fill, paste or move is under way");
+                                   : "no fill, paste, move or mix is under way");
       return true;
     case Action::undo: {
       // An action of which nothing was sent yet is only stopped: an undo would take back the one
