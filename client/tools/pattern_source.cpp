@@ -15,13 +15,24 @@ std::int32_t next_border(std::int32_t at, std::int32_t side, std::int32_t end) {
   return static_cast<std::int32_t>(std::min<std::int64_t>(border, end));
 }
 
+/// The longest side of a part that is mirrored.
+constexpr std::int32_t kMirroredSideMax = 64;
+
+PatternSteps steps_with(PatternSteps steps, SymmetryKind kind) {
+  if (kind == SymmetryKind::none) return steps;
+  VoxelPos& sides = steps.part_sides;
+  sides = {std::min(sides.x, kMirroredSideMax), std::min(sides.y, kMirroredSideMax),
+           std::min(sides.z, kMirroredSideMax)};
+  return steps;
+}
+
 }  // namespace
 
 PatternSource::PatternSource(PatternWorkPtr work, const EditLimits& limits,
                              const PatternSteps& steps)
     : work_(std::move(work)),
       limits_(paste_limits(limits)),
-      steps_(steps),
+      steps_(steps_with(steps, work_->symmetry.kind)),
       copies_(copies_of(work_->symmetry.kind)),
       work_left_(steps.turn_work) {
   begin(work_->boxes.front().min);

@@ -17,7 +17,8 @@ namespace runstone {
 
 /// The sizes of the steps of a PatternSource.
 struct PatternSteps {
-  /// The sides of the parts. They are cut on a grid that begins at the origin of the world.
+  /// The sides of the parts. They are cut on a grid that begins at the origin of the world. A pattern
+  /// with mirrored copies has sides of at most 64, because a part is mirrored in one turn.
   VoxelPos part_sides{256, 64, 256};
   std::uint64_t turn_work = kPatternTurnWork;
 };

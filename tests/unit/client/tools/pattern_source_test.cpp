@@ -240,6 +240,47 @@ TEST_CASE_METHOD(PatternBench, "a large box of the tool mix is one action with a
   CHECK(box.press(replica, aim, ToolButton::place).error() == "a chunk of the box is not loaded");
 }
 
+TEST_CASE_METHOD(PatternBench, "a preview mirrors one build a turn, and counts the copies",
+                 "[tools]") {
+  show_flat();
+  const PatternWorkPtr work = work_of("stone, sand", {{1, -20, 1}, {11, -10, 11}});
+  const auto copied = with_symmetry(work, {SymmetryKind::both, 0, 0}, default_material_table());
+  REQUIRE(copied);
+  MirroredBuilds mirrored;
+  PatternPreview preview(4'000), small(3'999);
+  small.set(*copied);
+  REQUIRE(small.step(mirrored, true));
+  CHECK(small.is_too_large());
+  preview.set(*copied);
+  for (int turn = 0; turn < 3; ++turn) REQUIRE_FALSE(preview.step(mirrored, false));
+  CHECK(preview.is_under_way());
+  const auto made = preview.step(mirrored, false);
+  REQUIRE(made);
+  CHECK(made->size() == 4);
+  CHECK_FALSE(preview.is_under_way());
+}
+
+TEST_CASE_METHOD(PatternBench, "a preview of more than four boxes is given up at once", "[tools]") {
+  show_flat();
+  for (const std::size_t boxes : {4U, 5U}) {
+    auto work = std::make_shared<PatternWork>(*work_of("stone", {{0, -2, 0}, {1, -1, 1}}));
+    while (work->boxes.size() < boxes) {
+      VoxelBox next = work->boxes.back();
+      next.min.x += 2;
+      next.max.x += 2;
+      work->boxes.push_back(next);
+    }
+    PatternPreview preview;
+    preview.set(work);
+    CHECK(preview.is_under_way() == (boxes == 4));
+    CHECK(preview.is_too_large() == (boxes == 5));
+    MirroredBuilds mirrored;
+    const auto made = preview.step(mirrored, true);
+    REQUIRE(made.has_value() == (boxes == 4));
+    if (made) CHECK(made->size() == 4);
+  }
+}
+
 TEST_CASE_METHOD(PatternBench, "another tool ends the preview of a pattern", "[tools]") {
   show_flat();
   REQUIRE(box.choose("mix"));
