@@ -40,7 +40,8 @@ class PlayerFiles {
   std::optional<WorldKit> kit_of(const WorldId& world) const;
 
   /// Begins to write what is due. Call it in every turn. Returns the warning of a write that failed
-  /// since the last call, or an empty text. What cannot be written is tried again kRetryUs later.
+  /// since the last call, or an empty text. A change that cannot be written is tried again after
+  /// kRetryUs.
   std::string step(TimeUs now_us);
   /// Writes everything before it returns. Fails with a line that begins with the name of the file.
   Result<void, std::string> finish();
@@ -57,7 +58,8 @@ class PlayerFiles {
   static Result<void, std::string> write(Unwritten what, const std::string& kits_file,
                                          const std::string& hotbars_file);
   void wait() const;
-  /// Takes the result of the write. What it could not write waits again, unless it was replaced.
+  /// Takes the result of the write. The changes that could not be written wait again, unless they
+  /// were replaced.
   Result<void, std::string> take_written();
 
   const std::string kits_file_, hotbars_file_;

@@ -87,6 +87,8 @@ bool InputRouter::takes_key(const KeyEvent& event, const UiFocus& focus, RoutedI
   const auto action = keys_.pressed(event);
   const bool is_release = action == Action::release;
   if (focus.types && !is_function_key(event.key) && !is_release) return false;
+  const bool is_scroll = event.key == Key::up || event.key == Key::down;
+  if (is_scroll && focus.scrolls && !is_captured_) return false;
   if (held) held_[static_cast<std::size_t>(*held)] = true;
   if (!action || event.is_repeat) return held.has_value();
   if (is_release && is_captured_) {

@@ -6,6 +6,7 @@
 //   - The gamepad is the player's, also while the mouse is free. While a window needs the mouse, of
 //     its buttons only `start` acts.
 //   - While a text is typed, the user interface gets the keys. Only function keys and escape act.
+//   - While a window scrolls by arrows and the mouse is free, the user interface gets these arrows.
 // One thread.
 #pragma once
 #include <array>
@@ -24,6 +25,7 @@ struct UiFocus {
   bool has_window = false;   // a window is open that needs the mouse, such as the palette
   bool over_window = false;  // the cursor is over some window
   unsigned panels = 0;       // open windows that are used beside playing, such as the map
+  bool scrolls = false;      // a window scrolls by the arrows up and down while the mouse is free
 };
 
 struct RoutedInput {

@@ -25,9 +25,14 @@ KeyMap::KeyMap() {
 }
 
 void KeyMap::bind(Action action, std::vector<KeyChord> chords) {
+  // A held key acts with shift as well, because shift is the key of another held action.
+  const bool is_held = info_of(action).is_held;
   for (auto& others : chords_) {
     std::erase_if(others, [&](const KeyChord& chord) {
-      return std::find(chords.begin(), chords.end(), chord) != chords.end();
+      const KeyChord plain{chord.key, chord.control, false, chord.alt};
+      return std::any_of(chords.begin(), chords.end(), [&](const KeyChord& bound) {
+        return bound == chord || (is_held && bound == plain);
+      });
     });
   }
   chords_[index_of(action)] = std::move(chords);

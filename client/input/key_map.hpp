@@ -17,7 +17,7 @@ class KeyMap {
   KeyMap();
 
   /// Replaces the keys of an action. An empty list leaves it without a key. The keys are taken from
-  /// actions that had them.
+  /// actions that had them. A held action takes its keys with shift as well.
   void bind(Action action, std::vector<KeyChord> chords);
   const std::vector<KeyChord>& keys_of(Action action) const;
   /// Returns the keys for people, such as "T, enter".

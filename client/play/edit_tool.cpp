@@ -76,7 +76,8 @@ Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs
   const BoxSet selected = box_.selected_boxes();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
-  if (!done) box_.select(selected);  // it did not move
+  // It did not move. An equal selection is not set again, because that ends the preview.
+  if (!done && box_.selected_boxes() != selected) box_.select(selected);
   return done;
 }
 
@@ -108,6 +109,7 @@ Result<void, std::string> EditTool::propose(const ToolEdits& made, TimeUs now_us
     if (made->has_followers && i > 0) {
       follow(edits[i], now_us);
     } else if (auto done = propose(edits[i], now_us, now_us, part); !done) {
+      box_.forget_pasted();
       return done;
     }
   }
@@ -120,13 +122,16 @@ void EditTool::follow(const EditDescriptor& edit, TimeUs now_us) {
 }
 
 bool EditTool::needs_build(const ToolAction& action) const {
-  return !is_small(action, session_.replica().edit_limits());
+  const bool is_long = !action.has_followers && action.edits.size() > kBuildEdits;
+  return is_long || !is_small(action, session_.replica().edit_limits());
 }
 
 Result<void, std::string> EditTool::build(std::string name, std::unique_ptr<EditSource> source,
                                           OnRefusal on_refusal) {
-  if (sender_ != nullptr)
+  if (sender_ != nullptr) {
+    box_.forget_pasted();  // the build may be its paste
     return failure("a " + build_name_ + " is under way: wait for it, or stop it first");
+  }
   box_.begin_action();
   sender_ = std::make_unique<ActionSender>(std::move(source), on_refusal);
   build_name_ = std::move(name);
@@ -141,6 +146,7 @@ Result<void, std::string> EditTool::build(const ToolAction& action) {
 }
 
 void EditTool::take(const ReplicaChanges& changes, TimeUs now_us) {
+  if (!changes.rejects.empty()) box_.forget_pasted();
   if (sender_ != nullptr) sender_->take(changes, now_us);
 }
 

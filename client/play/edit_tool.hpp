@@ -74,7 +74,8 @@ class EditTool {
   /// Begins an action of the tools, whatever its size. If it clears at its end, the clearing edits are
   /// sent when those before were applied, and not if one of them was refused. Fails as build() does.
   Result<void, std::string> build(const ToolAction& action);
-  /// Returns true if a part of the action is too large to be proposed. Requires an open replica.
+  /// Returns true if a part of the action is too large to be proposed, or if the action has so many
+  /// edits that the budget may end in the middle. Requires an open replica.
   bool needs_build(const ToolAction& action) const;
   /// Takes what the server rejected. Call it for each drained ReplicaChanges, before step_build().
   void take(const ReplicaChanges& changes, TimeUs now_us);

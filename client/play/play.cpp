@@ -235,12 +235,12 @@ bool Play::act(Action action, TimeUs now_us) {
       return true;
     case Action::stop_building:
       notify(tool_.stop_building() ? "it stops when the server has answered what was sent"
-                                   : "no fill, paste or move is under way");
+                                   : "no fill, paste, move or mix is under way");
       return true;
     case Action::undo: {
       // An action of which nothing was sent yet is only stopped: an undo would take back the one
       // before it.
-      tool_.box().begin_action();  // a paste that is taken back cannot be moved
+      tool_.box().forget_pasted();  // it may be taken back
       const bool is_unsent = tool_.is_building() && !tool_.has_built();
       tool_.stop_building();
       if (!is_unsent) chat_.send("/undo");  // the answer is shown
@@ -264,7 +264,10 @@ bool Play::act(Action action, TimeUs now_us) {
 }
 
 void Play::carry_out(const UiAction& action, TimeUs now_us) {
-  if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
+  if (const auto* line = std::get_if<SendLine>(&action)) {
+    if (line->text.starts_with("/undo")) tool_.box().forget_pasted();  // it may be taken back
+    chat_.send(line->text);
+  }
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material, false, now_us);
   if (const auto* order = std::get_if<HotbarOrder>(&action)) {
     const auto done = carry_out(*order);

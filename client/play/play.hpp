@@ -184,8 +184,7 @@ class Play {
   const FrameScene& scene() const { return scene_; }
   const OthersPreviews& others_previews() const { return others_; }
   /// Carries out an order of the rollback window at the place of the player, in the selection if that
-  /// is one box. Returns an empty text,
-  /// or why the order cannot be sent.
+  /// is one box. Returns an empty text, or why the order cannot be sent.
   std::string carry_out(const RollbackOrder& order) {
     return panels_.rollback().carry_out(order, player_.eye(), tool_.box().selected_box());
   }

@@ -59,7 +59,8 @@ KeyAnswer half_symmetry(EditTool& tool) {
   Symmetry next = tool.box().symmetry();
   if (next.kind == SymmetryKind::none) return failure("choose a symmetry first");
   // An odd number is the border behind a voxel.
-  const bool is_middle = next.centre2_x % 2 == 0;
+  const std::int32_t shown = next.kind == SymmetryKind::z ? next.centre2_z : next.centre2_x;
+  const bool is_middle = shown % 2 == 0;
   const auto moved_plane = [&](std::int32_t& centre2) {
     if ((centre2 % 2 == 0) == is_middle) centre2 += is_middle ? 1 : -1;
   };

@@ -16,8 +16,8 @@ namespace runstone {
 
 class ShadowCasters {
  public:
-  /// What the shapes of a pass are drawn with: their silhouettes and the holes of their pictures
-  /// cast no shadow.
+  /// The materials and textures with which the shapes of a pass are drawn. What their silhouettes and
+  /// the holes of their pictures leave out casts no shadow.
   struct Surfaces {
     const MaterialTextures& materials;
     const TextureArray& textures;

@@ -27,8 +27,8 @@ class BoxSet {
   VoxelBox around() const;
   bool contains(VoxelPos voxel) const;
 
-  /// Returns the voxels of either set, of the first set only, and of both. Fails with nullopt if the
-  /// result has more than kBoxesMax boxes. Cost: O(boxes of one set * boxes of the other, and those
+  /// Returns the union, the difference a minus b, and the intersection. Fails with nullopt if the
+  /// result, or a set on the way to it, has more than kBoxesMax boxes. Cost: O(boxes of one set * boxes of the other, and those
   /// of the result squared).
   static std::optional<BoxSet> united(const BoxSet& a, const BoxSet& b);
   static std::optional<BoxSet> without(const BoxSet& a, const BoxSet& b);
@@ -36,6 +36,8 @@ class BoxSet {
 
   /// Returns the set moved by some steps.
   BoxSet moved(Direction direction, std::int32_t steps) const;
+  /// Compares the boxes in their order. Sets of the same voxels may have different boxes.
+  friend bool operator==(const BoxSet&, const BoxSet&) = default;
   /// Returns the set and all voxels up to `steps` behind it in a direction. Requires 0 <= steps.
   std::optional<BoxSet> grown(Direction direction, std::int32_t steps) const;
   /// Returns the voxels behind which all voxels up to `steps` in a direction are in the set. Requires

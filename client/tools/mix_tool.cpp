@@ -13,8 +13,8 @@
 namespace runstone {
 namespace {
 
-/// The voxels of a box that is worked out at the click, which takes some 15 ms. A larger one, and
-/// several boxes, are worked out in steps.
+/// The voxels of a box that is worked out at the click. A larger one, and several boxes, are worked
+/// out in steps.
 constexpr std::uint64_t kAtOnceVoxelsMax = std::uint64_t{1} << 18;
 
 bool is_worked_out_at_once(const VoxelPos& sides) {

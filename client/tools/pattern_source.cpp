@@ -15,14 +15,26 @@ std::int32_t next_border(std::int32_t at, std::int32_t side, std::int32_t end) {
   return static_cast<std::int32_t>(std::min<std::int64_t>(border, end));
 }
 
+/// The longest side of a part that is mirrored.
+constexpr std::int32_t kMirroredSideMax = 64;
+
+PatternSteps steps_with(PatternSteps steps, SymmetryKind kind) {
+  if (kind == SymmetryKind::none) return steps;
+  VoxelPos& sides = steps.part_sides;
+  sides = {std::min(sides.x, kMirroredSideMax), std::min(sides.y, kMirroredSideMax),
+           std::min(sides.z, kMirroredSideMax)};
+  return steps;
+}
+
 }  // namespace
 
 PatternSource::PatternSource(PatternWorkPtr work, const EditLimits& limits,
                              const PatternSteps& steps)
     : work_(std::move(work)),
       limits_(paste_limits(limits)),
-      steps_(steps),
-      copies_(copies_of(work_->symmetry.kind)) {
+      steps_(steps_with(steps, work_->symmetry.kind)),
+      copies_(copies_of(work_->symmetry.kind)),
+      work_left_(steps.turn_work) {
   begin(work_->boxes.front().min);
 }
 
@@ -61,7 +73,6 @@ std::optional<std::string> PatternSource::take(PlacedBuild placed) {
 }
 
 SourceStep PatternSource::next() {
-  std::uint64_t work = steps_.turn_work;
   while (failure_.empty()) {
     if (edits_) {
       if (auto edit = edits_->next()) return SourceStep::of(*std::move(edit));
@@ -80,8 +91,11 @@ SourceStep PatternSource::next() {
       }
       replacing_ = *std::move(begun);
     }
-    const auto is_done = replacing_->step(work);
-    if (is_done && !*is_done) return SourceStep::later("its next part is worked out");
+    const auto is_done = replacing_->step(work_left_);
+    if (is_done && !*is_done) {
+      work_left_ = steps_.turn_work;
+      return SourceStep::later("its next part is worked out");
+    }
     auto placed = is_done ? replacing_->finish() : Result<PlacedBuild>(failure(is_done.error()));
     replacing_.reset();
     if (!placed) {

@@ -20,7 +20,7 @@
 
 namespace runstone {
 
-/// The units of work of one turn (Replacing::step()), some 15 ms.
+/// The units of work of one turn (Replacing::step()). They bound the time that a turn takes.
 inline constexpr std::uint64_t kPatternTurnWork = std::uint64_t{1} << 18;
 
 struct PatternWork {

@@ -35,8 +35,9 @@ namespace {
 constexpr std::int32_t kStackMax = 4096;
 /// Bounds the steps of one move or growth.
 constexpr std::int32_t kStepsMax = 4096;
-/// Bounds the rows along x of a selection of several boxes that becomes a build.
-constexpr std::int64_t kSelectedRowsMax = std::int64_t{1} << 18;
+/// Bounds the work for a selection of several boxes that becomes a build: its rows along x, each cut
+/// at the borders of chunks.
+constexpr std::uint64_t kSelectedPiecesMax = std::uint64_t{1} << 20;
 /// The words for a selection of more than BoxSet::kBoxesMax boxes.
 constexpr const char* kTooManyParts = "the selection would have more than 256 parts";
 /// A preview that is refused is planned again after so many calls.
@@ -80,6 +81,21 @@ std::uint64_t chunks_of(const VoxelBox& box, std::int32_t edge) {
   return along(sides.x) * along(sides.y) * along(sides.z);
 }
 
+/// Returns true if the rows of the boxes along x have more than kSelectedPiecesMax pieces, each row
+/// counted with one piece more than it may have.
+bool has_too_many_pieces(std::span<const VoxelBox> boxes, std::int32_t edge) {
+  std::uint64_t pieces = 0;
+  for (const VoxelBox& box : boxes) {
+    const VoxelPos sides = sides_of(box);
+    const auto rows = static_cast<std::uint64_t>(sides.y) * static_cast<std::uint64_t>(sides.z);
+    // More rows would not leave the product in its range.
+    if (rows > kSelectedPiecesMax) return true;
+    pieces += rows * (static_cast<std::uint64_t>(sides.x / edge) + 2);
+    if (pieces > kSelectedPiecesMax) return true;
+  }
+  return false;
+}
+
 /// Returns a build of one material with the sides of a box, or null if there is no such build.
 BuildPtr block_of(const VoxelBox& box, Material material) {
   const VoxelPos sides = sides_of(box);
@@ -113,6 +129,7 @@ Result<void, std::string> ToolBox::choose(std::string_view name) {
   if (it == tools_.end()) return failure("there is no tool " + std::string(name));
   chosen_ = static_cast<std::size_t>(it - tools_.begin());
   points_.clear();
+  pattern_.set(nullptr);  // its chunks are kept no longer
   ++revision_;
   return {};
 }
@@ -292,14 +309,9 @@ Result<BuildPtr, std::string> ToolBox::selected_build(const Replica& replica) co
     if (!copied) return cannot_copy(copied.error());
     return *std::move(copied);
   }
-  std::int64_t count = 0;
-  for (const VoxelBox& box : boxes_.boxes())
-    count += std::int64_t{box.max.y - box.min.y} * (box.max.z - box.min.z);
-  if (count > kSelectedRowsMax) {
-    return failure(
-        "a selection of several boxes is copied up to 262,144 rows along x: select one "
-        "box, or fewer voxels");
-  }
+  if (!replica.opened()) return failure("no world is open");
+  if (has_too_many_pieces(boxes_.boxes(), replica.chunk_edge()))
+    return failure("too many voxels to copy of several boxes: select one box, or fewer voxels");
   VoxelRows rows;
   for (const VoxelBox& box : boxes_.boxes()) {
     for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
@@ -363,9 +375,18 @@ void ToolBox::keep_pasted(const Replica& replica, ToolEdits& made) {
 }
 
 ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
-  if (!pasted_) return failure("the arrows move what you have just pasted: up to 262,144 voxels");
+  if (!pasted_)
+    return failure(
+        "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)");
   ++revision_;
-  return pasted_->move(direction, replica);
+  PastedBuild next = *pasted_;
+  auto made = next.move(direction, replica);
+  if (!made) return made;
+  // As a build it would become an action of its own.
+  if (!is_small(*made, replica.edit_limits()))
+    return failure("the build is too large to be moved here");
+  pasted_ = std::move(next);
+  return made;
 }
 
 void ToolBox::hold_copied(const ToolEdits& made) {

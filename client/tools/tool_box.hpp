@@ -117,10 +117,16 @@ class ToolBox {
   /// Returns the edit that moves the build that was just pasted by one voxel, as a part of the action
   /// that pasted it. Fails with words for the player if there is none. Requires an open replica.
   ToolEdits nudge(const Replica& replica, Direction direction);
-  /// Tells the tools that an action begins: it is that of the last paste, or the paste can not be
+  /// Call it when an action begins. If it is not the action of the last paste, that paste cannot be
   /// moved any more.
   void begin_action() {
     if (!std::exchange(is_paste_fresh_, false)) pasted_.reset();
+  }
+  /// Call it when an edit was refused or an action was taken back: the last paste, or a step of it,
+  /// may not be in the world, so it cannot be moved any more.
+  void forget_pasted() {
+    pasted_.reset();
+    is_paste_fresh_ = false;
   }
 
   const ToolClipboard& clipboard() const { return clipboard_; }

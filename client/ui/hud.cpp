@@ -69,6 +69,7 @@ UiFocus Hud::focus() const {
   out.over_window = context_.over_window();
   out.panels = panels_.count_with_mouse() + (help_.is_open() ? 1U : 0U) +
                (shows_statistics_ ? 1U : 0U) + (uses_keyboard_ ? 1U : 0U);
+  out.scrolls = help_.is_open();
   return out;
 }
 

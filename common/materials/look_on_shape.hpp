@@ -14,7 +14,8 @@ namespace runstone {
 bool is_silhouette(MaterialPattern pattern);
 
 /// Returns the look with which a material of this shape is stored. A silhouette becomes the pattern
-/// `none` if the shape is not crossed planes. Such a look is drawn as the given one.
+/// `none` if the shape is not crossed planes. Such a look is drawn as the given one. So
+/// shape and pattern are given together: a silhouette that is given before the shape is lost.
 MaterialLook look_on_shape(MaterialLook look, const Shape& shape);
 
 /// Returns the row with look_on_shape(). A row without a look has none afterwards.

@@ -39,8 +39,7 @@ ChunkStretches by_chunk(const VoxelRows& rows, std::int32_t edge) {
 }
 
 /// Returns the cells of a chunk inside a part of it: those of the stretches that are not empty, and
-/// with `with_air` the empty ones as well.
-/// Returns nullopt if there are too many materials.
+/// with `with_air` the empty ones as well. Returns nullopt if there are too many materials.
 std::optional<RunChunk> cells_of_stretches(const RunChunk& chunk, VoxelPos origin,
                                            const VoxelBox& part,
                                            const std::vector<ChunkStretch>& stretches,

@@ -172,6 +172,21 @@ TEST_CASE("while a text is typed only function keys and escape act", "[client_in
   CHECK(turn(router, {key(Key::escape, true)}, kTyping).player.actions == Actions{Action::release});
 }
 
+TEST_CASE("a window that scrolls gets the arrows while the mouse is free", "[client_input]") {
+  InputRouter router;
+  const UiFocus scrolls{.scrolls = true};
+  for (const Key arrow : {Key::up, Key::down}) {
+    const RoutedInput free = turn(router, {key(arrow, true), key(arrow, false)}, scrolls);
+    CHECK(free.player.actions.empty());
+    CHECK(free.for_ui.size() == 2);
+  }
+  CHECK(turn(router, {key(Key::left, true)}, scrolls).player.actions ==
+        Actions{Action::nudge_left});
+  CHECK(turn(router, {key(Key::up, true)}).player.actions == Actions{Action::nudge_away});
+  capture(router);
+  CHECK(turn(router, {key(Key::up, true)}, scrolls).player.actions == Actions{Action::nudge_away});
+}
+
 TEST_CASE("the character of a key that acts is typed nowhere, and later events wait",
           "[client_input]") {
   InputRouter router;

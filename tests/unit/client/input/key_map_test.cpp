@@ -73,3 +73,16 @@ TEST_CASE("a key that is bound anew leaves its old action", "[client_input]") {
   CHECK(keys.keys_text(Action::chat) == "enter");
   CHECK_FALSE(keys.pressed(press(Key::e)).has_value());
 }
+
+TEST_CASE("a held action takes its key with shift, too", "[client_input]") {
+  KeyMap keys;
+  keys.bind(Action::move_forward, {{Key::w}, {Key::up}});
+  CHECK_FALSE(keys.pressed(press(Key::up)).has_value());
+  CHECK_FALSE(keys.pressed(press(Key::up, false, true)).has_value());
+  CHECK(keys.keys_of(Action::nudge_up).empty());
+  CHECK(keys.pressed(press(Key::down, false, true)) == Action::nudge_down);
+  // Without a held action, shift makes another chord.
+  keys.bind(Action::palette, {{Key::down}});
+  CHECK(keys.pressed(press(Key::down)) == Action::palette);
+  CHECK(keys.pressed(press(Key::down, false, true)) == Action::nudge_down);
+}

@@ -56,6 +56,26 @@ struct Fixture {
   Result<void, std::string> propose(VoxelPos at) {
     return tool.propose({SetVoxel{at}, {}, 1}, kNow, kNow);
   }
+  /// Shows one empty chunk, and copies a cube of 2 voxels a side from it.
+  void copy_cube() {
+    ChunkSnapshot snapshot;
+    snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty);
+    snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+    receive(runstone::test::chunks_of(std::move(snapshot)));
+    box.select(VoxelBox{{0, 0, 0}, {2, 2, 2}});
+    REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
+    REQUIRE(box.copy(session.replica(), true).has_value());
+    REQUIRE(box.choose("paste").has_value());
+  }
+  Result<void, std::string> paste_cube() {
+    TypedPlaces typed;
+    typed.places = {{6, 6, 6}};
+    box.type_places(typed);
+    return tool.propose(box.apply_typed(session.replica(), 1), kNow);
+  }
+  Result<void, std::string> nudge(Direction direction = Direction::pos_y) {
+    return tool.propose(box.nudge(session.replica(), direction), kNow);
+  }
   std::uint64_t infinite(EditPath path) const {
     return recorder.report()[path]
         .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
@@ -179,6 +199,11 @@ TEST_CASE_METHOD(Fixture, "keys choose tools, and copy, cut and turn a selection
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 9, 15});
   CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
   CHECK(box.symmetry() == Symmetry{SymmetryKind::x, 8, 14});
+  // A script may set one plane to a border and the other one to a middle. The plane in use counts.
+  box.set_symmetry({SymmetryKind::z, 8, 15});
+  CHECK(act(Action::half_symmetry) == "the mirror planes lie in the middle of voxels");
+  CHECK(box.symmetry() == Symmetry{SymmetryKind::z, 8, 14});
+  box.set_symmetry({SymmetryKind::x, 8, 14});
   CHECK(act(Action::preview) == "previews are hidden");
   CHECK(act(Action::select) == "tool: select");
   CHECK(act(Action::larger) == "tool: select, mode add, mirrored along x");
@@ -268,6 +293,17 @@ TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the pa
   CHECK(tool.ghosts().empty());
 }
 
+TEST_CASE_METHOD(Fixture, "a command that fails leaves the preview as it is", "[client_app]") {
+  copy_cube();
+  tool.fix_aim(FixedAim{{6, 6, 6}, Direction::pos_y});
+  for (int turn = 0; turn < 50; ++turn) tool.step_preview();
+  REQUIRE_FALSE(tool.ghosts().empty());
+  REQUIRE_FALSE(tool.step_preview());
+  CHECK_FALSE(tool.carry_out(PasteNudge{Direction::pos_x}, kNow).has_value());
+  for (int turn = 0; turn < 50; ++turn) CHECK_FALSE(tool.step_preview());
+  CHECK_FALSE(tool.ghosts().empty());
+}
+
 TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next action is another one",
                  "[client_app]") {
   const std::vector<EditDescriptor> two = {{SetVoxel{{1, 2, 3}}, {}, 1},
@@ -290,26 +326,50 @@ TEST_CASE_METHOD(Fixture, "edits of one action are sent as one, and the next act
 
 TEST_CASE_METHOD(Fixture, "the steps of a paste that is moved belong to its action",
                  "[client_app]") {
-  ChunkSnapshot snapshot;
-  snapshot.chunk.voxels = uniform_chunk(Extent::cube(16), kEmpty);
-  snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
-  receive(runstone::test::chunks_of(std::move(snapshot)));
-  box.select(VoxelBox{{0, 0, 0}, {2, 2, 2}});
-  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
-  REQUIRE(box.copy(session.replica(), true).has_value());
-  REQUIRE(box.choose("paste").has_value());
-  TypedPlaces typed;
-  typed.places = {{6, 6, 6}};
-  box.type_places(typed);
-  REQUIRE(tool.propose(box.apply_typed(session.replica(), 1), kNow).has_value());
-  for (int i = 0; i < 2; ++i)
-    REQUIRE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  for (int i = 0; i < 2; ++i) REQUIRE(nudge().has_value());
   REQUIRE(propose({9, 9, 9}).has_value());
-  CHECK_FALSE(tool.propose(box.nudge(session.replica(), Direction::pos_y), kNow).has_value());
+  CHECK_FALSE(nudge().has_value());
   std::vector<ClientSequence> actions;
   for (const auto& [seq, local] : session.replica().local_edits().all())
     actions.push_back(local.action);
   CHECK(actions == std::vector<ClientSequence>{0, 2, 2, 2, 0});
+}
+
+TEST_CASE_METHOD(Fixture, "a paste of which an edit was refused cannot be moved", "[client_app]") {
+  const std::string none =
+      "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)";
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  REQUIRE(nudge().has_value());
+  SECTION("by the client") {
+    while (session.replica().local_edits().all().size() < kLocalEditsMax)
+      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    REQUIRE_FALSE(nudge().has_value());
+  }
+  SECTION("by the client, when it is pasted") {
+    while (session.replica().local_edits().all().size() < kLocalEditsMax)
+      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    REQUIRE_FALSE(paste_cube().has_value());
+  }
+  SECTION("by the server") {
+    const ClientSequence last = session.replica().local_edits().all().rbegin()->first;
+    receive(Reject{last, RejectReason::not_permitted, "the ground is protected: spawn", 0});
+    tool.take(session.replica().drain_changes(), kNow);
+  }
+  CHECK(box.nudge(session.replica(), Direction::pos_y).error() == none);
+}
+
+TEST_CASE_METHOD(Fixture, "a step that cannot be made leaves the paste where it is",
+                 "[client_app]") {
+  copy_cube();
+  REQUIRE(paste_cube().has_value());
+  for (int i = 0; i < 8; ++i) REQUIRE(nudge().has_value());
+  for (int i = 0; i < 2; ++i) CHECK(nudge().error() == "the ground is not loaded there");
+  REQUIRE(nudge(Direction::neg_y).has_value());
+  CHECK(session.replica().shown_at({6, 13, 6}) == Material{1});
+  CHECK(session.replica().shown_at({6, 15, 6}) == kEmpty);
 }
 
 TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one action",
@@ -337,6 +397,25 @@ TEST_CASE_METHOD(Fixture, "a fill larger than one edit is sent in parts, as one 
                          "spawn; it ended early: you have stopped it"));
   CHECK_FALSE(tool.is_building());
   CHECK_FALSE(tool.stop_building());
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "a fill of many boxes waits for the budget instead of ending in the middle",
+                 "[client_app]") {
+  receive(Permissions{"builder", 2, 0, "", {1, 3}});
+  const auto select = [&](std::int32_t count) {
+    box.select(std::nullopt);
+    for (std::int32_t i = 0; i < count; ++i)
+      REQUIRE(box.select({{2 * i, 0, 0}, {2 * i + 1, 1, 1}}, SelectMode::add).has_value());
+  };
+  select(8);
+  CHECK_FALSE(tool.needs_build(box.fill(session.replica(), 1).value()));
+  select(9);
+  REQUIRE(tool.propose(box.fill(session.replica(), 1), kNow).has_value());
+  CHECK(tool.is_building());
+  CHECK(tool.refused() == 0);
+  REQUIRE_FALSE(tool.step_build(kNow).has_value());
+  CHECK(session.replica().local_edits().all().size() == 1);  // the first one names the action
 }
 
 TEST_CASE_METHOD(Fixture, "a clear of any size begins where the selection was copied",

@@ -283,6 +283,27 @@ TEST_CASE_METHOD(PlayBench,
   CHECK(take<CommandRequest>(sent()).size() == 1);
 }
 
+TEST_CASE_METHOD(PlayBench, "a paste cannot be moved after an undo by key or by chat", "[client]") {
+  show_ground();
+  tools.select(VoxelBox{{0, -2, 0}, {2, 0, 2}});
+  REQUIRE(tools.copy(session.replica(), true));
+  REQUIRE(tools.choose("paste"));
+  TypedPlaces typed;
+  typed.places = {{6, 4, 6}};
+  for (const bool is_typed : {true, false}) {
+    CAPTURE(is_typed);
+    tools.type_places(typed);
+    REQUIRE(play.tool().propose(tools.apply_typed(session.replica(), 1), now));
+    REQUIRE(play.tool().propose(tools.nudge(session.replica(), Direction::pos_y), now));
+    if (is_typed) {
+      play.carry_out(SendLine{"/undo"}, now);
+    } else {
+      CHECK(play.act(Action::undo, now));
+    }
+    CHECK_FALSE(tools.nudge(session.replica(), Direction::pos_y));
+  }
+}
+
 TEST_CASE_METHOD(PlayBench, "what the server refuses is a notice, and the log gets it",
                  "[client]") {
   show_ground();

@@ -244,6 +244,28 @@ TEST_CASE("a held key adds a chosen box to the selection or removes it", "[tools
   CHECK(box.selected_box() == VoxelBox{{0, -1, 0}, {1, 0, 1}});
 }
 
+TEST_CASE("a copy of several boxes is bounded along all axes", "[tools]") {
+  ToolBench bench;
+  bench.show_flat();
+  ToolBox& box = bench.box;
+  const auto copied = [&](const VoxelBox& second) {
+    box.select(VoxelBox{{0, 0, 0}, {1, 1, 1}});
+    REQUIRE(box.select(second, SelectMode::add));
+    REQUIRE(box.selected_boxes().boxes().size() == 2);
+    return box.copy(bench.replica, false);
+  };
+  const std::string words =
+      "too many voxels to copy of several boxes: select one box, or fewer voxels";
+  constexpr std::int32_t kFar = kWorldLimit;
+  // Long rows, many rows, and as many of both as there are.
+  CHECK(copied({{-kFar, 2, 0}, {kFar, 3, 1}}).error() == words);
+  CHECK(copied({{0, 2, 0}, {1, 1026, 1025}}).error() == words);
+  CHECK(copied({{-kFar, 2, -kFar}, {kFar, kFar, kFar}}).error() == words);
+  CHECK(copied({{-32, 2, -32}, {32, 30, 32}}));
+  const Replica closed;
+  CHECK(box.copy(closed, false).error() == "no world is open");
+}
+
 TEST_CASE("replace and wand work in all boxes of a selection, and so does a mix", "[tools]") {
   ToolBench bench;
   bench.show_flat();

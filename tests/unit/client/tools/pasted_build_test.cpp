@@ -88,7 +88,8 @@ TEST_CASE_METHOD(NudgeBench, "a voxel that somebody has changed since is not res
 
 TEST_CASE_METHOD(NudgeBench, "only the last paste is moved, until another action begins",
                  "[tools]") {
-  const std::string none = "the arrows move what you have just pasted: up to 262,144 voxels";
+  const std::string none =
+      "nothing that can be moved was just pasted (a paste of at most 262,144 voxels, not mirrored)";
   CHECK(box.nudge(replica, Direction::pos_x).error() == none);
   copy(true);
   predict(paste({0, 0, 0}));
@@ -96,6 +97,23 @@ TEST_CASE_METHOD(NudgeBench, "only the last paste is moved, until another action
   REQUIRE(box.nudge(replica, Direction::pos_x));
   box.begin_action();
   CHECK(box.nudge(replica, Direction::pos_x).error() == none);
+}
+
+TEST_CASE_METHOD(NudgeBench, "a paste with mirrored copies cannot be moved", "[tools]") {
+  copy(true);
+  for (const SymmetryKind kind :
+       {SymmetryKind::x, SymmetryKind::z, SymmetryKind::both, SymmetryKind::point}) {
+    CAPTURE(static_cast<int>(kind));
+    box.set_symmetry({});
+    CHECK(paste({6, 0, 9}).chain == ActionChain::begins);
+    box.set_symmetry({kind, 0, 0});
+    const ToolAction made = paste({6, 0, 9});
+    CHECK(made.chain == ActionChain::closed);
+    predict(made);
+    const auto before = around();
+    CHECK_FALSE(box.nudge(replica, Direction::pos_x));
+    CHECK(around() == before);
+  }
 }
 
 }  // namespace runstone::test

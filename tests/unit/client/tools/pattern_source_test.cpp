@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "client/tools/preview_words.hpp"
 #include "common/patterns/pattern_parser.hpp"
+#include "tests/unit/client/build/fake_port.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone::test {
@@ -147,6 +149,27 @@ TEST_CASE_METHOD(PatternBench,
   }
 }
 
+TEST_CASE_METHOD(PatternBench, "a turn of the sender does the work of one turn, not of one an edit",
+                 "[tools]") {
+  show_flat();
+  // Each part of 16 x 16 columns takes 256 units and more, and makes one edit.
+  const PatternWorkPtr work = work_of("stone where is grass", {{-32, -16, -32}, {32, 0, 32}});
+  FakePort port;
+  ActionSender sender(std::make_unique<PatternSource>(work, replica.edit_limits(),
+                                                      PatternSteps{{16, 16, 16}, 600}));
+  std::size_t before = 0, turns = 0;
+  for (; !sender.has_ended(); ++turns) {
+    REQUIRE(turns < 64);
+    sender.step(port, 1'000'000);
+    CHECK(port.offered.size() - before <= 2);
+    before = port.offered.size();
+    port.apply_all();
+  }
+  CHECK(sender.state() == ActionSender::State::done);
+  CHECK(before >= 16);
+  CHECK(turns >= 8);
+}
+
 TEST_CASE_METHOD(PatternBench, "each copy of a pattern is that of its box, mirrored", "[tools]") {
   show_random();
   const VoxelBox where{{3, -9, 2}, {20, 11, 30}};
@@ -215,6 +238,64 @@ TEST_CASE_METHOD(PatternBench, "a large box of the tool mix is one action with a
         "the pattern changes no voxel there");
   box.select(VoxelBox{{-32, -32, -32}, {49, 32, 32}});
   CHECK(box.press(replica, aim, ToolButton::place).error() == "a chunk of the box is not loaded");
+}
+
+TEST_CASE_METHOD(PatternBench, "a preview mirrors one build a turn, and counts the copies",
+                 "[tools]") {
+  show_flat();
+  const PatternWorkPtr work = work_of("stone, sand", {{1, -20, 1}, {11, -10, 11}});
+  const auto copied = with_symmetry(work, {SymmetryKind::both, 0, 0}, default_material_table());
+  REQUIRE(copied);
+  MirroredBuilds mirrored;
+  PatternPreview preview(4'000), small(3'999);
+  small.set(*copied);
+  REQUIRE(small.step(mirrored, true));
+  CHECK(small.is_too_large());
+  preview.set(*copied);
+  for (int turn = 0; turn < 3; ++turn) REQUIRE_FALSE(preview.step(mirrored, false));
+  CHECK(preview.is_under_way());
+  const auto made = preview.step(mirrored, false);
+  REQUIRE(made);
+  CHECK(made->size() == 4);
+  CHECK_FALSE(preview.is_under_way());
+}
+
+TEST_CASE_METHOD(PatternBench, "a preview of more than four boxes is given up at once", "[tools]") {
+  show_flat();
+  for (const std::size_t boxes : {4U, 5U}) {
+    auto work = std::make_shared<PatternWork>(*work_of("stone", {{0, -2, 0}, {1, -1, 1}}));
+    while (work->boxes.size() < boxes) {
+      VoxelBox next = work->boxes.back();
+      next.min.x += 2;
+      next.max.x += 2;
+      work->boxes.push_back(next);
+    }
+    PatternPreview preview;
+    preview.set(work);
+    CHECK(preview.is_under_way() == (boxes == 4));
+    CHECK(preview.is_too_large() == (boxes == 5));
+    MirroredBuilds mirrored;
+    const auto made = preview.step(mirrored, true);
+    REQUIRE(made.has_value() == (boxes == 4));
+    if (made) CHECK(made->size() == 4);
+  }
+}
+
+TEST_CASE_METHOD(PatternBench, "another tool ends the preview of a pattern", "[tools]") {
+  show_flat();
+  REQUIRE(box.choose("mix"));
+  REQUIRE(box.set_text("pattern", "50% stone, 50% sand"));
+  REQUIRE(box.set_parameter("region", 1));
+  box.select(VoxelBox{{-32, -32, -32}, {32, 32, 32}});
+  REQUIRE(box.select({{-32, -32, -32}, {0, 0, 0}}, SelectMode::remove));
+  const Aim aim = aim_at({0, -1, 0}, Direction::pos_y);
+  for (unsigned turns = 0; box.is_preview_complete() || turns <= ToolBox::kRestCalls; ++turns) {
+    REQUIRE(turns < 2 * ToolBox::kRestCalls);
+    box.step_preview(replica, aim, 64);
+  }
+  REQUIRE_FALSE(box.is_preview_complete());
+  REQUIRE(box.choose("voxel"));
+  CHECK(box.is_preview_complete());
 }
 
 TEST_CASE_METHOD(PatternBench,

@@ -207,8 +207,11 @@ TEST_CASE_METHOD(HudBench, "help opens and closes by its key and by escape", "[c
   press(Key::f1);
   frame();
   CHECK(frame() > without);
+  CHECK(hud.focus().scrolls);  // the arrows are not actions of the player
+  CHECK(press(Key::down).empty());
   press(Key::f1);
   CHECK(frame() == without);
+  CHECK_FALSE(hud.focus().scrolls);
   press(Key::f1);
   CHECK(press(Key::escape).empty());
   CHECK(frame() == without);
