@@ -67,6 +67,9 @@ class BackupSchedule {
   void run();
   /// Makes a backup that is due, and notes what came of it. Returns false if the thread must end.
   bool make_and_note();
+  /// Keeps other servers from making backups in the folder. Does nothing if it is no folder of backups
+  /// yet, because no file may be made in a folder of others. Fails if another server has it.
+  Result<void, std::string> hold_folder();
   /// Reads which world the backups must be of, unless it is known. The next call tries again.
   void read_world();
   /// Reads the newest backup of the folder, if its backups are of this world.
