@@ -35,8 +35,8 @@ class BackupChild {
   void start(const std::string& folder, CommandReply reply);
   /// Starts `runstone-server` with these arguments, as start() does. Thread: any.
   void run(const std::vector<std::string>& arguments, CommandReply reply);
-  /// Begins to end a backup that is under way, which leaves its partial folder. Does not wait for its
-  /// end. start() refuses from now on. Thread: any.
+  /// Begins to end a backup that is under way, which leaves its partial folder. Does not wait for
+  /// its end. start() refuses from now on. Thread: any.
   void ask_to_stop();
   /// Calls ask_to_stop(), and waits for the end of the program, for the time of Patience at most: a
   /// disk that hangs can keep a program from ending even after SIGKILL. No reply is called any more

@@ -12,7 +12,7 @@ class App;
 
 namespace runstone {
 
-/// What `runstone-server backup ...` is asked for: one of the two, after the command line was parsed.
+/// The request of `runstone-server backup`. After parsing, exactly one member is set.
 struct BackupOptions {
   std::optional<BackupRequest> copy;          // backup --world DIR --to NEW
   std::optional<BackupFolderRequest> folder;  // backup add, list, prune, verify

@@ -134,10 +134,24 @@ bool BackupSchedule::make_and_note() {
   const TimeUs begun_us = wall_now_us();
   const auto outcome = make_backup();
   if (!outcome) return false;
-  if (outcome->is_ok) made_us_ = begun_us;
+  if (outcome->is_ok) {
+    made_us_ = begun_us;
+    // The first backup has made it a folder of backups.
+    if (const auto held = hold_folder(); !held) logger("store").warn("backup: {}", held.error());
+  }
   read_last();
   note(*outcome);
   return true;
+}
+
+Result<void, std::string> BackupSchedule::hold_folder() {
+  folder_lock_ = FileLock();  // the disk may be another one than last time
+  if (!BackupFolder::is_one(plan_.folder)) return {};
+  auto taken = FileLock::take(plan_.folder + "/server.lock");
+  if (!taken && taken.error().is_held)
+    return failure(plan_.folder + ": another server makes its backups there");
+  if (taken) folder_lock_ = *std::move(taken);
+  return {};
 }
 
 void BackupSchedule::read_world() {
@@ -160,6 +174,13 @@ void BackupSchedule::read_last() {
   }
   const TimeUs every_us = static_cast<TimeUs>(plan_.every_s) * kSecondUs;
   const std::lock_guard guard(mutex_);
+  const bool is_other = last && (!last_ || last_->backup.name != last->backup.name);
+  if (is_other && last->taken_us > now_us) {
+    logger("store").warn(
+        "backup: the newest one, {}, is dated in the future: a clock was wrong, or is: its age is 0 "
+        "until then",
+        last->backup.name);
+  }
   last_ = std::move(last);
   const auto last_us = last_ ? std::optional(last_->taken_us) : std::nullopt;
   // One that was made and cannot be read counts: otherwise the next one followed it at once.
@@ -179,11 +200,7 @@ bool BackupSchedule::await_due() {
 }
 
 std::optional<BackupSchedule::Outcome> BackupSchedule::make_backup() {
-  folder_lock_ = FileLock();  // the disk may be another one than last time
-  auto taken = FileLock::take(plan_.folder + "/server.lock");
-  if (!taken && taken.error().is_held)
-    return Outcome{plan_.folder + ": another server makes its backups there", false};
-  if (taken) folder_lock_ = *std::move(taken);
+  if (const auto held = hold_folder(); !held) return Outcome{held.error(), false};
   {
     const std::lock_guard guard(mutex_);
     is_under_way_ = true;

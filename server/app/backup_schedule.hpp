@@ -1,6 +1,6 @@
 // BackupSchedule: makes the backups of a running server by itself. Each one is a program of its own
-// (BackupChild): `runstone-server backup add`, which has low priority. A failure is logged and counted,
-// and ends nothing: the next attempt follows.
+// (BackupChild): `runstone-server backup add`, which has low priority. A failure is logged and
+// counted, and ends nothing: the next attempt follows.
 // Threads: state() from any thread, the rest from the one that owns the object.
 #pragma once
 #include <condition_variable>
@@ -29,12 +29,12 @@ struct BackupPlan {
 };
 
 /// Returns the plan that the settings give, or nullopt if `backup_every` is 0. Fails if there is no
-/// folder, if it lies in the world's folder or the other way round, or if the world is in a database.
-/// The error is one line.
+/// folder, if it lies in the world's folder or the other way round, or if the world is in a
+/// database. The error is one line.
 Result<std::optional<BackupPlan>, std::string> backup_plan_of(const ServerConfig& config);
 
-/// Returns when the next backup is due (UTC): `every_us` after the last one, or `now_us` if there is
-/// none. A last one that is after `now_us` counts as one of now, because a clock was set back.
+/// Returns when the next backup is due (UTC): `every_us` after the last one, or `now_us` if there
+/// is none. A last one that is after `now_us` counts as one of now, because a clock was set back.
 TimeUs next_backup_us(std::optional<TimeUs> last_us, TimeUs now_us, TimeUs every_us);
 
 class BackupSchedule {
@@ -67,6 +67,10 @@ class BackupSchedule {
   void run();
   /// Makes a backup that is due, and notes what came of it. Returns false if the thread must end.
   bool make_and_note();
+  /// Keeps other servers from making backups in the folder. Does nothing if it is no folder of
+  /// backups yet, because no file may be made in a folder of others. Fails if another server has
+  /// it.
+  Result<void, std::string> hold_folder();
   /// Reads which world the backups must be of, unless it is known. The next call tries again.
   void read_world();
   /// Reads the newest backup of the folder, if its backups are of this world.

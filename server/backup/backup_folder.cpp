@@ -44,7 +44,8 @@ Result<WorldId, std::string> read_folder_mark(const std::string& folder) {
   return failure(file + ": is damaged");
 }
 
-/// Returns true for the name of a file that was written and did not get its name: FILE.new or FILE.new7.
+/// Returns true for the name of a file that was written and did not get its name: FILE.new or
+/// FILE.new7.
 bool is_unfinished(std::string_view name, std::string_view file) {
   constexpr std::string_view kNew = ".new";
   if (!name.starts_with(file) || !name.substr(file.size()).starts_with(kNew)) return false;
@@ -59,7 +60,8 @@ const BackupManifest& newest_of(const std::vector<BackupManifest>& heads, TimeUs
   return *std::ranges::max_element(heads, {}, rank);
 }
 
-/// Returns true if nothing but what a file system or a first try leaves is in the folder.
+/// Returns true if the folder holds nothing but `lost+found`, `backups.lock`, `server.lock` and
+/// unfinished marks, which a file system and a first backup that was killed leave.
 Result<bool, std::string> is_unused(const std::string& folder) {
   const auto entries = folder_entries(folder);
   if (!entries) return failure(entries.error());

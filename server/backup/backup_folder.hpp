@@ -4,8 +4,8 @@
 //   - blocks/            the blocks that the manifests name (BlockFolder);
 //   - backups.lock       locked by the program that changes the folder.
 // The manifest is renamed last. A backup counts from then on.
-// Threads: one thread at a time. All calls block on the disk. Errors are one line, and begin with the
-// name of the file.
+// Threads: one thread at a time. All calls block on the disk. Errors are one line, and begin with
+// the name of the file.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -39,7 +39,8 @@ class BackupFolder {
   static bool is_one(const std::string& folder);
   /// Opens a folder for reading. Fails if it has no mark, or one of a newer version.
   static Result<BackupFolder, std::string> open(const std::string& folder);
-  /// Opens a folder for the backups of a world, and locks it. An empty folder gets the mark. Fails if
+  /// Opens a folder for the backups of a world, and locks it. An empty folder gets the mark.
+  /// Fails if
   ///   - there is no such folder: a disk may be missing, so none is made;
   ///   - it holds backups of another world, or other files without the mark;
   ///   - another program has the lock, or the folder cannot be written.
@@ -49,8 +50,8 @@ class BackupFolder {
   const std::string& path() const { return path_; }
   const WorldId& world() const { return world_; }
   BlockFolder& blocks() { return blocks_; }
-  /// Locks the folder, unless this object has the lock. Fails if another program has the lock, or if
-  /// the folder cannot be written.
+  /// Locks the folder, unless this object has the lock. Fails if another program has the lock, or
+  /// if the folder cannot be written.
   Result<void, std::string> lock();
   /// Locks the folder for a program that only reads it. Goes on without the lock
   ///   - on storage that cannot be written, because nobody can change it there;
@@ -66,11 +67,11 @@ class BackupFolder {
   Entry read_sizes(const std::string& name) const;
   /// Returns all backups, the oldest first. The files have no blocks.
   Result<std::vector<Entry>, std::string> entries() const;
-  /// Returns the name of the newest backup: the one of the highest epoch, and of those the one of the
-  /// highest sequence. Of equal ones it is the latest that is not after `now_us`. Times do not decide
-  /// otherwise, because a clock may have been wrong. Reads the first lines of each manifest. A damaged
-  /// one of a later time that is not after `now_us` may be the newest, so its name is then returned.
-  /// Fails if there is none.
+  /// Returns the name of the newest backup: the one of the highest epoch, and of those the one of
+  /// the highest sequence. Of equal ones it is the latest that is not after `now_us`. Times do not
+  /// decide otherwise, because a clock may have been wrong. Reads the first lines of each manifest.
+  /// A damaged one of a later time that is not after `now_us` may be the newest, so its name is
+  /// then returned. Fails if there is none.
   Result<std::string, std::string> newest(TimeUs now_us) const;
   /// Reads the backup of this name, or the newest one if the name is empty. Fails if there is none,
   /// or if its manifest is damaged.
@@ -81,8 +82,8 @@ class BackupFolder {
   /// does not count, and stays. `now_us` as for backups_to_remove().
   Result<std::vector<std::string>, std::string> to_remove(const BackupPolicy& policy,
                                                           TimeUs now_us) const;
-  /// Removes these backups, all blocks that no other backup needs, and what a killed program left. A
-  /// damaged manifest may need any block, so while there is one no block is removed. Requires the
+  /// Removes these backups, all blocks that no other backup needs, and what a killed program left.
+  /// A damaged manifest may need any block, so while there is one no block is removed. Requires the
   /// lock.
   Result<Pruned, std::string> remove(const std::vector<std::string>& names);
 

@@ -1,5 +1,5 @@
-// BackupManifest: what one backup of a backup folder is made of: the files of a world, each as a list
-// of blocks. docs/server-reference.md, "The backup folder", describes its text.
+// BackupManifest: what one backup of a backup folder is made of: the files of a world, each as a
+// list of blocks. docs/server-reference.md, "The backup folder", describes its text.
 // Threads: any. The functions read no clock and no file.
 #pragma once
 #include <array>
@@ -20,8 +20,8 @@ namespace runstone {
 
 /// BLAKE2b of the bytes of a block, 256 bits.
 using BlockHash = std::array<std::uint8_t, 32>;
-/// The bytes of each block of a file but the last one, which may be shorter. A block is written anew
-/// if one of its bytes has changed; smaller blocks would be more files.
+/// The bytes of each block of a file but the last one, which may be shorter. A block is written
+/// anew if one of its bytes has changed; smaller blocks would be more files.
 inline constexpr std::size_t kBlockBytes = std::size_t{32} << 10;
 
 BlockHash hash_of_block(ByteView bytes);
@@ -48,18 +48,19 @@ struct BackupManifest {
 
 /// Returns the text of a manifest. It ends with a hash of all of it.
 std::string manifest_text(const BackupManifest& manifest);
-/// Parses the text of a manifest. Fails if a byte of it has changed or is missing, or if the text is
-/// of a newer version. The error is a part of a sentence.
+/// Parses the text of a manifest. Fails if a byte of it has changed or is missing, or if the text
+/// is of a newer version. The error is a part of a sentence.
 Result<BackupManifest, std::string> parse_manifest(std::string_view text);
 
-/// Parses the lines of a manifest that are above its first file. `text` may end behind them. Returns
-/// nullopt if they are no such lines. The hash at the end is not looked at.
+/// Parses the lines of a manifest that are above its first file. `text` may end behind them.
+/// Returns nullopt if they are no such lines. The hash at the end is not looked at.
 std::optional<BackupManifest> parse_manifest_head(std::string_view text);
-/// Reads a manifest as parse_manifest() does, but its files get no blocks, so it needs no memory for
-/// them.
+/// Reads a manifest as parse_manifest() does, but its files get no blocks, so it needs no memory
+/// for them.
 Result<BackupManifest, std::string> read_manifest_sizes(std::istream& in);
 
-/// Returns the name of a backup, such as "20261118T033000Z". The time is rounded down to the second.
+/// Returns the name of a backup, such as "20261118T033000Z". The time is rounded down to the
+/// second.
 std::string backup_name(TimeUs taken_us);
 /// Returns the time of such a name, or nullopt if the text is no name of a backup.
 std::optional<TimeUs> time_of_backup(std::string_view name);

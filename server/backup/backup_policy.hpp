@@ -22,8 +22,9 @@ struct BackupPolicy {
 };
 
 /// Returns the times among `times` (UTC) whose backups the policy removes, in ascending order. The
-/// newest one that is not after `now_us` is never among them. Times after `now_us` are of a clock that
-/// was wrong: they are not among them either, and take no place of another backup. Cost: O(n log n).
+/// newest one that is not after `now_us` is never among them. Times after `now_us` are of a clock
+/// that was wrong: they are not among them either, and take no place of another backup. Cost: O(n
+/// log n).
 std::vector<TimeUs> backups_to_remove(std::vector<TimeUs> times, const BackupPolicy& policy,
                                       TimeUs now_us);
 

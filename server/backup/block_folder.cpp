@@ -101,7 +101,8 @@ Result<BlockFolder::Stored, std::string> BlockFolder::put(ByteView block) {
   const std::string file = folder_of(name) + "/" + name;
   const auto there = read_block(file);
   if (there && std::ranges::equal(*there, block)) {
-    // Its name may not be on disk yet: the program that wrote it may have been killed before sync().
+    // Its name may not be on disk yet: the program that wrote it may have been killed before
+    // sync().
     written_.insert(folder_of(name));
     return stored;
   }

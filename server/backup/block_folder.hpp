@@ -1,9 +1,11 @@
 // BlockFolder: blocks of bytes, each once, in files that are named by the hash of their bytes. So
 // backups share equal blocks.
-//   - A block's file is complete when it has its name: it is written as NAME.new, synced, and renamed.
+//   - A block's file is complete when it has its name: it is written as NAME.new, synced, and
+//     renamed.
 //   - A block that is there is read and compared before it is used again, so a damaged one is
 //     replaced as long as the world still has its bytes.
-// Threads: one thread at a time. All calls block on the disk. Errors begin with the name of the file.
+// Threads: one thread at a time. All calls block on the disk. Errors begin with the name of the
+// file.
 #pragma once
 #include <cstdint>
 #include <set>
@@ -31,9 +33,9 @@ class BlockFolder {
   Result<void, std::string> sync();
   /// Returns the bytes of a block. Fails if it is missing, damaged, or has not `bytes` bytes.
   Result<Bytes, std::string> get(const BlockHash& hash, std::size_t bytes) const;
-  /// Removes all blocks that are not among `used`, and what a put() that was killed left. Returns the
-  /// bytes that came free. Files of other names, and those that are not where put() writes them,
-  /// stay. Fails if the folder is a symbolic link, and removes nothing then.
+  /// Removes all blocks that are not among `used`, and what a put() that was killed left. Returns
+  /// the bytes that came free. Files of other names, and those that are not where put() writes
+  /// them, stay. Fails if the folder is a symbolic link, and removes nothing then.
   Result<std::uint64_t, std::string> keep_only(const std::set<BlockHash>& used) const;
 
  private:

@@ -27,8 +27,8 @@ struct BackupPace {
 /// Returns the pace of the program: rest() sleeps as long as the part took.
 BackupPace gentle_pace();
 
-/// Fails unless the disk of `folder` has room for `bytes` and `spare` more. The error is one line that
-/// begins with `name`.
+/// Fails unless the disk of `folder` has room for `bytes` and `spare` more. The error is one line
+/// that begins with `name`.
 Result<void, std::string> check_room(const std::string& name, const std::string& folder,
                                      std::uint64_t bytes, std::uint64_t spare);
 

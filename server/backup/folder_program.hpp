@@ -22,7 +22,8 @@ struct BackupFolderRequest {
   bool progress = false;         // add: print progress even if standard error is no terminal
 };
 
-/// Carries out the request, and prints what it did. `now_us` is the time in UTC. The error is one line.
+/// Carries out the request, and prints what it did. `now_us` is the time in UTC. The error is one
+/// line.
 ///   - add makes a verified backup, and then removes those that the policy does not keep. It fails
 ///     if the folder lies in the world's folder, or the other way round. If a backup was made and
 ///     others could not be removed, a line begins with "warning".

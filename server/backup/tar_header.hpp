@@ -1,5 +1,5 @@
-// The headers of a tar file in the format ustar of POSIX.1-1988. A pack of a world is such a file, so
-// that other programs can read it.
+// The headers of a tar file in the format ustar of POSIX.1-1988. A pack of a world is such a file,
+// so that other programs can read it.
 // Threads: any.
 #pragma once
 #include <array>
@@ -33,8 +33,9 @@ constexpr std::size_t tar_padding(std::uint64_t bytes) {
 /// written in binary, as GNU tar and others do. Fails if the name is longer than 100 bytes.
 Result<TarHeader, std::string> tar_header(const TarEntry& entry);
 
-/// Parses the header of a regular file. Returns nullopt for a block of zeros, which ends a tar file.
-/// Fails on a wrong checksum and on every other kind of entry. The error is a part of a sentence.
+/// Parses the header of a regular file. Returns nullopt for a block of zeros, which ends a tar
+/// file. Fails on a wrong checksum and on every other kind of entry. The error is a part of a
+/// sentence.
 Result<std::optional<TarEntry>, std::string> parse_tar_header(const TarHeader& header);
 
 }  // namespace runstone

@@ -33,9 +33,9 @@ Result<WorldBackup, std::string> back_up_world(const std::string& from, SourceUs
                                                const BackupPace& pace,
                                                const BackupProgress& progress);
 
-/// Begins a new branch in the copied world in the folder `to`, and verifies it as back_up_world() does.
-/// Requires `backup.moment`, and completes the rest of `backup` but `left_out` and `copy_s`. The error
-/// is one line; `to` is then to be thrown away.
+/// Begins a new branch in the copied world in the folder `to`, and verifies it as back_up_world()
+/// does. Requires `backup.moment`, and completes the rest of `backup` but `left_out` and `copy_s`.
+/// The error is one line; `to` is then to be thrown away.
 Result<void, std::string> complete_copy(const std::string& to, TimeUs now_us, WorldBackup& backup);
 
 /// Copies the configuration, the files *.toml, from a world's folder to another one. Returns the

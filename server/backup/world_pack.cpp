@@ -112,8 +112,8 @@ Result<std::string, std::string> write_pack(const std::string& folder, const Wor
   return fresh;
 }
 
-/// Gives a file the name `to`. Fails if there is a file of this name, also one that was made a moment
-/// ago. The error is that of the system.
+/// Gives a file the name `to`. Fails if there is a file of this name, also one that was made a
+/// moment ago. The error is that of the system.
 Result<void, std::string> rename_to_new(const std::string& from, const std::string& to) {
   const auto wrong = [] { return failure(std::generic_category().message(errno)); };
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return {};

@@ -81,6 +81,7 @@ class SettingsTable {
       const auto wrong = [&](std::string why) {
         return failure(TextError{std::string(file), value.line, value.key, std::move(why)});
       };
+      if (setting == nullptr && value.is_empty_header && is_header(value.key)) continue;
       if (setting == nullptr) return wrong("no such setting" + did_you_mean(value.key, names_));
       if (!can_be(value, setting->type))
         return wrong(type_rule(setting->type) + ": " + setting->help);
@@ -117,6 +118,11 @@ class SettingsTable {
   }
 
  private:
+  /// Returns true if settings can stand under this header: a name begins with it and "_".
+  bool is_header(const std::string& header) const {
+    return std::any_of(names_.begin(), names_.end(),
+                       [&](const std::string& name) { return name.starts_with(header + "_"); });
+  }
   /// Returns "; did you mean VARIABLE?" or an empty text. The prefix is no part of the comparison.
   std::string nearest_variable(std::string_view name) const {
     const std::string_view nearest = nearest_name(name.substr(prefix_.size()), names_);

@@ -32,6 +32,8 @@ void append_settings(const toml::table& table, const std::string& prefix,
       continue;
     }
     TomlSetting setting{key.source().begin.line, name, std::nullopt, {}};
+    setting.is_empty_header =
+        inner != nullptr && !inner->is_inline() && inner->empty() && is_header(name);
     if (const auto text = node.value_exact<std::string>()) {
       setting.type = SettingType::text;
       setting.text = *text;

@@ -22,6 +22,7 @@ struct TomlSetting {
   std::string key;
   std::optional<SettingType> type;  // nullopt: no setting has a value of this type
   std::string text;                 // as a flag of the command line has it
+  bool is_empty_header = false;     // a header such as [backup] with no line below it
 };
 /// The settings under a header such as [server.valley].
 struct TomlSection {
@@ -36,6 +37,7 @@ Result<std::vector<TomlSection>, TextError> read_toml_sections(std::string_view 
                                                                std::string_view kind);
 /// Returns all keys of a file with their values. `file` is only for messages. A key `every` under the
 /// header [backup] is `backup_every`, so settings whose names begin alike can stand under one header.
+/// A header without a line below it is one key, so that a wrong one is found.
 /// The kind of sections `sections` is one key without a value; empty: there are none. Fails if the
 /// file is no TOML, or has a key twice.
 Result<std::vector<TomlSetting>, TextError> read_toml_settings(std::string_view toml,

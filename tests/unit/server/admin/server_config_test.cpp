@@ -100,6 +100,9 @@ TEST_CASE("backups are set under a header of their own", "[admin]") {
   ServerConfig printed;
   REQUIRE(read_config_toml(printed, to_toml(config), "server.toml").has_value());
   CHECK(printed == config);
+  // All lines below the header may be comments.
+  REQUIRE(read_config_toml(config, "[backup]\n#every = \"7h\"\n", "server.toml").has_value());
+  CHECK(config == expected);
   const std::pair<const char*, const char*> durations[] = {
       {"0", "0"}, {"60s", "1m"}, {"90m", "90m"}, {"2d", "48h"}, {"61s", "61s"}, {"366d", "8784h"}};
   for (const auto& [text, back] : durations) {
@@ -132,7 +135,9 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
   CHECK(under.key == "backup_evry");
   CHECK(under.what == "no such setting; did you mean backup_every?");
   CHECK(error("backup_every = \"6h\"\n[backup]\nevery = \"7h\"\n").what == "is there twice");
-  CHECK(error("[backup]\n").key == "backup");
+  CHECK(error("[bakcup]\n").key == "bakcup");
+  CHECK(error("backup = {}\n").key == "backup");
+  CHECK(error("[backup]\n[backup.deep]\n").key == "backup_deep");
   CHECK(error("[backup.deep]\nevery = \"6h\"\n").key == "backup_deep");
   CHECK(error("sessions_max = 0").what.find("1..65536") != std::string::npos);
   CHECK(error("sessions_max = -1").key == "sessions_max");

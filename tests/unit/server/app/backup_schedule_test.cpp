@@ -36,6 +36,8 @@ TEST_CASE("a backup that was made and cannot be read is not made again at once",
   CHECK_FALSE(state.last.has_value());
   schedule.stop();
   CHECK(script.written("calls") == "made\n");
+  // It is no folder of backups yet, so nothing was put into it.
+  CHECK(std::filesystem::is_empty(folder / "backups"));
 }
 
 TEST_CASE("settings without a sound plan for backups are refused with words", "[backup]") {

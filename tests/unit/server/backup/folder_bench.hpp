@@ -19,7 +19,8 @@ inline constexpr TimeUs kBackupHourUs = 3'600'000'000;
 struct FolderBench : BackupBench {
   FolderBench() { std::filesystem::create_directory(backups); }
 
-  /// Carries out a request, and returns the error or an empty text. `printed` is then what it printed.
+  /// Carries out a request, and returns the error or an empty text. `printed` is then what it
+  /// printed.
   std::string run(BackupFolderRequest request, TimeUs now_us = kBackupTimeUs,
                   const BackupPace& pace = {}) {
     std::ostringstream out;
