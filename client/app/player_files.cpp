@@ -14,7 +14,8 @@ PlayerFiles::PlayerFiles(std::string kits_file, std::string hotbars_file)
 void PlayerFiles::keep(const WorldId& world, const WorldKit& kit, TimeUs now_us) {
   if (kits_file_.empty()) return;
   if (waiting_.empty()) due_us_ = now_us + kDelayUs;
-  waiting_.kits.add(to_hex(world), to_text(kit));
+  last_kit_ = {to_hex(world), to_text(kit)};
+  waiting_.kits.add(last_kit_->first, last_kit_->second);
 }
 
 void PlayerFiles::keep(HotbarRows hotbars, TimeUs now_us) {
@@ -51,6 +52,7 @@ std::string PlayerFiles::step(TimeUs now_us) {
 
 Result<void, std::string> PlayerFiles::finish() {
   if (write_.valid()) static_cast<void>(take_written());  // what failed is tried once more
+  if (last_kit_) waiting_.kits.add(last_kit_->first, last_kit_->second);
   if (waiting_.empty()) return {};
   return write(std::exchange(waiting_, {}), kits_file_, hotbars_file_);
 }

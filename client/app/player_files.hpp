@@ -6,6 +6,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "client/play/world_kit.hpp"
 #include "client/settings/hotbars_file.hpp"
@@ -43,7 +44,9 @@ class PlayerFiles {
   /// since the last call, or an empty text. A change that cannot be written is tried again after
   /// kRetryUs.
   std::string step(TimeUs now_us);
-  /// Writes everything before it returns. Fails with a line that begins with the name of the file.
+  /// Writes everything before it returns. The last kit is written although it has not changed: of
+  /// several clients of one player in one world, the one that ends last leaves its kit. Fails with a
+  /// line that begins with the name of the file.
   Result<void, std::string> finish();
 
   bool is_writing() const { return write_.valid(); }
@@ -63,6 +66,8 @@ class PlayerFiles {
   Result<void, std::string> take_written();
 
   const std::string kits_file_, hotbars_file_;
+  /// World and line of the last keep().
+  std::optional<std::pair<std::string, std::string>> last_kit_;
   Unwritten waiting_;  // to be written
   TimeUs due_us_ = 0;  // when writing begins, if something waits
   Unwritten written_;  // what write_ writes

@@ -11,6 +11,9 @@ namespace {
 /// Returns the coordinates of a corner by axis.
 constexpr std::int32_t VoxelPos::* kAlong[] = {&VoxelPos::x, &VoxelPos::y, &VoxelPos::z};
 
+/// The boxes that are joined, at most. A set with more of them counts as one of too many boxes.
+constexpr std::size_t kPartsMax = 4 * BoxSet::kBoxesMax;
+
 /// Appends the part of a box outside of another one: up to two boxes along each axis.
 void append_outside(VoxelBox box, const VoxelBox& other, std::vector<VoxelBox>& out) {
   const VoxelBox both = intersect(box, other);
@@ -56,7 +59,7 @@ bool BoxSet::contains(VoxelPos voxel) const {
 
 bool BoxSet::simplify() {
   // Each round but the last one removes a box.
-  for (bool is_changed = boxes_.size() <= 4 * kBoxesMax; is_changed;) {
+  for (bool is_changed = boxes_.size() <= kPartsMax; is_changed;) {
     is_changed = false;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       for (std::size_t j = i + 1; j < boxes_.size(); ++j) {
@@ -109,14 +112,23 @@ BoxSet BoxSet::moved(Direction direction, std::int32_t steps) const {
 }
 
 std::optional<BoxSet> BoxSet::grown(Direction direction, std::int32_t steps) const {
-  std::optional<BoxSet> out = *this;
-  for (VoxelBox box : boxes_) {
-    VoxelPos& corner = is_positive(direction) ? box.max : box.min;
+  BoxSet out = *this;
+  std::vector<VoxelBox> left, cut;
+  for (const VoxelBox& box : boxes_) {
+    VoxelBox longer = box;
+    VoxelPos& corner = is_positive(direction) ? longer.max : longer.min;
     corner = runstone::moved(corner, direction, steps);
-    out = united(*out, BoxSet(box));
-    if (!out) return out;
+    left.clear();
+    append_outside(longer, box, left);
+    for (std::size_t i = 0; i < out.boxes_.size() && !left.empty(); ++i) {
+      cut.clear();
+      for (const VoxelBox& part : left) append_outside(part, out.boxes_[i], cut);
+      left.swap(cut);
+    }
+    out.boxes_.insert(out.boxes_.end(), left.begin(), left.end());
+    if (out.boxes_.size() > kPartsMax) return std::nullopt;
   }
-  return out;
+  return out.simplify() ? std::optional(std::move(out)) : std::nullopt;
 }
 
 std::optional<BoxSet> BoxSet::shrunk(Direction direction, std::int32_t steps) const {

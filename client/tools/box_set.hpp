@@ -28,8 +28,8 @@ class BoxSet {
   bool contains(VoxelPos voxel) const;
 
   /// Returns the union, the difference a minus b, and the intersection. Fails with nullopt if the
-  /// result, or a set on the way to it, has more than kBoxesMax boxes. Cost: O(boxes of one set * boxes of the other, and those
-  /// of the result squared).
+  /// result, or a set on the way to it, has more than kBoxesMax boxes. Cost: O(boxes of one set *
+  /// boxes of the other, and those of the result squared).
   static std::optional<BoxSet> united(const BoxSet& a, const BoxSet& b);
   static std::optional<BoxSet> without(const BoxSet& a, const BoxSet& b);
   static std::optional<BoxSet> common(const BoxSet& a, const BoxSet& b);
@@ -38,7 +38,9 @@ class BoxSet {
   BoxSet moved(Direction direction, std::int32_t steps) const;
   /// Compares the boxes in their order. Sets of the same voxels may have different boxes.
   friend bool operator==(const BoxSet&, const BoxSet&) = default;
-  /// Returns the set and all voxels up to `steps` behind it in a direction. Requires 0 <= steps.
+  /// Returns the set and all voxels up to `steps` behind it in a direction. Fails with nullopt if the
+  /// result has more than kBoxesMax boxes. Requires 0 <= steps. Cost: O(boxes of the set * those of
+  /// the result, and those of the result squared).
   std::optional<BoxSet> grown(Direction direction, std::int32_t steps) const;
   /// Returns the voxels behind which all voxels up to `steps` in a direction are in the set. Requires
   /// 0 <= steps.

@@ -61,6 +61,12 @@ bool BoundFilter::reads_neighbours() const {
   }
 }
 
+std::uint64_t BoundFilter::conditions() const {
+  std::uint64_t out = 1;
+  for (const BoundFilter& part : parts_) out += part.conditions();
+  return out;
+}
+
 std::uint64_t BoundFilter::noise_voxels() const {
   std::uint64_t out = noise_voxels_;
   for (const BoundFilter& part : parts_) out += part.noise_voxels();

@@ -31,6 +31,9 @@ class BoundFilter {
   /// O(voxels) for `noise`.
   HeightRanges passing(const GroundColumns& columns, std::int32_t x, std::int32_t z,
                        HeightRange range);
+  /// Returns the number of conditions that it checks, with those that hold them together. Cost:
+  /// O(conditions).
+  std::uint64_t conditions() const;
   /// Returns the number of voxels that `noise` has taken one by one.
   std::uint64_t noise_voxels() const;
 

@@ -25,6 +25,14 @@ VoxelBox widened_in_world(const VoxelBox& box) {
                    world);
 }
 
+/// Returns the number of chunks that a box meets.
+std::uint64_t chunks_in(const VoxelBox& box, std::int32_t edge) {
+  const auto along = [edge](std::int32_t low, std::int32_t end) {
+    return static_cast<std::uint64_t>(floor_div(end - 1, edge) - floor_div(low, edge) + 1);
+  };
+  return along(box.min.x, box.max.x) * along(box.min.y, box.max.y) * along(box.min.z, box.max.z);
+}
+
 /// Returns the number of the first section that lies in the next slice along an axis.
 std::uint32_t next_slice(const std::vector<std::int32_t>& cuts, std::int32_t first,
                          std::uint32_t section) {
@@ -53,12 +61,13 @@ Replacing::Replacing(const VoxelBox& box, BoundMix mix, std::optional<BoundFilte
       filter_(std::move(filter)),
       chunk_edge_(chunk_edge),
       chunks_(std::move(chunks)),
-      builder_(std::move(builder)) {
+      builder_(std::move(builder)),
+      run_units_(1 + (filter_ ? filter_->conditions() : 0)) {
   slice_high_.x = next_slice(builder_.cuts()[0], box_.min.x, 0);
   slice_high_.z = next_slice(builder_.cuts()[2], box_.min.z, 0);
 }
 
-Result<void> Replacing::read_slice() {
+Result<void> Replacing::read_slice(std::uint64_t& work) {
   const BuildCuts& cuts = builder_.cuts();
   const VoxelBox slice{
       {box_.min.x + cuts[0][slice_low_.x], box_.min.y, box_.min.z + cuts[2][slice_low_.z]},
@@ -70,8 +79,10 @@ Result<void> Replacing::read_slice() {
         uniform_chunk(Extent::cube(static_cast<std::uint8_t>(chunk_edge_)), kUnknownMaterial)));
   };
   const bool is_wide = filter_ && filter_->reads_neighbours();
-  auto columns =
-      GroundColumns::read(is_wide ? widened_in_world(slice) : slice, chunk_edge_, around);
+  const VoxelBox read = is_wide ? widened_in_world(slice) : slice;
+  auto columns = GroundColumns::read(read, chunk_edge_, around);
+  const auto edge = static_cast<std::uint64_t>(chunk_edge_);
+  work -= std::min(work, chunks_in(read, chunk_edge_) * edge * edge);
   if (!columns) return failure(columns.error());
   columns_ = *std::move(columns);
   stack_ = slice_low_;
@@ -121,7 +132,7 @@ void Replacing::next_stack() {
 Result<bool> Replacing::step(std::uint64_t& work) {
   while (!is_done_ && work > 0) {
     if (!columns_) {
-      if (const auto read = read_slice(); !read) return failure(read.error());
+      if (const auto read = read_slice(work); !read) return failure(read.error());
     }
     if (const auto put = put_column(work); !put) return failure(put.error());
     ++line_;
@@ -161,7 +172,7 @@ Result<void> Replacing::put_column(std::uint64_t& work) {
     }
   }
   if (is_full_) return fail(ErrorCode::limit_exceeded, "too many materials in a build");
-  work -= std::min(work, 1 + runs.size() + decided() - decided_before);
+  work -= std::min(work, 1 + runs.size() * run_units_ + decided() - decided_before);
   return {};
 }
 

@@ -26,10 +26,13 @@ class Replacing {
   static Result<Replacing> of(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
                               std::int32_t chunk_edge, ChunkLookup chunks);
 
-  /// Goes on until all voxels are done or `work` is used up, and takes what it used from `work`. A
-  /// column, a run and a voxel that is decided by itself are one unit each; a slice whose columns are
-  /// read, of up to 128 x 128 columns, may exceed `work` once. Returns true when all voxels are done.
-  /// Fails with
+  /// Goes on until all voxels are done or `work` is used up, and takes what it used from `work`. The
+  /// units are
+  ///   - the square of the chunk edge for each chunk whose columns are read;
+  ///   - 1 for each column, for each run, for each condition of the filter in each run, and for each
+  ///     voxel that is decided by itself.
+  /// Columns are read in slices of up to 128 x 128 columns; a slice may exceed `work` once. Returns
+  /// true when all voxels are done. Fails with
   ///   - not_found if a chunk of the box is not known;
   ///   - limit_exceeded if the build takes more than kBuildBytesMax or has too many materials.
   /// Do not call it after a failure.
@@ -50,7 +53,7 @@ class Replacing {
 
   Replacing(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
             std::int32_t chunk_edge, ChunkLookup chunks, BuildBuilder builder);
-  Result<void> read_slice();
+  Result<void> read_slice(std::uint64_t& work);
   void begin_stack();
   Result<void> put_stack();
   /// Moves to the next stack, in the next slice if this one is done.
@@ -77,6 +80,7 @@ class Replacing {
   std::uint32_t line_ = 0;         // its number in the stack
   std::size_t section_ = 0;        // that holds the voxel that was set last in the column
   std::uint64_t mixed_ = 0;
+  std::uint64_t run_units_ = 1;  // of work, for each run of a column
   bool has_changes_ = false;
   bool is_full_ = false;  // the palette has no room
   bool is_done_ = false;

@@ -120,6 +120,23 @@ TEST_CASE_METHOD(FilesBench, "an orderly end writes at once, and says why it can
   CHECK(refused.error().starts_with(kits));
 }
 
+TEST_CASE_METHOD(FilesBench, "of two clients in one world the one that ends last leaves its kit",
+                 "[client]") {
+  PlayerFiles second(kits, hotbars);
+  second.keep(world_of(1), kit_with(2), kStart);
+  REQUIRE(second.step(kStart + PlayerFiles::kDelayUs).empty());
+  while (second.is_writing()) {
+    std::this_thread::yield();
+    REQUIRE(second.step(kStart + PlayerFiles::kDelayUs).empty());
+  }
+  files.keep(world_of(1), kit_with(1), kStart);
+  turn(kStart + PlayerFiles::kDelayUs);
+  REQUIRE(files.finish());
+  CHECK(on_disk(1) == kit_with(1));
+  REQUIRE(second.finish());
+  CHECK(on_disk(1) == kit_with(2));
+}
+
 TEST_CASE("a client without files for its player writes none", "[client]") {
   PlayerFiles files{"", ""};
   files.keep(world_of(1), kit_with(1), 0);

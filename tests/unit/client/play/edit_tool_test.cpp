@@ -76,6 +76,11 @@ struct Fixture {
   Result<void, std::string> nudge(Direction direction = Direction::pos_y) {
     return tool.propose(box.nudge(session.replica(), direction), kNow);
   }
+  /// Offers edits of a chunk that is not shown until the client accepts no more.
+  void fill_local_edits() {
+    while (session.replica().local_edits().all().size() < kLocalEditsMax)
+      REQUIRE(session.offer({SetVoxel{{1, -5, 3}}, {}, 1}, kNow, kNow).has_value());
+  }
   std::uint64_t infinite(EditPath path) const {
     return recorder.report()[path]
         .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
@@ -344,13 +349,11 @@ TEST_CASE_METHOD(Fixture, "a paste of which an edit was refused cannot be moved"
   REQUIRE(paste_cube().has_value());
   REQUIRE(nudge().has_value());
   SECTION("by the client") {
-    while (session.replica().local_edits().all().size() < kLocalEditsMax)
-      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    fill_local_edits();
     REQUIRE_FALSE(nudge().has_value());
   }
   SECTION("by the client, when it is pasted") {
-    while (session.replica().local_edits().all().size() < kLocalEditsMax)
-      REQUIRE(session.offer({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+    fill_local_edits();
     REQUIRE_FALSE(paste_cube().has_value());
   }
   SECTION("by the server") {

@@ -244,6 +244,20 @@ TEST_CASE("a held key adds a chosen box to the selection or removes it", "[tools
   CHECK(box.selected_box() == VoxelBox{{0, -1, 0}, {1, 0, 1}});
 }
 
+TEST_CASE("a set of as many boxes as may be grows", "[tools]") {
+  std::optional<BoxSet> set = BoxSet();
+  for (std::int32_t i = 0; i < 256; ++i)
+    set = BoxSet::united(*set, BoxSet({{2 * i, 0, 0}, {2 * i + 1, 1, 1}})).value();
+  const BoxSet deep = set->grown(Direction::neg_z, 3).value();
+  CHECK(deep.boxes().size() == 256);
+  CHECK(deep.around() == VoxelBox{{0, 0, -3}, {511, 1, 1}});
+  CHECK(deep.contains({510, 0, -3}));
+  CHECK_FALSE(deep.contains({509, 0, -3}));
+  const BoxSet whole = set->grown(Direction::pos_x, 9).value();
+  REQUIRE(whole.boxes().size() == 1);
+  CHECK(whole.boxes().front() == VoxelBox{{0, 0, 0}, {520, 1, 1}});
+}
+
 TEST_CASE("a copy of several boxes is bounded along all axes", "[tools]") {
   ToolBench bench;
   bench.show_flat();

@@ -274,6 +274,39 @@ TEST_CASE("a box without a voxel that changes makes no build", "[patterns]") {
   CHECK(none->build == nullptr);
 }
 
+TEST_CASE("the work of a replacement counts the chunks that it reads and the conditions",
+          "[patterns]") {
+  MixedWorld world(6);
+  for (auto& [at, chunk] : world.chunks)
+    chunk = std::make_shared<RunChunk>(uniform_chunk(Extent::cube(kEdge), 2));
+  const MaterialTable table = patterns_table();
+  const auto work_of = [&](const VoxelBox& box, std::string_view text) {
+    const auto pattern = parse_pattern(text);
+    REQUIRE(pattern);
+    auto mix = BoundMix::of(pattern->mix, table, {});
+    REQUIRE(mix);
+    std::optional<BoundFilter> filter;
+    if (pattern->filter) filter = BoundFilter::of(*pattern->filter, table, 1).value();
+    auto steps = Replacing::of(box, *mix, filter, kEdge, world);
+    REQUIRE(steps);
+    constexpr std::uint64_t kMuch = 1'000'000;
+    std::uint64_t work = kMuch;
+    CHECK(steps->step(work).value());
+    return kMuch - work;
+  };
+  // One chunk, then four of them above each other, with 9 columns.
+  const VoxelBox low{{0, 0, 0}, {3, 1, 3}}, high{{0, -32, 0}, {3, 32, 3}};
+  const std::uint64_t once = work_of(low, "stone"), four = work_of(high, "stone");
+  CHECK(once >= 256 + 9 * 2);
+  CHECK(once < 2 * 256);
+  CHECK(four >= 4 * 256);
+  CHECK(four < 5 * 256);
+  const std::uint64_t solid = work_of(low, "stone where solid"),
+                      more = work_of(low, "stone where solid and above -9 and below 90");
+  CHECK(solid > once);
+  CHECK(more > solid);
+}
+
 TEST_CASE("a replacement in steps is that of one call", "[patterns][property]") {
   SplitMix64 rng(Catch::rngSeed() + 9);
   const MaterialTable table = patterns_table();
