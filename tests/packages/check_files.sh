@@ -50,6 +50,11 @@ expect "--world" runstone-server backup --wor
 expect "luanti" runstone-server import lu
 expect "default none" runstone-server import --palette ""
 expect "" runstone-server backup --world ""  # bash goes on with names of files
+expect "backup" runstone-server --world import ba
+expect "backup" runstone-server --world = import ba
+expect "default none" runstone-server import --palette =
+expect "none" runstone-server import --palette = n
+expect "" runstone-server backup --world = ""
 
 # What fish offers, which knows the description of each as well.
 fish_offers() {
