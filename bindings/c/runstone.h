@@ -368,17 +368,18 @@ RUNSTONE_API runstone_status runstone_tile_build(const runstone_chunk* const chi
 RUNSTONE_API runstone_status runstone_tile_veil(runstone_chunk* tile,
                                                 const runstone_visibility* visibility);
 
-/* Collision. A space holds copies of chunks. Chunks that were not set are not known: they stop
- * bodies, and rays end there. */
+/* Collision. A space holds copies of chunks. Chunks that were not set are not known. They stop
+ * bodies, unless runstone_space_set_solid() says otherwise, and rays end there without a hit. */
 
 RUNSTONE_API runstone_status runstone_space_create(uint32_t edge, runstone_space** out);
 RUNSTONE_API runstone_status runstone_space_free(runstone_space* space);
 /* Sets the chunk at a place in the grid of chunks, a cube of the space's edge. NULL forgets it. */
 RUNSTONE_API runstone_status runstone_space_set(runstone_space* space, runstone_pos at,
                                                 const runstone_chunk* chunk);
-/* Says which materials stop bodies and rays: material i does if solid[i] is not 0. `others` says
- * it for materials without an entry and for chunks that are not known. At first every material
- * but 0 stops. */
+/* Says which materials stop bodies and rays: material i does if solid[i] is not 0. Material 0 is
+ * empty, so solid[0] must be 0. `others` says it for the other materials without an entry. It also
+ * says if chunks that are not known stop bodies; rays always end there. At first every material but
+ * 0 stops, and so does every chunk that is not known. */
 RUNSTONE_API runstone_status runstone_space_set_solid(runstone_space* space, const uint8_t* solid,
                                                       size_t count, uint32_t others);
 /* Moves a box until it meets a solid voxel. Body and move have at most 256 voxels along each
@@ -392,7 +393,7 @@ RUNSTONE_API runstone_status runstone_space_slide(const runstone_space* space, r
 RUNSTONE_API runstone_status runstone_space_overlaps(const runstone_space* space,
                                                      runstone_body body, uint32_t* overlaps);
 /* Finds the first solid voxel along a ray of 0 .. 512 voxels. `direction` may have any length but
- * 0. */
+ * 0. Numbers that are not finite are refused. */
 RUNSTONE_API runstone_status runstone_space_pick(const runstone_space* space, runstone_vec eye,
                                                  runstone_vec direction, double reach,
                                                  runstone_ray* out);
