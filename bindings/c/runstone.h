@@ -6,10 +6,10 @@
  * Freeing NULL does nothing. A NULL handle, a handle of another kind and most handles that were
  * freed are refused.
  *
- * Status. Every call that can fail returns a runstone_status. RUNSTONE_OK is 0. After any other
- * one runstone_last_error() has the words, and every output other than a count is as it was; an
- * output handle is NULL. No exception leaves a function, and no argument ends the process, as
- * long as pointers point to as many elements as the call says.
+ * Status. Every call that can fail returns a runstone_status. RUNSTONE_OK is 0. After every other
+ * status, runstone_last_error() returns a text that says why. Outputs are not changed, except
+ * counts; output handles become NULL. No exception leaves a function, and no argument ends the
+ * process, as long as pointers point to as many elements as the call says.
  *
  * Buffers. The caller owns all buffers. A call with `out, capacity, count` writes the number of
  * elements that there are to *count. With a capacity of 0 it does nothing else, and `out` may be
@@ -59,15 +59,15 @@ enum {
   RUNSTONE_BROKEN_INVARIANT = 8, /* a rule of runs does not hold */
   RUNSTONE_UNKNOWN_KIND = 9,     /* an unknown encoding or kind of edit */
   RUNSTONE_NOT_FOUND = 10,
-  RUNSTONE_IO_FAILED = 11,     /* kept free: this interface does no I/O */
-  RUNSTONE_NOT_PERMITTED = 12, /* kept free, like the one before */
+  RUNSTONE_IO_FAILED = 11,     /* reserved: no call returns it */
+  RUNSTONE_NOT_PERMITTED = 12, /* reserved: no call returns it */
   RUNSTONE_BAD_ARGUMENT =
       13, /* NULL, a number out of range, or handles that do not belong together */
   RUNSTONE_BAD_HANDLE = 14,       /* a handle of another kind, or one that was freed */
   RUNSTONE_BUFFER_TOO_SMALL = 15, /* *count says how many elements are needed */
   RUNSTONE_NO_MEMORY = 16,
   RUNSTONE_DAMAGED = 17, /* memory ran out while the handle was changed: only free it */
-  RUNSTONE_INTERNAL = 18 /* a mistake of the library */
+  RUNSTONE_INTERNAL = 18 /* a defect of the library */
 };
 
 /* Axis orders, fastest axis first. */
@@ -154,7 +154,8 @@ typedef struct runstone_changes {
 typedef struct runstone_quad_fields {
   uint32_t struct_size;
   uint32_t x, y, z;       /* voxel of the corner with the smallest coordinates */
-  uint32_t width, height; /* faces along u and v, 1 .. 128: of x (y, z), of y (z, x), of z (x, y) */
+  uint32_t width, height; /* faces along u and v, 1 .. 128 */
+  /* (u, v) is (y, z) for direction x, (z, x) for y, (x, y) for z */
   uint32_t direction;
   uint32_t material;
 } runstone_quad_fields;
@@ -188,6 +189,7 @@ typedef struct runstone_ray {
   uint32_t direction; /* of the face; NONE if the ray begins inside the voxel or hits nothing */
   runstone_pos voxel;
   uint32_t material;
+  uint32_t reserved; /* 0 */
 } runstone_ray;
 
 /* Versions and errors. These do not fail. */

@@ -159,7 +159,7 @@ runstone_status runstone_space_pick(const runstone_space* space, runstone_vec ey
     if (!(reach >= 0 && reach <= kReachMax))
       refuse(RUNSTONE_BAD_ARGUMENT, "reach", "is not 0 to 512 voxels");
     versioned(out, "out");
-    runstone_ray result{0, 0, 0, RUNSTONE_DIRECTION_NONE, {}, 0};
+    runstone_ray result{0, 0, 0, RUNSTONE_DIRECTION_NONE, {}, 0, 0};
     const auto passes = [&in](Material material) { return !in.solid.contains(material); };
     if (const auto hit = first_hit(in.chunks, {}, world_pos(eye), look, reach, passes)) {
       result.is_hit = 1;

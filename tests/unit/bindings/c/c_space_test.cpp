@@ -83,6 +83,7 @@ TEST_CASE("a ray of the C interface passes what is not solid", "[c_interface]") 
   REQUIRE(runstone_space_set_solid(space.get(), solid, 3, 1) == RUNSTONE_OK);
   runstone_ray ray{};
   ray.struct_size = sizeof ray;
+  ray.reserved = 7;
   // A direction may have any length.
   REQUIRE(runstone_space_pick(space.get(), {2.5, 4.5, 4.5}, {1e-200, 0, 0}, 100, &ray) ==
           RUNSTONE_OK);
@@ -91,6 +92,7 @@ TEST_CASE("a ray of the C interface passes what is not solid", "[c_interface]") 
   CHECK(ray.material == 2);
   CHECK(ray.direction == RUNSTONE_NEG_X);
   CHECK(ray.distance == Approx(9.5));
+  CHECK(ray.reserved == 0);
   REQUIRE(runstone_space_pick(space.get(), {2.5, 4.5, 4.5}, {1, 0, 0}, 9, &ray) == RUNSTONE_OK);
   CHECK(ray.is_hit == 0);
   CHECK(ray.direction == RUNSTONE_DIRECTION_NONE);
