@@ -73,8 +73,9 @@ if(RUNSTONE_INSTALL)
     runstone_install_export(runstone-codec)
   endif()
   if(TARGET runstone_bindings_c)
+    # The library is a component of its own, because programs need it without the files for compilers.
     install(TARGETS runstone_bindings_c EXPORT runstone-c
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runstone NAMELINK_COMPONENT runstone
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runstone_c NAMELINK_COMPONENT runstone
             FILE_SET c_headers DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT runstone)
     runstone_install_pc(c "the C interface" "-I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}" runstone)
     runstone_install_export(runstone-c)

@@ -8,8 +8,8 @@
 
 namespace runstone::c_interface {
 
-/// Gives the number of elements that there are, and refuses a buffer that has room for fewer. Returns
-/// false if only the number was asked for.
+/// Writes `needed` to *count. Returns false if `capacity` is 0. Refuses a smaller `capacity` than
+/// `needed`. Otherwise returns true.
 template <class T>
 bool has_room(const T* out, std::size_t capacity, std::size_t needed, std::size_t* count) {
   given(count, "count") = needed;

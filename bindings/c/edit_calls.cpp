@@ -166,9 +166,15 @@ runstone_status runstone_chunk_apply(runstone_chunk* chunk, runstone_pos at,
     Digest digest = changed.digest ? *changed.digest : digest_of(changed.runs);
     ApplyResult result;
     change_runs(changed, [&] {
-      with_scratch<ApplyScratch>([&](ApplyScratch& scratch) {
-        apply_stack(changed.runs, digest, origin, list, scratch, result);
-      });
+      try {
+        with_scratch<ApplyScratch>([&](ApplyScratch& scratch) {
+          apply_stack(changed.runs, digest, origin, list, scratch, result);
+        });
+      } catch (...) {
+        // The search for the changes reads the runs alone. It ends before result.changed is set.
+        changed.is_damaged = result.changed;
+        throw;
+      }
       if (result.changed) changed.note_change(result.dirty);
       changed.digest = digest;
     });

@@ -56,7 +56,7 @@ struct MeshInput {
 };
 
 /// The layers that changed since a mesh was made.
-struct StaleLayers {
+struct OutdatedLayers {
   DirtyLayers inside;
   std::array<DirtyLayers, kDirectionCount> beyond;
   bool any() const {
@@ -76,11 +76,11 @@ DirtyLayers all_layers(const RunChunk& chunk) {
 }
 
 /// Returns nullopt if the whole mesh has to be made.
-std::optional<StaleLayers> stale_layers(const runstone_mesh& mesh, const MeshInput& in) {
+std::optional<OutdatedLayers> outdated_layers(const runstone_mesh& mesh, const MeshInput& in) {
   if (mesh.of_visibility != in.visibility.revision) return std::nullopt;
   const auto inside = in.chunk.changes_since(mesh.of_chunk);
   if (!inside) return std::nullopt;
-  StaleLayers out{*inside, {}};
+  OutdatedLayers out{*inside, {}};
   for (std::size_t d = 0; d < kDirectionCount; ++d) {
     const runstone_chunk* const neighbour = in.handles[d];
     if (neighbour != nullptr) {
@@ -137,15 +137,15 @@ runstone_status runstone_mesh_update(runstone_mesh* mesh, const runstone_chunk* 
   return answer([&] {
     runstone_mesh& made = live(mesh, "mesh");
     const MeshInput in(chunk, neighbours, borders, visibility);
-    const auto stale = stale_layers(made, in);
-    bool in_part = stale.has_value();
-    if (!stale) {
+    const auto outdated = outdated_layers(made, in);
+    bool in_part = outdated.has_value();
+    if (!outdated) {
       make_whole(made, in);
-    } else if (stale->any()) {
+    } else if (outdated->any()) {
       made.of_chunk = 0;
       in_part = with_scratch<RdmScratch>([&](RdmScratch& scratch) {
         return mesh_rdm_layers(in.chunk.runs, in.neighbours, in.borders, in.visibility.table,
-                               stale->inside, stale->beyond, scratch, made.quads);
+                               outdated->inside, outdated->beyond, scratch, made.quads);
       });
     }
     note_made_of(made, in);

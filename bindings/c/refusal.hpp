@@ -1,7 +1,7 @@
 // Refusal: how a call of the C interface fails. A call checks its arguments in order and refuses the
 // first bad one: refuse() keeps the words for runstone_last_error() and throws. answer() is around
 // each call and turns every exception into a status, so that none leaves the library. Exceptions
-// keep the sixty calls short; a refused argument is a mistake of the caller, so it need not be fast.
+// keep the calls short; a refused argument is a mistake of the caller, so it need not be fast.
 #pragma once
 #include <exception>
 #include <new>
@@ -39,9 +39,9 @@ runstone_status answer(F&& work) noexcept {
   } catch (const std::bad_alloc&) {
     return keep_words(RUNSTONE_NO_MEMORY, "there is not enough memory for the call");
   } catch (const std::exception& error) {
-    return keep_words(RUNSTONE_INTERNAL, "a mistake of the library: %s", error.what());
+    return keep_words(RUNSTONE_INTERNAL, "a defect of the library: %s", error.what());
   } catch (...) {
-    return keep_words(RUNSTONE_INTERNAL, "a mistake of the library");
+    return keep_words(RUNSTONE_INTERNAL, "a defect of the library");
   }
 }
 

@@ -6,10 +6,10 @@
  * Freeing NULL does nothing. A NULL handle, a handle of another kind and most handles that were
  * freed are refused.
  *
- * Status. Every call that can fail returns a runstone_status. RUNSTONE_OK is 0. After any other
- * one runstone_last_error() has the words, and every output other than a count is as it was; an
- * output handle is NULL. No exception leaves a function, and no argument ends the process, as
- * long as pointers point to as many elements as the call says.
+ * Status. Every call that can fail returns a runstone_status. RUNSTONE_OK is 0. After every other
+ * status, runstone_last_error() returns a text that says why. Outputs are not changed, except
+ * counts; output handles become NULL. No exception leaves a function, and no argument ends the
+ * process, as long as pointers point to as many elements as the call says.
  *
  * Buffers. The caller owns all buffers. A call with `out, capacity, count` writes the number of
  * elements that there are to *count. With a capacity of 0 it does nothing else, and `out` may be
@@ -59,15 +59,15 @@ enum {
   RUNSTONE_BROKEN_INVARIANT = 8, /* a rule of runs does not hold */
   RUNSTONE_UNKNOWN_KIND = 9,     /* an unknown encoding or kind of edit */
   RUNSTONE_NOT_FOUND = 10,
-  RUNSTONE_IO_FAILED = 11,     /* kept free: this interface does no I/O */
-  RUNSTONE_NOT_PERMITTED = 12, /* kept free, like the one before */
+  RUNSTONE_IO_FAILED = 11,     /* reserved: no call returns it */
+  RUNSTONE_NOT_PERMITTED = 12, /* reserved: no call returns it */
   RUNSTONE_BAD_ARGUMENT =
       13, /* NULL, a number out of range, or handles that do not belong together */
   RUNSTONE_BAD_HANDLE = 14,       /* a handle of another kind, or one that was freed */
   RUNSTONE_BUFFER_TOO_SMALL = 15, /* *count says how many elements are needed */
   RUNSTONE_NO_MEMORY = 16,
   RUNSTONE_DAMAGED = 17, /* memory ran out while the handle was changed: only free it */
-  RUNSTONE_INTERNAL = 18 /* a mistake of the library */
+  RUNSTONE_INTERNAL = 18 /* a defect of the library */
 };
 
 /* Axis orders, fastest axis first. */
@@ -154,7 +154,8 @@ typedef struct runstone_changes {
 typedef struct runstone_quad_fields {
   uint32_t struct_size;
   uint32_t x, y, z;       /* voxel of the corner with the smallest coordinates */
-  uint32_t width, height; /* faces along u and v, 1 .. 128: of x (y, z), of y (z, x), of z (x, y) */
+  uint32_t width, height; /* faces along u and v, 1 .. 128 */
+  /* (u, v) is (y, z) for direction x, (z, x) for y, (x, y) for z */
   uint32_t direction;
   uint32_t material;
 } runstone_quad_fields;
@@ -188,6 +189,7 @@ typedef struct runstone_ray {
   uint32_t direction; /* of the face; NONE if the ray begins inside the voxel or hits nothing */
   runstone_pos voxel;
   uint32_t material;
+  uint32_t reserved; /* 0 */
 } runstone_ray;
 
 /* Versions and errors. These do not fail. */
@@ -368,17 +370,18 @@ RUNSTONE_API runstone_status runstone_tile_build(const runstone_chunk* const chi
 RUNSTONE_API runstone_status runstone_tile_veil(runstone_chunk* tile,
                                                 const runstone_visibility* visibility);
 
-/* Collision. A space holds copies of chunks. Chunks that were not set are not known: they stop
- * bodies, and rays end there. */
+/* Collision. A space holds copies of chunks. Chunks that were not set are not known. They stop
+ * bodies, unless runstone_space_set_solid() says otherwise, and rays end there without a hit. */
 
 RUNSTONE_API runstone_status runstone_space_create(uint32_t edge, runstone_space** out);
 RUNSTONE_API runstone_status runstone_space_free(runstone_space* space);
 /* Sets the chunk at a place in the grid of chunks, a cube of the space's edge. NULL forgets it. */
 RUNSTONE_API runstone_status runstone_space_set(runstone_space* space, runstone_pos at,
                                                 const runstone_chunk* chunk);
-/* Says which materials stop bodies and rays: material i does if solid[i] is not 0. `others` says
- * it for materials without an entry and for chunks that are not known. At first every material
- * but 0 stops. */
+/* Says which materials stop bodies and rays: material i does if solid[i] is not 0. Material 0 is
+ * empty, so solid[0] must be 0. `others` says it for the other materials without an entry. It also
+ * says if chunks that are not known stop bodies; rays always end there. At first every material but
+ * 0 stops, and so does every chunk that is not known. */
 RUNSTONE_API runstone_status runstone_space_set_solid(runstone_space* space, const uint8_t* solid,
                                                       size_t count, uint32_t others);
 /* Moves a box until it meets a solid voxel. Body and move have at most 256 voxels along each
@@ -392,7 +395,7 @@ RUNSTONE_API runstone_status runstone_space_slide(const runstone_space* space, r
 RUNSTONE_API runstone_status runstone_space_overlaps(const runstone_space* space,
                                                      runstone_body body, uint32_t* overlaps);
 /* Finds the first solid voxel along a ray of 0 .. 512 voxels. `direction` may have any length but
- * 0. */
+ * 0. Numbers that are not finite are refused. */
 RUNSTONE_API runstone_status runstone_space_pick(const runstone_space* space, runstone_vec eye,
                                                  runstone_vec direction, double reach,
                                                  runstone_ray* out);

@@ -40,7 +40,7 @@ static inline uint32_t runstone_runs_number(const uint8_t* bytes, uint32_t size)
   return number;
 }
 
-/* Returns the voxel behind the last one of run i. Requires i < count. */
+/* Returns the end of run i: the index of the first voxel after it. Requires i < count. */
 static inline uint32_t runstone_runs_end(const runstone_runs* runs, uint32_t i) {
   return runstone_runs_number(runs->runs + (size_t)4 * i, runs->is_wide ? 4 : 2);
 }

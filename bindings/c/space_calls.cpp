@@ -48,6 +48,9 @@ namespace {
 
 MaterialSet solid_set(const uint8_t* solid, std::size_t count, std::uint32_t others) {
   check_at_most(count, kMaterialCountMax, "count", "is more than there are materials");
+  if (count > 0 && given(solid, "solid") != 0)
+    refuse(RUNSTONE_BAD_ARGUMENT, "solid",
+           "has another value than 0 for material 0, which is empty");
   std::vector<bool> has;
   for (const std::uint8_t one : elements(solid, count, "solid")) has.push_back(one != 0);
   return {std::move(has), others != 0};
@@ -150,11 +153,13 @@ runstone_status runstone_space_pick(const runstone_space* space, runstone_vec ey
                                     runstone_vec direction, double reach, runstone_ray* out) {
   return answer([&] {
     const runstone_space& in = live(space, "space");
+    if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z))
+      refuse(RUNSTONE_BAD_ARGUMENT, "eye", "has a number that is not finite");
     const LookDirection look = unit_direction(direction);
     if (!(reach >= 0 && reach <= kReachMax))
       refuse(RUNSTONE_BAD_ARGUMENT, "reach", "is not 0 to 512 voxels");
     versioned(out, "out");
-    runstone_ray result{0, 0, 0, RUNSTONE_DIRECTION_NONE, {}, 0};
+    runstone_ray result{0, 0, 0, RUNSTONE_DIRECTION_NONE, {}, 0, 0};
     const auto passes = [&in](Material material) { return !in.solid.contains(material); };
     if (const auto hit = first_hit(in.chunks, {}, world_pos(eye), look, reach, passes)) {
       result.is_hit = 1;

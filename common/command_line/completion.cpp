@@ -56,7 +56,7 @@ void append_bash_nodes(const CommandHelp& command, const std::string& path,
 std::string bash_script(const CommandHelp& program) {
   std::vector<BashNode> nodes;
   append_bash_nodes(program, "", nodes);
-  std::string paths, values, words;
+  std::string paths, values, words, options_with_value;
   for (const auto& [path, command] : nodes) {
     if (!path.empty()) paths += (paths.empty() ? "" : "|") + path;
     std::vector<std::string> offered, files;
@@ -71,6 +71,7 @@ std::string bash_script(const CommandHelp& program) {
       std::string pattern;
       for (const std::string& name : option.names)
         pattern += (pattern.empty() ? "'" : "|'") + path + " " + name + "'";
+      options_with_value += (options_with_value.empty() ? "" : "|") + pattern;
       if (option.choices.empty()) {
         files.push_back(pattern);
       } else {
@@ -87,11 +88,22 @@ std::string bash_script(const CommandHelp& program) {
   const std::string function = shell_function(program.name);
   std::string out = "# bash completion for " + program.name + "\n" + function + "() {\n" +
                     "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
-                    "  local path= words= i\n  COMPREPLY=()\n";
+                    "  local path= words= i option=\n  COMPREPLY=()\n"
+                    // Bash makes three words of `--option=value`.
+                    "  if [[ $word == = ]]; then word=; fi\n"
+                    "  if [[ $before == = ]]; then before=${COMP_WORDS[COMP_CWORD-2]}; fi\n";
   if (!paths.empty()) {
-    out +=
-        "  for ((i = 1; i < COMP_CWORD; ++i)); do\n    case \"$path/${COMP_WORDS[i]}\" in\n      " +
-        paths + ") path=$path/${COMP_WORDS[i]} ;;\n    esac\n  done\n";
+    out += "  for ((i = 1; i < COMP_CWORD; ++i)); do\n";
+    if (!options_with_value.empty()) {
+      // The value of an option is no subcommand.
+      out +=
+          "    option=${COMP_WORDS[i-1]}\n"
+          "    if [[ $option == = ]]; then option=${COMP_WORDS[i-2]}; fi\n"
+          "    case \"$path $option\" in\n      " +
+          options_with_value + ") continue ;;\n    esac\n";
+    }
+    out += "    case \"$path/${COMP_WORDS[i]}\" in\n      " + paths +
+           ") path=$path/${COMP_WORDS[i]} ;;\n    esac\n  done\n";
   }
   if (!values.empty()) out += "  case \"$path $before\" in\n" + values + "  esac\n";
   out += "  case \"$path\" in\n" + words +

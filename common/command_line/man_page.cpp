@@ -38,7 +38,8 @@ std::string option_entry(const OptionHelp& option) {
     if (i > 0) out += ", ";
     out += option.is_positional ? italic(option.names[i]) : bold(option.names[i]);
   }
-  if (!option.value.empty()) {
+  // The value of a positional argument is its type, which says nothing, unless it lists the choices.
+  if (!option.value.empty() && (!option.is_positional || !option.choices.empty())) {
     out +=
         option.is_value_optional ? " [" + italic(option.value) + "]" : " " + italic(option.value);
   }

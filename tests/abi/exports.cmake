@@ -1,4 +1,4 @@
-# Compares what LIBRARY exports with the list SYMBOLS, and names what it loads. A function that is missing breaks
+# Compares what LIBRARY exports with the list SYMBOLS and its soname with the number in HEADER, and names what it loads. A function that is missing breaks
 # programs. One that is not listed was not meant to be exported, or lacks its line.
 cmake_minimum_required(VERSION 3.25)
 
@@ -34,8 +34,10 @@ endforeach()
 
 find_program(READELF readelf REQUIRED)
 run(${READELF} -d ${LIBRARY})
-if(NOT output MATCHES "SONAME[^\n]*\\[librunstone\\.so\\.0\\]")
-  message(SEND_ERROR "the soname is not librunstone.so.0:\n${output}")
+file(STRINGS ${HEADER} abi REGEX "^#define RUNSTONE_ABI [0-9]+$")
+string(REGEX REPLACE ".* " "" abi "${abi}")
+if(NOT output MATCHES "SONAME[^\n]*\\[librunstone\\.so\\.${abi}\\]")
+  message(SEND_ERROR "the soname is not librunstone.so.${abi}, the number of ${HEADER}:\n${output}")
 endif()
 string(REGEX MATCHALL "\\(NEEDED\\)[^\n]*\\[[^]]*\\]" needed "${output}")
 foreach(line ${needed})

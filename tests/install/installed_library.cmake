@@ -4,6 +4,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 
 run(${CMAKE_COMMAND} --install ${BUILD} --component runstone --prefix ${WORK}/installed)
+run(${CMAKE_COMMAND} --install ${BUILD} --component runstone_c --prefix ${WORK}/installed)
 file(RENAME ${WORK}/installed ${WORK}/prefix)
 
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
@@ -43,4 +44,24 @@ cmake_path(GET folders PARENT_PATH libraries)
 set(ENV{LD_LIBRARY_PATH} ${libraries})
 run(${WORK}/hill)
 expect("6528 voxels of stone")
+
+# CMake finds it without the packages that the C++ libraries need.
+set(without -DCMAKE_DISABLE_FIND_PACKAGE_hwy=ON -DCMAKE_DISABLE_FIND_PACKAGE_zstd=ON)
+foreach(components "" "COMPONENTS c")
+  string(MD5 folder "${components}")
+  file(WRITE ${WORK}/${folder}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(hill LANGUAGES C)
+find_package(runstone 0.2 REQUIRED ${components})
+if(TARGET runstone::runs)
+  message(FATAL_ERROR \"a library was found without its dependencies\")
+endif()
+add_executable(hill ${SOURCE}/examples/c/hill.c)
+target_link_libraries(hill PRIVATE runstone::c)
+")
+  run(${CMAKE_COMMAND} -S ${WORK}/${folder} -B ${WORK}/${folder}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+      ${without})
+  run(${CMAKE_COMMAND} --build ${WORK}/${folder}/build)
+  run(${WORK}/${folder}/build/hill)
+  expect("6528 voxels of stone")
+endforeach()
 file(REMOVE_RECURSE ${WORK})

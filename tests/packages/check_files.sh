@@ -8,15 +8,20 @@ packages=$1 work=$2
 fail() { echo "check_files: $*" >&2; exit 1; }
 
 rm -rf "$work"
-for name in server client tools web dev; do
-  package=("$packages"/runstone-"$name"_*.deb)
-  [ -f "${package[0]}" ] || fail "$packages has no package runstone-$name"
+for name in server client tools web dev library; do
+  full=runstone-$name
+  [ "$name" != library ] || full=librunstone0
+  package=("$packages"/"$full"_*.deb)
+  [ -f "${package[0]}" ] || fail "$packages has no package $full"
   mkdir -p "$work/$name"
   dpkg-deb -R "${package[0]}" "$work/$name"
   for file in copyright changelog.gz CHANGELOG.md.gz; do
-    [ -f "$work/$name/usr/share/doc/runstone-$name/$file" ] || fail "runstone-$name has no $file"
+    [ -f "$work/$name/usr/share/doc/$full/$file" ] || fail "$full has no $file"
   done
 done
+
+[ -f "$work/library/usr/lib/librunstone.so.0" ] || fail "librunstone0 has no librunstone.so.0"
+[ ! -e "$work/library/DEBIAN/postinst" ] || fail "librunstone0 has a script, which its trigger replaces"
 
 # Three tags are left out: the default address of the maintainer is no real one, and the libraries are in
 # /usr/lib, where the preset release has them.
@@ -50,6 +55,11 @@ expect "--world" runstone-server backup --wor
 expect "luanti" runstone-server import lu
 expect "default none" runstone-server import --palette ""
 expect "" runstone-server backup --world ""  # bash goes on with names of files
+expect "backup" runstone-server --world import ba
+expect "backup" runstone-server --world = import ba
+expect "default none" runstone-server import --palette =
+expect "none" runstone-server import --palette = n
+expect "" runstone-server backup --world = ""
 
 # What fish offers, which knows the description of each as well.
 fish_offers() {

@@ -52,7 +52,7 @@ ip link set lo up
 mount -t proc proc "$root/proc"
 mkdir -p "$root/packages"
 cp "$packages"/*.deb "$root/packages"
-for deb in "$root"/packages/runstone-*_*.deb; do
+for deb in "$root"/packages/*_*.deb; do
   name=${deb##*/}
   mv "$deb" "$root/packages/${name%%_*}.deb"
 done
@@ -65,7 +65,12 @@ printf 'installed by one command and running after %d ms; the bar is 20000 ms\n'
 [ "$(in_root stat -c '%U %G %a' /run/runstone/web.sock)" = "runstone runstone-gateway 660" ] ||
   fail "the socket of the gateway is $(in_root stat -c '%U %G %a' /run/runstone/web.sock)"
 
-apt install --no-install-recommends /packages/runstone-{tools,web,client,dev}.deb
+apt install --no-install-recommends /packages/{runstone-tools,runstone-web,runstone-client,runstone-dev,librunstone0}.deb pkg-config
+in_root /sbin/ldconfig -p | grep 'librunstone\.so\.0 ' >/dev/null || fail "the loader does not find librunstone.so.0"
+for file in "$root"/usr/lib/pkgconfig/runstone-*.pc; do
+  name=$(basename "$file" .pc)
+  in_root pkg-config --exists --print-errors "$name" >"$root/apt.log" 2>&1 || { cat "$root/apt.log"; fail "pkg-config finds $name, but not what it needs"; }
+done
 as runstone-web runstone-web --config /etc/runstone/web.toml >>"$root/server.log" 2>&1 &
 wait_for answers
 as runstone-web ls "$world" >/dev/null 2>&1 && fail "the user of the gateway reads the world"

@@ -77,6 +77,7 @@ void plan_changes(const RunChunk& chunk, Digest& digest, ApplyScratch& scratch, 
   tally.finish();
   if (scratch.changes.empty()) return;
   digest = digest + tally.digest_difference();
+  // It is set before the chunk changes: if memory runs out while it is false, the chunk is as it was.
   result.changed = true;
   result.dirty = tally.dirty();
   result.voxels_changed = tally.voxels();

@@ -83,6 +83,7 @@ TEST_CASE("a ray of the C interface passes what is not solid", "[c_interface]") 
   REQUIRE(runstone_space_set_solid(space.get(), solid, 3, 1) == RUNSTONE_OK);
   runstone_ray ray{};
   ray.struct_size = sizeof ray;
+  ray.reserved = 7;
   // A direction may have any length.
   REQUIRE(runstone_space_pick(space.get(), {2.5, 4.5, 4.5}, {1e-200, 0, 0}, 100, &ray) ==
           RUNSTONE_OK);
@@ -91,6 +92,7 @@ TEST_CASE("a ray of the C interface passes what is not solid", "[c_interface]") 
   CHECK(ray.material == 2);
   CHECK(ray.direction == RUNSTONE_NEG_X);
   CHECK(ray.distance == Approx(9.5));
+  CHECK(ray.reserved == 0);
   REQUIRE(runstone_space_pick(space.get(), {2.5, 4.5, 4.5}, {1, 0, 0}, 9, &ray) == RUNSTONE_OK);
   CHECK(ray.is_hit == 0);
   CHECK(ray.direction == RUNSTONE_DIRECTION_NONE);
@@ -129,8 +131,8 @@ TEST_CASE("bodies, rays and chunks that a space cannot take are refused", "[c_in
   CHECK(picked({0, 0, 0}, {infinite, 0, 1}, 1) == RUNSTONE_BAD_ARGUMENT);
   CHECK(picked({0, 0, 0}, {1, 0, 1}, nan) == RUNSTONE_BAD_ARGUMENT);
   CHECK(picked({0, 0, 0}, {1, 0, 1}, 513) == RUNSTONE_BAD_ARGUMENT);
-  CHECK(picked({nan, 0, 0}, {1, 0, 1}, 1) == RUNSTONE_OK);
-  CHECK(ray.is_hit == 0);
+  CHECK(picked({nan, 0, 0}, {1, 0, 1}, 1) == RUNSTONE_BAD_ARGUMENT);
+  CHECK(picked({0, 0, infinite}, {1, 0, 1}, 1) == RUNSTONE_BAD_ARGUMENT);
   ray.struct_size = 0;
   CHECK(picked({0, 0, 0}, {1, 0, 1}, 1) == RUNSTONE_BAD_ARGUMENT);
 
@@ -139,6 +141,8 @@ TEST_CASE("bodies, rays and chunks that a space cannot take are refused", "[c_in
   CHECK(runstone_space_set(space.get(), {1 << 25, 0, 0}, nullptr) == RUNSTONE_BAD_ARGUMENT);
   const std::uint8_t solid = 1;
   CHECK(runstone_space_set_solid(space.get(), &solid, 65537, 1) == RUNSTONE_BAD_ARGUMENT);
+  // Material 0 is empty for rays and bodies.
+  CHECK(runstone_space_set_solid(space.get(), &solid, 1, 1) == RUNSTONE_BAD_ARGUMENT);
 }
 
 TEST_CASE("boxes of the C interface are those of the library", "[c_interface]") {

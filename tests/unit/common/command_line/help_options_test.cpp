@@ -27,7 +27,9 @@ struct SampleProgram {
     made->add_option("--schem", file, "version")->check(CLI::IsMember({"2", "3"}));
     made->add_option("--up", axis, "axis")
         ->transform(CLI::Transformer(std::map<std::string, std::string>{{"y", "0"}, {"z", "1"}}));
-    made->add_subcommand("deep", "the second level")->add_flag("--wide", flag, "wide");
+    CLI::App* const deep = made->add_subcommand("deep", "the second level");
+    deep->add_flag("--wide", flag, "wide");
+    deep->add_option("PLACE", file, "where it is");
   }
 
   /// Returns what the program prints with these arguments, and requires the exit code 0.
@@ -114,6 +116,8 @@ TEST_CASE("a man page keeps characters that mean something to roff") {
   CHECK(contains(
       man, ".SS \"\\fBimport\\fR [\\fIOPTIONS\\fR] \\fIKIND\\fR [\\fISUBCOMMAND\\fR ...]\"\n"));
   CHECK(contains(man, ".SS \"\\fBimport deep\\fR"));
+  CHECK(contains(man, "\n.TP\n\\fIKIND\\fR \\fIluanti|file\\fR\nwhat it is\n"));
+  CHECK(contains(man, "\n.TP\n\\fIPLACE\\fR\nwhere it is\n"));
   CHECK(contains(man, ".SS \"\\fBkey\\fR"));
 }
 
@@ -125,6 +129,8 @@ TEST_CASE("completions offer the values that an option lists") {
   CHECK(contains(bash, " luanti file"));
   CHECK(contains(bash, "' -w'|' --world'|' --kept') return ;;"));
   CHECK_FALSE(contains(bash, "' --create'"));
+  // The value of an option is no subcommand.
+  CHECK(contains(bash, "'/import --schem'|'/import --up') continue ;;"));
   CHECK(contains(bash, "/import|/import/deep|/key)"));
   const std::string zsh = SampleProgram().printed({"--completion", "zsh"});
   CHECK(zsh.starts_with("#compdef sample-program\n"));
