@@ -106,7 +106,8 @@ StoreResult<void> WorldRebuild::find_materials() {
         std::to_string(head_.version.seq) + ", and that no voxel has, are lost if there were any");
   }
   meta_[kMaterialsKey] = to_toml(found->table);
-  if (found->table.has_shapes() || has_silhouettes(found->table)) meta_[kShapesKey] = std::int64_t{1};
+  if (found->table.has_shapes() || has_silhouettes(found->table))
+    meta_[kShapesKey] = std::int64_t{1};
   return {};
 }
 
