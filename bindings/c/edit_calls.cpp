@@ -4,8 +4,8 @@
 #include "bindings/c/buffer.hpp"
 #include "bindings/c/chunk_handle.hpp"
 #include "bindings/c/runstone.h"
-#include "bindings/c/scratch.hpp"
 #include "bindings/c/versioned.hpp"
+#include "common/core/thread_scratch.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "bindings/c/mesh_handle.hpp"
 #include "bindings/c/runstone.h"
-#include "bindings/c/scratch.hpp"
 #include "bindings/c/visibility_handle.hpp"
+#include "common/core/thread_scratch.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 
 using namespace runstone;

@@ -2,8 +2,8 @@
 #include <array>
 
 #include "bindings/c/runstone.h"
-#include "bindings/c/scratch.hpp"
 #include "bindings/c/visibility_handle.hpp"
+#include "common/core/thread_scratch.hpp"
 #include "common/tiles/tile_builder.hpp"
 #include "common/tiles/veil.hpp"
 

@@ -64,7 +64,8 @@ ToolEdits PastedBuild::move(Direction direction, const Replica& replica) {
   const VoxelPos to = moved(at_, direction, 1);
   if (!is_in_world(to, sides_)) return failure("the build would reach outside the world");
   ShownVoxels shown(replica);
-  // What the build leaves, as far as nobody has changed it since.
+  // The voxels that become free get back the materials that they had before the paste, unless
+  // somebody has changed them in the meantime.
   std::vector<Slot> restored(cells_.size(), kNone);
   for_each_cell([&](VoxelPos cell, std::size_t number) {
     if (before_[number] == kNone) return;

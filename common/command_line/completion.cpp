@@ -40,7 +40,8 @@ std::string shell_function(std::string_view program) {
   return out;
 }
 
-/// What bash offers behind one subcommand: "/import" in `path`, or "" for the program itself.
+/// A subcommand for which bash completes words. `path` is "/import" for `import`, and "" for the
+/// program itself.
 struct BashNode {
   std::string path;
   const CommandHelp* command;

@@ -105,7 +105,7 @@ struct CommandCall {
   void on_worker(const std::string& name, Work work, GoOn go_on) const;
 
   using Keys = std::vector<PublicKey>;  // one for each word that was looked up
-  /// What a worker finds out about players.
+  /// The players that a worker has found for the words of a command.
   struct FoundPlayers {
     std::shared_ptr<const KnownPlayers> known;  // never null
     Keys keys;

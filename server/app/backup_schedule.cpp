@@ -123,7 +123,7 @@ void BackupSchedule::run() {
     try {
       if (!make_and_note()) return;
     } catch (const std::exception& error) {
-      // Nothing that goes wrong with a backup may end the server.
+      // An exception that leaves a thread would end the server.
       note({plan_.folder + ": " + error.what(), false});
     }
   }

@@ -85,7 +85,8 @@ class BackupSchedule {
   BackupChild child_;
   FileLock folder_lock_;  // of the thread: no other server makes backups in the folder
   WorldId world_{};       // of the thread
-  /// Of the thread: when the last backup that this object made began, also if it cannot be read.
+  /// The time at which the last backup of this object began. It is kept even if that backup cannot be
+  /// read afterwards. Only the thread uses it.
   std::optional<TimeUs> made_us_;
   mutable std::mutex mutex_;  // a leaf: guards the members below
   std::condition_variable changed_;

@@ -1,5 +1,6 @@
 #include "server/replay/command_world.hpp"
 
+#include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <ostream>
@@ -29,6 +30,12 @@ Result<Sequence, std::string> end_of_replay(Store& store,
   const auto at = sequence_of(store, *moment);
   if (!at) return failure(at.error().message());
   return *at;
+}
+
+Result<Sequence, std::string> end_in_log(const CommandWorld& world) {
+  const auto last = world.store->last_sequence();
+  if (!last) return failure(last.error().message());
+  return std::min(world.end, *last);
 }
 
 std::ostream& row(std::ostream& out, const char* name) {

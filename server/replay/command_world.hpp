@@ -30,6 +30,10 @@ Result<CommandWorld, std::string> open_for_reading(const std::string& place,
 /// there is no moment.
 Result<Sequence, std::string> end_of_replay(Store& store, const std::optional<NamedMoment>& moment);
 
+/// Returns the sequence number of the newest edit up to the end of the world that was opened, or of its
+/// newest edit if it has fewer. The error is one line. Blocks on the disk.
+Result<Sequence, std::string> end_in_log(const CommandWorld& world);
+
 /// Begins a row of a report's table: writes the name in a column of twelve characters.
 std::ostream& row(std::ostream& out, const char* name);
 /// Writes the row "LOST" if the world lacks edits that were durable.

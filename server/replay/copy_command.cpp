@@ -1,6 +1,5 @@
 #include "server/replay/replay_commands.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -21,9 +20,9 @@ Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out)
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto last = store.last_sequence();
-  if (!last) return failure(last.error().message());
-  const Sequence at = std::min(world->end, *last);
+  const auto end = end_in_log(*world);
+  if (!end) return failure(end.error());
+  const Sequence at = *end;
   const auto copy = [&] {
     ProgressLine line("chunks written", options.common.progress);
     return copy_world(store, *world->generator, at, options.folder, out,

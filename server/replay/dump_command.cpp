@@ -99,9 +99,9 @@ Result<int, std::string> run_dump(const DumpOptions& options, std::ostream& out)
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto last = store.last_sequence();
-  if (!last) return failure(last.error().message());
-  const Sequence at = std::min(world->end, *last);
+  const auto end = end_in_log(*world);
+  if (!end) return failure(end.error());
+  const Sequence at = *end;
   const auto then = WorldAt::open(store, *world->generator, at);
   if (!then) return failure(then.error().message());
   auto file = open_output_file(options.file);

@@ -1,6 +1,5 @@
 #include "server/replay/replay_commands.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -52,9 +51,9 @@ Result<int, std::string> export_box(const ExportOptions& options, std::ostream& 
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto last = store.last_sequence();
-  if (!last) return failure(last.error().message());
-  const Sequence at = std::min(world->end, *last);
+  const auto end = end_in_log(*world);
+  if (!end) return failure(end.error());
+  const Sequence at = *end;
   const auto then = WorldAt::open(store, *world->generator, at);
   if (!then) return failure(then.error().message());
   const auto materials = store.materials(at);
@@ -101,9 +100,9 @@ Result<int, std::string> export_luanti_world(const ExportOptions& options, std::
   const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto last = store.last_sequence();
-  if (!last) return failure(last.error().message());
-  const Sequence at = std::min(world->end, *last);
+  const auto end = end_in_log(*world);
+  if (!end) return failure(end.error());
+  const Sequence at = *end;
   const auto then = WorldAt::open(store, *world->generator, at);
   if (!then) return failure(then.error().message());
   const auto materials = store.materials(at);

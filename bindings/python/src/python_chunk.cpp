@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/thread_scratch.hpp"
 #include "common/edits/apply/checked_edits.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
 #include "protocol/chunks/chunk_codec.hpp"
 #include "python_edit.hpp"
 #include "python_mesh.hpp"
-#include "python_scratch.hpp"
 
 namespace runstone::python {
 namespace {

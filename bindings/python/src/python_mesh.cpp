@@ -4,9 +4,9 @@
 #include <span>
 #include <utility>
 
+#include "common/core/thread_scratch.hpp"
 #include "common/mesh/quad_corners.hpp"
 #include "common/mesh/rdm/checked_mesh.hpp"
-#include "python_scratch.hpp"
 
 namespace runstone::python {
 

@@ -51,8 +51,8 @@ struct OpenedHistory {
 struct FoundLogMarks {
   Sequence first = 1;          // of the log; at least 1
   std::vector<LogMark> marks;  // as in LogMarks
-  /// Of a mark of a voxel: segments of the index and records that were read, and 1 for each KiB of
-  /// their edits. A unit takes a few microseconds of a reader.
+  /// The work of a question about one voxel, otherwise 0: one unit for each segment of the index, each
+  /// record and each KiB of edits that were read. A unit takes a few microseconds of a reader.
   std::uint64_t cost = 0;
 };
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <new>
 
-#include "bindings/c/scratch.hpp"
+#include "common/core/thread_scratch.hpp"
 
 namespace runstone::c_interface {
 namespace {

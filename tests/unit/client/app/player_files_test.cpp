@@ -69,7 +69,7 @@ TEST_CASE_METHOD(FilesBench, "changes that follow each other do not put off the 
   CHECK_FALSE(std::filesystem::exists(kits));
   turn(now);
   CHECK(on_disk(1) == kit_with(4));
-  // Nothing has changed since: nothing is written.
+  // Without a change no file is written.
   std::filesystem::remove(kits);
   turn(now + 10 * PlayerFiles::kDelayUs);
   CHECK_FALSE(std::filesystem::exists(kits));

@@ -70,13 +70,7 @@ TEST_CASE("activity is read for the players and the time that the line names",
   bench.set(kGriefer, {1, 2, 4}, 1);
   bench.set(kBuilder, {1, 2, 5}, 1);
   bench.write_log();
-  CommandServices services{bench.bench.server,
-                           bench.service,
-                           bench,
-                           bench.placing,
-                           bench.folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
+  CommandServices services = bench.services();
   const auto give = [&](const std::string& line) {
     bench.answers.clear();
     give_command({services, {}, bench.bench.now(), bench.reply()}, line);

@@ -65,13 +65,7 @@ TEST_CASE("edits of players beyond the border are refused with words", "[admin][
   bench.run_all();
   CHECK(bench.at({7, 7, 7}) == kEmpty);
 
-  CommandServices services{bench.bench.server,
-                           bench.service,
-                           bench,
-                           bench.placing,
-                           bench.folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
+  CommandServices services = bench.services();
   bench.answers.clear();
   give_command({services, {}, bench.bench.now(), bench.reply()}, "status");
   CHECK(contains(bench.answer().text, "\nborder: x 0 to 3, y 0 to 3, z 0 to 3"));

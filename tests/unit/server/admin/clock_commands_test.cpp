@@ -214,13 +214,7 @@ TEST_CASE("a correction before the first tick leaves a ban the time that it had"
   start.rights.push_back(
       {Restrict{RestrictionKind::ban, mole, given_us + kHour, ""}, {1, 0, given_us}});
   CommandBench bench(config(), start);
-  CommandServices services{bench.bench.server,
-                           bench.service,
-                           bench,
-                           bench.placing,
-                           bench.folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
+  CommandServices services = bench.services();
   give_command({services, {}, bench.bench.now(), bench.reply()}, "clock correct");
   CHECK(bench.bench.server.order().head() == 2);
   const auto* ban =

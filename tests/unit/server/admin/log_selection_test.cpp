@@ -115,13 +115,7 @@ TEST_CASE("an address that very many players or all of them share must be confir
     proxy.set(who, {who, 2, 3}, 1);
   }
   proxy.write_log();
-  CommandServices services{proxy.bench.server,
-                           proxy.service,
-                           proxy,
-                           proxy.placing,
-                           proxy.folder.path(),
-                           {},
-                           [](const PublicKey&) { return false; }};
+  CommandServices services = proxy.services();
   give_command({services, {}, proxy.bench.now(), proxy.reply()},
                "rollback preview address-of player1");
   proxy.run_all();

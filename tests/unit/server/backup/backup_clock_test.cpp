@@ -40,7 +40,8 @@ TEST_CASE_METHOD(FolderBench, "the newest backup has the last edit, whatever the
   const auto newest = [&] { return *BackupFolder::open(backups)->newest(now_us); };
   const std::string ahead = backup_name(kBackupTimeUs + kAhead * kBackupHourUs);
   CHECK(newest() == ahead);
-  // Nothing was built since: of equal ones the one that is not dated in the future is taken.
+  // Nobody has built between the two backups, so they are equal. The one that is not dated in the
+  // future is then the newest.
   REQUIRE(add(0) == "");
   CHECK(newest() == backup_name(kBackupTimeUs));
   play(10);

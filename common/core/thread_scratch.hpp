@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-namespace runstone::c_interface {
+namespace runstone {
 
 /// Returns the place of this thread's scratch of a type.
 template <class Scratch>
@@ -26,4 +26,4 @@ decltype(auto) with_scratch(Work&& work) {
   }
 }
 
-}  // namespace runstone::c_interface
+}  // namespace runstone
