@@ -42,8 +42,7 @@ TEST_CASE("a dump has the head of numpy and the ids of the box, in parts of any 
   make_dump_world(world);
   // 20 layers of 51 x 20,580 voxels are 2 MiB each: with --memory 3 each part is one layer.
   const VoxelBox box{{-9, -20, -80}, {11, 31, 20'500}};
-  const auto at = GENERATE(as<Sequence>{}, 20, 50);
-  const std::string memory = GENERATE("3", "256");
+  const auto [at, memory] = GENERATE(table<Sequence, std::string>({{20, "3"}, {50, "256"}}));
   const ReplayOutcome done =
       run_replay({"dump", "--world", world, "--box", "-9,-20,-80,10,30,20499", "--at",
                   std::to_string(at), "--memory", memory, file});
