@@ -215,13 +215,7 @@ class Simulation {
 
 }  // namespace
 
-TEST_CASE("three replicas and a server that loses power agree after thousands of steps",
-          "[simulation]") {
-#ifdef RUNSTONE_SANITIZED
-  const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2));  // a minute each
-#else
-  const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2, 3, 4));
-#endif
+void three_replicas(std::uint64_t seed) {
   CAPTURE(seed);
   Simulation simulation(seed);
   simulation.run(2500, 4);
@@ -242,6 +236,15 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   CHECK(updates > 0);
   WARN("seed " << seed << ": 2500 steps, " << simulation.summary(r) << ", " << same
                << " chunks held as they were, " << updates << " brought up to date by edits");
+}
+
+TEST_CASE("three replicas and a server that loses power agree after thousands of steps",
+          "[simulation]") {
+  three_replicas(static_cast<std::uint64_t>(GENERATE(1, 2)));
+}
+
+TEST_CASE("three replicas and a server that loses power agree with more seeds", "[.long]") {
+  three_replicas(static_cast<std::uint64_t>(GENERATE(3, 4, 5, 6)));
 }
 
 void ten_replicas(std::uint64_t seed, int steps) {
@@ -269,9 +272,7 @@ TEST_CASE("ten replicas agree after tens of thousands of steps", "[.long]") {
   ten_replicas(static_cast<std::uint64_t>(GENERATE(2026, 2027)), 20'000);
 }
 
-TEST_CASE("clients that are killed restart with their caches, and no replica drifts",
-          "[simulation]") {
-  const auto seed = static_cast<std::uint64_t>(GENERATE(21, 22));
+void killed_clients(std::uint64_t seed) {
   CAPTURE(seed);
   Simulation simulation(seed, 3, true, 3);
   simulation.run(2500, 4);
@@ -292,6 +293,15 @@ TEST_CASE("clients that are killed restart with their caches, and no replica dri
   WARN("seed " << seed << ": " << hits << " chunks from caches, " << not_common
                << " dropped there after crashes, " << simulation.server().updates
                << " brought up to date by edits");
+}
+
+TEST_CASE("clients that are killed restart with their caches, and no replica drifts",
+          "[simulation]") {
+  killed_clients(21);
+}
+
+TEST_CASE("clients that are killed restart with their caches, with more seeds", "[.long]") {
+  killed_clients(static_cast<std::uint64_t>(GENERATE(22, 23, 24)));
 }
 
 TEST_CASE("commits that vanish between server and replica are noticed and repaired",
