@@ -60,7 +60,7 @@ struct OcclusionScene {
       if (offset[axis] < 0) at[axis] += sides[axis];
       if (offset[axis] > 0) at[axis] -= middle().extent.sides()[axis];
     }
-    return mesh_materials()[of.at(at[0], at[1], at[2])].visibility == Visibility::opaque;
+    return mesh_visibility()[of.at(at[0], at[1], at[2])] == Visibility::opaque;
   }
 
   std::array<std::optional<RunChunk>, 27> chunks;
