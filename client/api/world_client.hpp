@@ -161,6 +161,7 @@ class WorldClient {
 
   /// Returns the materials by id. Empty before the first WorldOpened.
   const std::vector<MaterialRow>& materials() const;
+  /// Cost: O(materials).
   std::optional<Material> find_material(std::string_view name) const;
   /// Returns what the meshers read of the materials. Never null.
   std::shared_ptr<const MeshMaterials> mesh_materials() const;

@@ -11,7 +11,7 @@
 
 namespace runstone {
 
-/// The number of an edit of this client: 1, 2, 3 and so on.
+/// The number of an edit of this client, ascending from 1.
 using EditNumber = ClientSequence;
 
 /// The world is open: for the first time, after a lost connection, or because the server opened another
@@ -61,7 +61,8 @@ struct ChunkMissing {
   ChunkCoord at;
 };
 
-/// The server ordered an edit of this client.
+/// The server ordered an edit of this client. If the server crashes before EditDurable, the client offers
+/// the edit again, and EditRejected may follow.
 struct EditConfirmed {
   EditNumber edit = 0;
   Sequence sequence = 0;  // its place in the log of the world
@@ -125,9 +126,15 @@ struct MaterialsChanged {};
 /// Players joined, left, or changed name or role: WorldClient::players() differs. Poses are not reported.
 struct PlayersChanged {};
 
+/// Something is not as the options want it, and the client goes on: the cache cannot be written, or the key
+/// of a server cannot be kept.
+struct ClientWarning {
+  std::string text;
+};
+
 using WorldEvent =
     std::variant<WorldOpened, ConnectionLost, ChunkChanged, ChunkRemoved, ChunkMissing,
                  EditConfirmed, EditRejected, EditDurable, EditUnseen, OthersEdit, ChatReceived,
-                 CommandDone, MaterialsChanged, PlayersChanged>;
+                 CommandDone, MaterialsChanged, PlayersChanged, ClientWarning>;
 
 }  // namespace runstone

@@ -225,6 +225,11 @@ class ClientSession {
   std::uint64_t pongs() const { return connection_.pongs(); }
   const ClockOffset& clock() const { return connection_.clock(); }
   const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
+  /// Returns a number that rises with each change of others(), except of the poses.
+  std::uint64_t players_serial() const { return players_serial_; }
+  /// Returns true if a rejected edit, which was offered first with this sequence, waits to be offered
+  /// again.
+  bool keeps_lost_edit(ClientSequence seq) const { return lost_.has(seq); }
   /// Returns the server keys by world: those configured, and those of worlds seen for the first
   /// time.
   const std::map<WorldId, PublicKey>& pinned() const { return connection_.config().pinned; }
@@ -281,6 +286,7 @@ class ClientSession {
   TimeUs opened_us_ = 0;          // when the connection opened
   std::uint32_t tile_rules_ = 0;  // of the server, see SessionAccepted
   std::map<AuthorId, OtherPlayer> others_;
+  std::uint64_t players_serial_ = 0;
 };
 
 }  // namespace runstone
