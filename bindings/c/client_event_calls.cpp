@@ -183,8 +183,7 @@ runstone_status runstone_client_event_chunks(runstone_client* client, size_t ind
                                              runstone_pos* out, size_t capacity, size_t* count) {
   return answer([&] {
     const auto* const edit = std::get_if<OthersEdit>(&event_at(client, index));
-    if (edit == nullptr)
-      refuse(RUNSTONE_NOT_FOUND, "index", "is that of an event of another kind");
+    if (edit == nullptr) refuse(RUNSTONE_NOT_FOUND, "index", "is that of an event of another kind");
     if (!has_room(out, capacity, edit->chunks.size(), count)) return;
     for (const ChunkCoord& at : edit->chunks) *out++ = {at.x, at.y, at.z};
   });

@@ -142,15 +142,14 @@ runstone_status runstone_mesh_update(runstone_mesh* mesh, const runstone_chunk* 
     const MeshInput in(chunk, neighbours, borders, visibility);
     const auto outdated = outdated_layers(made, in);
     bool in_part = outdated.has_value();
+    made.has_occlusion = false;
     if (!outdated) {
       make_whole(made, in);
     } else if (outdated->any()) {
       made.of_chunk = 0;
-      made.has_occlusion = false;
       in_part = with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
-        return mesh_chunk_layers(in.chunk.runs, in.neighbours, in.borders,
-                                 *in.visibility.materials, outdated->inside, outdated->beyond,
-                                 scratch, made.quads);
+        return mesh_chunk_layers(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials,
+                                 outdated->inside, outdated->beyond, scratch, made.quads);
       });
     }
     note_made_of(made, in);

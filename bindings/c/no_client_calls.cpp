@@ -23,7 +23,8 @@ runstone_status runstone_client_default_options(runstone_client_options* out) {
 runstone_status runstone_client_connect(const runstone_client_options*, runstone_client** out) {
   return answer([&] {
     output(out, "out");
-    refuse(RUNSTONE_UNSUPPORTED, "runstone_client_connect()", "is not in this build of the library");
+    refuse(RUNSTONE_UNSUPPORTED, "runstone_client_connect()",
+           "is not in this build of the library");
   });
 }
 
@@ -31,9 +32,7 @@ runstone_status runstone_client_free(runstone_client* client) {
   return free_handle(client, "client");
 }
 
-runstone_status runstone_client_close(runstone_client* client) {
-  return no_client(client);
-}
+runstone_status runstone_client_close(runstone_client* client) { return no_client(client); }
 
 runstone_status runstone_client_step(runstone_client* client, uint32_t*) {
   return no_client(client);
@@ -43,23 +42,28 @@ runstone_status runstone_client_wait(runstone_client* client, uint32_t) {
   return no_client(client);
 }
 
-runstone_status runstone_client_drain(runstone_client* client, size_t, runstone_event*, size_t, size_t, size_t*) {
+runstone_status runstone_client_drain(runstone_client* client, size_t, runstone_event*, size_t,
+                                      size_t, size_t*) {
   return no_client(client);
 }
 
-runstone_status runstone_client_event_text(runstone_client* client, size_t, char*, size_t, size_t*) {
+runstone_status runstone_client_event_text(runstone_client* client, size_t, char*, size_t,
+                                           size_t*) {
   return no_client(client);
 }
 
-runstone_status runstone_client_event_more(runstone_client* client, size_t, char*, size_t, size_t*) {
+runstone_status runstone_client_event_more(runstone_client* client, size_t, char*, size_t,
+                                           size_t*) {
   return no_client(client);
 }
 
-runstone_status runstone_client_event_chunks(runstone_client* client, size_t, runstone_pos*, size_t, size_t*) {
+runstone_status runstone_client_event_chunks(runstone_client* client, size_t, runstone_pos*, size_t,
+                                             size_t*) {
   return no_client(client);
 }
 
-runstone_status runstone_client_take_chunk(runstone_client* client, size_t, runstone_chunk**, runstone_chunk* [6]) {
+runstone_status runstone_client_take_chunk(runstone_client* client, size_t, runstone_chunk**,
+                                           runstone_chunk* [6]) {
   return no_client(client);
 }
 
@@ -91,11 +95,13 @@ runstone_status runstone_client_set_view(runstone_client* client, uint32_t, uint
   return no_client(client);
 }
 
-runstone_status runstone_client_submit(runstone_client* client, const runstone_edits*, size_t, uint64_t, uint64_t*) {
+runstone_status runstone_client_submit(runstone_client* client, const runstone_edits*, size_t,
+                                       uint64_t, uint64_t*) {
   return no_client(client);
 }
 
-runstone_status runstone_client_submit_delay(runstone_client* client, const runstone_edits*, size_t, int64_t*) {
+runstone_status runstone_client_submit_delay(runstone_client* client, const runstone_edits*, size_t,
+                                             int64_t*) {
   return no_client(client);
 }
 
@@ -123,7 +129,8 @@ runstone_status runstone_client_material_count(runstone_client* client, size_t*)
   return no_client(client);
 }
 
-runstone_status runstone_client_material(runstone_client* client, uint32_t, runstone_material_info*) {
+runstone_status runstone_client_material(runstone_client* client, uint32_t,
+                                         runstone_material_info*) {
   return no_client(client);
 }
 
@@ -135,6 +142,7 @@ runstone_status runstone_client_visibility(runstone_client* client, runstone_vis
   return no_client(client);
 }
 
-runstone_status runstone_client_players(runstone_client* client, runstone_player*, size_t, size_t*) {
+runstone_status runstone_client_players(runstone_client* client, runstone_player*, size_t,
+                                        size_t*) {
   return no_client(client);
 }

@@ -142,9 +142,7 @@ runstone_status runstone_mesh_vertices(const runstone_mesh* mesh, uint32_t pass,
 
 runstone_status runstone_mesh_indices(const runstone_mesh* mesh, uint32_t pass, uint32_t* out,
                                       size_t capacity, size_t* count) {
-  return answer([&] {
-    write_indices(pass_of(mesh, pass).quads.size(), out, capacity, count);
-  });
+  return answer([&] { write_indices(pass_of(mesh, pass).quads.size(), out, capacity, count); });
 }
 
 runstone_status runstone_mesh_shape_quads(const runstone_mesh* mesh, uint32_t pass, uint64_t* out,
@@ -153,8 +151,7 @@ runstone_status runstone_mesh_shape_quads(const runstone_mesh* mesh, uint32_t pa
 }
 
 runstone_status runstone_mesh_shape_vertices(const runstone_mesh* mesh, uint32_t pass,
-                                             runstone_vertex* out, size_t capacity,
-                                             size_t* count) {
+                                             runstone_vertex* out, size_t capacity, size_t* count) {
   return answer([&] {
     const std::span<const Quad> quads = shapes_of(mesh, pass);
     if (!has_room(out, capacity, 4 * quads.size(), count)) return;
@@ -175,8 +172,8 @@ runstone_status runstone_quad_unpack(uint64_t quad, runstone_quad_fields* out) {
     const QuadFields q = unpack({quad});
     check_at_most(static_cast<std::uint32_t>(q.direction), std::uint32_t{RUNSTONE_POS_Z}, "quad",
                   "has an unknown direction");
-    fill_versioned(versioned(out, "out"), {0, q.x, q.y, q.z, q.width, q.height,
-                                           static_cast<std::uint32_t>(q.direction), q.material,
-                                           q.face});
+    fill_versioned(versioned(out, "out"),
+                   {0, q.x, q.y, q.z, q.width, q.height, static_cast<std::uint32_t>(q.direction),
+                    q.material, q.face});
   });
 }

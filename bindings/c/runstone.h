@@ -61,15 +61,15 @@ enum {
   RUNSTONE_BAD_CHECKSUM = 7,     /* damaged bytes */
   RUNSTONE_BROKEN_INVARIANT = 8, /* a rule of runs does not hold */
   RUNSTONE_UNKNOWN_KIND = 9,     /* an unknown encoding or kind of edit */
-  RUNSTONE_NOT_FOUND = 10,     /* a client has no such chunk, material or event */
-  RUNSTONE_IO_FAILED = 11,     /* the network or a file of a client failed */
-  RUNSTONE_NOT_PERMITTED = 12, /* the player of a client may not do this */
+  RUNSTONE_NOT_FOUND = 10,       /* a client has no such chunk, material or event */
+  RUNSTONE_IO_FAILED = 11,       /* the network or a file of a client failed */
+  RUNSTONE_NOT_PERMITTED = 12,   /* the player of a client may not do this */
   RUNSTONE_BAD_ARGUMENT =
       13, /* NULL, a number out of range, or handles that do not belong together */
   RUNSTONE_BAD_HANDLE = 14,       /* a handle of another kind, or one that was freed */
   RUNSTONE_BUFFER_TOO_SMALL = 15, /* *count says how many elements are needed */
   RUNSTONE_NO_MEMORY = 16,
-  RUNSTONE_DAMAGED = 17, /* memory ran out while the handle was changed: only free it */
+  RUNSTONE_DAMAGED = 17,    /* memory ran out while the handle was changed: only free it */
   RUNSTONE_INTERNAL = 18,   /* a defect of the library */
   RUNSTONE_UNSUPPORTED = 19 /* this build of the library has no client */
 };
@@ -129,14 +129,14 @@ enum {
   RUNSTONE_QUAD_FACE_BITS = 10
 };
 
-typedef struct runstone_chunk runstone_chunk; /* voxels as runs */
-typedef struct runstone_edits runstone_edits; /* edits, in the order in which they are applied */
+typedef struct runstone_chunk runstone_chunk;   /* voxels as runs */
+typedef struct runstone_edits runstone_edits;   /* edits, in the order in which they are applied */
 typedef struct runstone_shapes runstone_shapes; /* the shapes of materials that are no cubes */
 typedef struct runstone_visibility runstone_visibility; /* how each material is drawn */
 typedef struct runstone_borders
     runstone_borders; /* the outermost layers of a chunk, for its neighbours */
-typedef struct runstone_mesh runstone_mesh;   /* quads of a chunk */
-typedef struct runstone_space runstone_space; /* chunks of a world, for collision */
+typedef struct runstone_mesh runstone_mesh;     /* quads of a chunk */
+typedef struct runstone_space runstone_space;   /* chunks of a world, for collision */
 typedef struct runstone_client runstone_client; /* a player in the world of a server */
 
 typedef struct runstone_pos {
@@ -393,8 +393,7 @@ RUNSTONE_API runstone_status runstone_mesh_update(runstone_mesh* mesh, const run
  * `around` is NULL or 27 chunks of which each may be NULL: the one at an offset of x, y and z of -1,
  * 0 or 1 is around[x + 1 + 3 * (y + 1) + 9 * (z + 1)], and around[13] is not read. Refuses a mesh
  * that is not of this chunk, these neighbours and this visibility as they are now. The next
- * runstone_mesh_chunk() or runstone_mesh_update() takes the occlusion away, unless it changes
- * nothing. */
+ * runstone_mesh_chunk() or runstone_mesh_update() takes the occlusion away. */
 RUNSTONE_API runstone_status runstone_mesh_occlude(runstone_mesh* mesh, const runstone_chunk* chunk,
                                                    const runstone_chunk* const around[27],
                                                    const runstone_visibility* visibility);
@@ -518,8 +517,8 @@ enum {
   RUNSTONE_EVENT_CONNECTION_LOST = 2,
   /* The mesh of a chunk is out of date, or it has none. at; detail: RUNSTONE_CAUSE_... */
   RUNSTONE_EVENT_CHUNK_CHANGED = 3,
-  RUNSTONE_EVENT_CHUNK_REMOVED = 4, /* A chunk is not shown any more: remove its mesh. at */
-  RUNSTONE_EVENT_CHUNK_MISSING = 5, /* The server cannot send a chunk. at */
+  RUNSTONE_EVENT_CHUNK_REMOVED = 4,  /* A chunk is not shown any more: remove its mesh. at */
+  RUNSTONE_EVENT_CHUNK_MISSING = 5,  /* The server cannot send a chunk. at */
   RUNSTONE_EVENT_EDIT_CONFIRMED = 6, /* The server ordered an edit. edit, sequence */
   /* The server rejected an edit, which is not shown any more. edit; text: words for the player;
    * more: the name of the reason (docs/protocol.md) */
@@ -540,25 +539,26 @@ enum {
   RUNSTONE_EVENT_WARNING = 15
 };
 enum { /* flags of events */
-  RUNSTONE_FLAG_ANOTHER_WORLD = 1,  /* not the world that was open before; all chunks are gone */
-  RUNSTONE_FLAG_FIRST_CONTACT = 2,  /* the key of the server was not known */
-  RUNSTONE_FLAG_FINAL = 4,          /* the client does not connect again */
-  RUNSTONE_FLAG_LACKS_PASSWORD = 8, /* the world has a password, and the options have none */
-  RUNSTONE_FLAG_OK = 16,
-  RUNSTONE_FLAG_ANSWER_LOST = 32 /* the command may have been carried out */
+       RUNSTONE_FLAG_ANOTHER_WORLD =
+           1, /* not the world that was open before; all chunks are gone */
+       RUNSTONE_FLAG_FIRST_CONTACT = 2,  /* the key of the server was not known */
+       RUNSTONE_FLAG_FINAL = 4,          /* the client does not connect again */
+       RUNSTONE_FLAG_LACKS_PASSWORD = 8, /* the world has a password, and the options have none */
+       RUNSTONE_FLAG_OK = 16,
+       RUNSTONE_FLAG_ANSWER_LOST = 32 /* the command may have been carried out */
 };
 enum { /* why a chunk changed */
-  RUNSTONE_CAUSE_TERRAIN = 0,
-  RUNSTONE_CAUSE_OTHERS_EDIT = 1,
-  RUNSTONE_CAUSE_OWN_EDIT = 2
+       RUNSTONE_CAUSE_TERRAIN = 0,
+       RUNSTONE_CAUSE_OTHERS_EDIT = 1,
+       RUNSTONE_CAUSE_OWN_EDIT = 2
 };
 enum { /* who wrote a line of the chat */
-  RUNSTONE_CHAT_PLAYER = 0,
-  RUNSTONE_CHAT_SERVER = 1,
-  RUNSTONE_CHAT_MESSAGE_OF_THE_DAY = 2,
-  RUNSTONE_CHAT_REFUSED = 3, /* why a line of this client was not passed on */
-  RUNSTONE_CHAT_VISIT = 4,   /* a player has joined or left */
-  RUNSTONE_CHAT_OTHER = 5    /* of a newer server */
+       RUNSTONE_CHAT_PLAYER = 0,
+       RUNSTONE_CHAT_SERVER = 1,
+       RUNSTONE_CHAT_MESSAGE_OF_THE_DAY = 2,
+       RUNSTONE_CHAT_REFUSED = 3, /* why a line of this client was not passed on */
+       RUNSTONE_CHAT_VISIT = 4,   /* a player has joined or left */
+       RUNSTONE_CHAT_OTHER = 5    /* of a newer server */
 };
 
 typedef struct runstone_client_options {
@@ -585,14 +585,14 @@ typedef struct runstone_client_options {
 
 typedef struct runstone_event {
   uint32_t struct_size;
-  uint32_t kind;      /* RUNSTONE_EVENT_... */
-  uint32_t flags;     /* RUNSTONE_FLAG_... */
-  uint32_t detail;    /* RUNSTONE_CAUSE_... or RUNSTONE_CHAT_... */
-  runstone_pos at;    /* a chunk */
-  uint32_t author;    /* 0: the server */
-  uint64_t edit;      /* the number of an edit of this client */
-  uint64_t sequence;  /* in the log of the world */
-  int64_t utc_us;     /* microseconds since 1970 */
+  uint32_t kind;     /* RUNSTONE_EVENT_... */
+  uint32_t flags;    /* RUNSTONE_FLAG_... */
+  uint32_t detail;   /* RUNSTONE_CAUSE_... or RUNSTONE_CHAT_... */
+  runstone_pos at;   /* a chunk */
+  uint32_t author;   /* 0: the server */
+  uint64_t edit;     /* the number of an edit of this client */
+  uint64_t sequence; /* in the log of the world */
+  int64_t utc_us;    /* microseconds since 1970 */
 } runstone_event;
 
 typedef struct runstone_place { /* 40 bytes */
@@ -711,14 +711,14 @@ RUNSTONE_API runstone_status runstone_client_chunk(runstone_client* client, runs
 RUNSTONE_API runstone_status runstone_client_chunks(runstone_client* client, runstone_pos* out,
                                                     size_t capacity, size_t* count);
 /* Gives the material of a voxel that is shown. */
-RUNSTONE_API runstone_status runstone_client_material_at(runstone_client* client, runstone_pos voxel,
-                                                         uint16_t* material);
+RUNSTONE_API runstone_status runstone_client_material_at(runstone_client* client,
+                                                         runstone_pos voxel, uint16_t* material);
 /* Gives the number of materials, which are 0 .. count - 1; 0 before the world was open. */
 RUNSTONE_API runstone_status runstone_client_material_count(runstone_client* client, size_t* count);
 RUNSTONE_API runstone_status runstone_client_material(runstone_client* client, uint32_t material,
                                                       runstone_material_info* out);
-RUNSTONE_API runstone_status runstone_client_find_material(runstone_client* client, const char* name,
-                                                           uint16_t* material);
+RUNSTONE_API runstone_status runstone_client_find_material(runstone_client* client,
+                                                           const char* name, uint16_t* material);
 /* Makes a table of the materials and shapes of the world as they are now. The caller frees it. */
 RUNSTONE_API runstone_status runstone_client_visibility(runstone_client* client,
                                                         runstone_visibility** out);

@@ -15,7 +15,8 @@ namespace runstone::c_interface {
 template <class Struct>
 inline constexpr std::size_t kFirstSize = sizeof(Struct);
 template <>
-inline constexpr std::size_t kFirstSize<runstone_quad_fields> = offsetof(runstone_quad_fields, face);
+inline constexpr std::size_t kFirstSize<runstone_quad_fields> =
+    offsetof(runstone_quad_fields, face);
 
 /// Refuses a struct that is smaller than in the first version of the interface.
 template <class Struct>

@@ -139,14 +139,11 @@ std::uint64_t mebibytes_of(std::int64_t count, const char* name) {
   return static_cast<std::uint64_t>(count);
 }
 
-std::shared_ptr<PythonClient> make_client(const std::string& server, const std::string& name,
-                                          const std::string& invite, const std::string& password,
-                                          const std::string& key_file,
-                                          const std::string& encryption,
-                                          const std::string& authorities_file,
-                                          const std::array<std::int64_t, 2>& view_radii,
-                                          std::int64_t memory_mib, const std::string& cache_folder,
-                                          std::int64_t cache_mib) {
+std::shared_ptr<PythonClient> make_client(
+    const std::string& server, const std::string& name, const std::string& invite,
+    const std::string& password, const std::string& key_file, const std::string& encryption,
+    const std::string& authorities_file, const std::array<std::int64_t, 2>& view_radii,
+    std::int64_t memory_mib, const std::string& cache_folder, std::int64_t cache_mib) {
   WorldClientOptions options;
   options.server = server;
   options.name = name;
@@ -178,8 +175,7 @@ ChunkCoord key_of(const Triple& key) {
 }
 
 py::tuple place_tuple(const PlayerPlace& place) {
-  return py::make_tuple(place.at.x, place.at.y, place.at.z, place.yaw_degrees,
-                        place.pitch_degrees);
+  return py::make_tuple(place.at.x, place.at.y, place.at.z, place.yaw_degrees, place.pitch_degrees);
 }
 
 py::object chunk_object(const std::shared_ptr<const RunChunk>& chunk) {
@@ -292,8 +288,7 @@ std::string event_text(const EventSelf& self) {
 
 std::string event_name(const EventSelf& self) {
   if (const auto* const chat = std::get_if<ChatReceived>(&self->event)) return chat->name;
-  if (const auto* const rejected = std::get_if<EditRejected>(&self->event))
-    return rejected->reason;
+  if (const auto* const rejected = std::get_if<EditRejected>(&self->event)) return rejected->reason;
   return {};
 }
 
@@ -349,8 +344,7 @@ void define_event(py::module_& module) {
       .def("mesh", &event_mesh,
            "Return the mesh of the chunk with the materials of the world. Raise ValueError for "
            "kinds other than \"chunk\".")
-      .def_property_readonly("edit", &event_edit,
-                             "The number of an edit of this client, or None.")
+      .def_property_readonly("edit", &event_edit, "The number of an edit of this client, or None.")
       .def_property_readonly("sequence", &event_sequence,
                              "The place of an edit in the log of the world, or None.")
       .def_property_readonly("author", &event_author,
@@ -419,9 +413,8 @@ std::vector<std::shared_ptr<PythonMaterial>> material_list(const ClientSelf& sel
       self->with([](WorldClient& client) { return client.materials(); });
   std::vector<std::shared_ptr<PythonMaterial>> out;
   for (std::size_t id = 0; id < rows.size(); ++id) {
-    out.push_back(std::make_shared<PythonMaterial>(
-        PythonMaterial{static_cast<std::int64_t>(id), rows[id].name, rows[id].colour,
-                       rows[id].visibility}));
+    out.push_back(std::make_shared<PythonMaterial>(PythonMaterial{
+        static_cast<std::int64_t>(id), rows[id].name, rows[id].colour, rows[id].visibility}));
   }
   return out;
 }
@@ -473,17 +466,17 @@ void define_client(py::module_& module) {
       .def("drain", &drained)
       .def_property_readonly("state",
                              [](const ClientSelf& self) {
-                               const auto state = self->with(
-                                   [](WorldClient& client) { return client.state(); });
+                               const auto state =
+                                   self->with([](WorldClient& client) { return client.state(); });
                                return state == ConnectionState::open         ? "open"
                                       : state == ConnectionState::connecting ? "connecting"
                                                                              : "ended";
                              })
-      .def_property_readonly("is_complete",
-                             [](const ClientSelf& self) {
-                               return self->with(
-                                   [](WorldClient& client) { return client.is_complete(); });
-                             })
+      .def_property_readonly(
+          "is_complete",
+          [](const ClientSelf& self) {
+            return self->with([](WorldClient& client) { return client.is_complete(); });
+          })
       .def_property_readonly(
           "outdated_count",
           [](const ClientSelf& self) {
@@ -492,16 +485,15 @@ void define_client(py::module_& module) {
       .def_property_readonly("world", &world_dict)
       .def_property_readonly("materials", &material_list)
       .def_property_readonly("players", &player_list)
-      .def_property_readonly("place",
-                             [](const ClientSelf& self) {
-                               return place_tuple(self->with(
-                                   [](WorldClient& client) { return client.place(); }));
-                             })
+      .def_property_readonly(
+          "place",
+          [](const ClientSelf& self) {
+            return place_tuple(self->with([](WorldClient& client) { return client.place(); }));
+          })
       .def("move",
            [](const ClientSelf& self, double x, double y, double z, double yaw, double pitch) {
-             take(self->with([&](WorldClient& client) {
-               return client.move({{x, y, z}, yaw, pitch});
-             }));
+             take(self->with(
+                 [&](WorldClient& client) { return client.move({{x, y, z}, yaw, pitch}); }));
            })
       .def("set_view",
            [](const ClientSelf& self, std::int64_t radius, std::int64_t vertical) {
@@ -524,8 +516,7 @@ void define_client(py::module_& module) {
       .def("chunk",
            [](const ClientSelf& self, const Triple& key) {
              const ChunkCoord at = key_of(key);
-             return chunk_object(
-                 self->with([&](WorldClient& client) { return client.chunk(at); }));
+             return chunk_object(self->with([&](WorldClient& client) { return client.chunk(at); }));
            })
       .def("chunks",
            [](const ClientSelf& self) {

@@ -151,12 +151,11 @@ class QuadCutter {
   /// highest u, at the highest v, and at both.
   void put(unsigned u, unsigned v, unsigned width, unsigned height, unsigned low, unsigned at_u,
            unsigned at_v, unsigned high) {
-    out_.quads.quads.push_back({base_ + (std::uint64_t{u} << u_shift_) +
-                                (std::uint64_t{v} << v_shift_) +
-                                (std::uint64_t{width - 1} << 21 | std::uint64_t{height - 1} << 28)});
+    out_.quads.quads.push_back(
+        {base_ + (std::uint64_t{u} << u_shift_) + (std::uint64_t{v} << v_shift_) +
+         (std::uint64_t{width - 1} << 21 | std::uint64_t{height - 1} << 28)});
     if (!is_positive(direction_)) std::swap(at_u, at_v);  // as quad_corners() winds
-    out_.corners.push_back(
-        static_cast<CornerOcclusion>(low | at_u << 2 | high << 4 | at_v << 6));
+    out_.corners.push_back(static_cast<CornerOcclusion>(low | at_u << 2 | high << 4 | at_v << 6));
   }
 
   const OpaqueBits& bits_;

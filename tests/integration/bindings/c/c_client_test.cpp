@@ -106,17 +106,15 @@ TEST_CASE("a program in C joins, meshes what it is shown, edits and chats", "[c_
     const Owned<runstone_chunk> owner(chunk);
     std::array<Owned<runstone_chunk>, 6> owners;
     for (std::size_t d = 0; d < 6; ++d) owners[d].reset(beside[d]);
-    const auto visibility = owned<runstone_visibility>([&](runstone_visibility** out) {
-      return runstone_client_visibility(player.get(), out);
-    });
+    const auto visibility = owned<runstone_visibility>(
+        [&](runstone_visibility** out) { return runstone_client_visibility(player.get(), out); });
     REQUIRE(runstone_mesh_chunk(mesh.get(), chunk, beside.data(), nullptr, visibility.get()) ==
             RUNSTONE_OK);
     std::size_t again = 0;
     REQUIRE(runstone_mesh_quads(mesh.get(), 0, nullptr, 0, &again) == RUNSTONE_OK);
     CHECK(again == count);
-    const auto shown = owned<runstone_chunk>([&](runstone_chunk** out) {
-      return runstone_client_chunk(player.get(), event.at, out);
-    });
+    const auto shown = owned<runstone_chunk>(
+        [&](runstone_chunk** out) { return runstone_client_chunk(player.get(), event.at, out); });
     CHECK(is_equal(shown.get(), chunk) == 1);
   };
   std::uint32_t state = 9, is_complete = 0;
@@ -135,7 +133,8 @@ TEST_CASE("a program in C joins, meshes what it is shown, edits and chats", "[c_
   // An edit is shown at once, and confirmed.
   runstone_place place{};
   REQUIRE(runstone_client_place(player.get(), &place) == RUNSTONE_OK);
-  const runstone_pos at{static_cast<std::int32_t>(place.at.x), static_cast<std::int32_t>(place.at.y),
+  const runstone_pos at{static_cast<std::int32_t>(place.at.x),
+                        static_cast<std::int32_t>(place.at.y),
                         static_cast<std::int32_t>(place.at.z)};
   const auto edit = edit_of_voxel(at, 2);
   std::uint64_t number = 0;
@@ -284,8 +283,8 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
 TEST_CASE("the example in C that joins a server sets a voxel", "[c_interface][examples]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder / "world"), flat_creation());
-  const int status = std::system((std::string(EXAMPLE_C_JOIN_PROGRAM) + " 127.0.0.1:" +
-                                  std::to_string(server->port()) + " >/dev/null")
+  const int status = std::system((std::string(EXAMPLE_C_JOIN_PROGRAM) +
+                                  " 127.0.0.1:" + std::to_string(server->port()) + " >/dev/null")
                                      .c_str());
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 0);

@@ -91,7 +91,8 @@ std::optional<std::string> occlusion_fault(const OcclusionScene& scene, const Oc
     const std::size_t w = direction / 2, u = (w + 1) % 3, v = (w + 2) % 3;
     // The values at low, at the end of u, at both ends, at the end of v.
     std::array<int, 4> at{};
-    for (std::size_t corner = 0; corner < 4; ++corner) at[corner] = out.corners[i] >> (2 * corner) & 3;
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      at[corner] = out.corners[i] >> (2 * corner) & 3;
     if (direction % 2 == 0) std::swap(at[1], at[3]);
     const bool is_level_u = at[0] == at[1] && at[2] == at[3];
     const bool is_level_v = at[0] == at[3] && at[1] == at[2];
@@ -148,7 +149,8 @@ TEST_CASE("cut quads give each corner of each face its occlusion", "[mesh][occlu
     const ChunkMesh cut = cut_mesh(opaque, transparent);
     REQUIRE(mesh_difference(cut, extent, mesh_materials(), unit_faces(mesh)).value_or("") == "");
     for (const CornerOcclusion corners : opaque.corners) {
-      for (std::size_t corner = 0; corner < 4; ++corner) ++corner_counts[occlusion_of(corners, corner)];
+      for (std::size_t corner = 0; corner < 4; ++corner)
+        ++corner_counts[occlusion_of(corners, corner)];
     }
   }
   for (int level = 0; level <= static_cast<int>(kOcclusionMax); ++level)

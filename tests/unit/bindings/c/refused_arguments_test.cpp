@@ -119,9 +119,13 @@ const std::vector<HandleCall>& handle_calls() {
       {"runstone_shapes_add",
        [](void* h) { return runstone_shapes_add(as<runstone_shapes>(h), 1, 0, nullptr, 1); }},
       {"runstone_shapes_add_kind",
-       [](void* h) { return runstone_shapes_add_kind(as<runstone_shapes>(h), 1, nullptr, nullptr); }},
+       [](void* h) {
+         return runstone_shapes_add_kind(as<runstone_shapes>(h), 1, nullptr, nullptr);
+       }},
       {"runstone_mesh_occlude",
-       [](void* h) { return runstone_mesh_occlude(as<runstone_mesh>(h), nullptr, nullptr, nullptr); }},
+       [](void* h) {
+         return runstone_mesh_occlude(as<runstone_mesh>(h), nullptr, nullptr, nullptr);
+       }},
       {"runstone_mesh_occlusion",
        [](void* h) {
          return runstone_mesh_occlusion(as<runstone_mesh>(h), 0, nullptr, 0, nullptr);
@@ -171,7 +175,8 @@ const std::vector<HandleCall>& client_calls() {
       {"runstone_client_wait", [](void* h) { return runstone_client_wait(as<Client>(h), 0); }},
       {"runstone_client_drain",
        [](void* h) {
-         return runstone_client_drain(as<Client>(h), 1, nullptr, sizeof(runstone_event), 1, nullptr);
+         return runstone_client_drain(as<Client>(h), 1, nullptr, sizeof(runstone_event), 1,
+                                      nullptr);
        }},
       {"runstone_client_event_text",
        [](void* h) { return runstone_client_event_text(as<Client>(h), 0, nullptr, 0, nullptr); }},
@@ -192,7 +197,8 @@ const std::vector<HandleCall>& client_calls() {
        [](void* h) { return runstone_client_state(as<Client>(h), nullptr, nullptr); }},
       {"runstone_client_world",
        [](void* h) { return runstone_client_world(as<Client>(h), nullptr); }},
-      {"runstone_client_move", [](void* h) { return runstone_client_move(as<Client>(h), nullptr); }},
+      {"runstone_client_move",
+       [](void* h) { return runstone_client_move(as<Client>(h), nullptr); }},
       {"runstone_client_place",
        [](void* h) { return runstone_client_place(as<Client>(h), nullptr); }},
       {"runstone_client_set_view",
@@ -201,7 +207,8 @@ const std::vector<HandleCall>& client_calls() {
        [](void* h) { return runstone_client_submit(as<Client>(h), nullptr, 0, 0, nullptr); }},
       {"runstone_client_submit_delay",
        [](void* h) { return runstone_client_submit_delay(as<Client>(h), nullptr, 0, nullptr); }},
-      {"runstone_client_chat", [](void* h) { return runstone_client_chat(as<Client>(h), nullptr); }},
+      {"runstone_client_chat",
+       [](void* h) { return runstone_client_chat(as<Client>(h), nullptr); }},
       {"runstone_client_command",
        [](void* h) { return runstone_client_command(as<Client>(h), nullptr); }},
       {"runstone_client_chunk",
