@@ -12,7 +12,7 @@ static void check(runstone_status status) {
 
 int main(int argc, char** argv) {
   const runstone_brush stone = {sizeof stone, RUNSTONE_MASK_EVERYTHING, 0, 1};
-  runstone_client_options options = {sizeof options};
+  runstone_client_options options;
   runstone_client* client = NULL;
   runstone_edits* edits = NULL;
   runstone_mesh* mesh = NULL;
@@ -23,9 +23,9 @@ int main(int argc, char** argv) {
   size_t count = 0, i, quads, all_quads = 0;
   char text[256];
 
+  options.struct_size = sizeof options;
   check(runstone_client_default_options(&options));
   options.server = argc > 1 ? argv[1] : "localhost";
-  options.name = "ada";
   check(runstone_client_connect(&options, &client));
   check(runstone_edits_create(&edits));
   check(runstone_mesh_create(&mesh));
