@@ -53,8 +53,8 @@ bool is_in_world(const WorldPos& at) {
 }
 
 bool is_valid(const PlayerPlace& place) {
-  return is_in_world(place.at) && std::isfinite(place.yaw_degrees) &&
-         place.pitch_degrees >= -90 && place.pitch_degrees <= 90;
+  return is_in_world(place.at) && std::isfinite(place.yaw_degrees) && place.pitch_degrees >= -90 &&
+         place.pitch_degrees <= 90;
 }
 
 ChunkCoord chunk_at(const WorldPos& at, std::int32_t edge) {
@@ -105,7 +105,6 @@ struct WorldClient::State {
         wanted{options.view_radius, options.view_radius_vertical},
         budget(options.memory_mib << 20, wanted) {}
 
-  void start(const WorldClientOptions& options);
   void step();
   void open(const WorldOpened& event);
   void take_materials(bool is_another);
@@ -134,9 +133,9 @@ struct WorldClient::State {
   std::uint64_t shapes_number = 0;  // of the session, when `materials` was made
   std::uint64_t players_serial = 0;
   bool has_new_materials = false, has_other_players = false;  // not drained
-  bool is_commanding = false;                                 // CommandDone is to come, or not drained
-  std::unique_ptr<JoinedSession> joined;                      // set by start()
-  std::optional<ChunkReports> chunks;                         // set by start()
+  bool is_commanding = false;             // CommandDone is to come, or not drained
+  std::unique_ptr<JoinedSession> joined;  // set by connect()
+  std::optional<ChunkReports> chunks;     // set by connect()
 };
 
 void WorldClient::State::step() {
@@ -177,8 +176,8 @@ void WorldClient::State::open(const WorldOpened& event) {
 /// Takes over the materials of the session. `is_another`: they are of another world.
 void WorldClient::State::take_materials(bool is_another) {
   const MaterialTable& table = session().welcome()->materials;
-  const bool has_shapes = std::exchange(shapes_number, session().shapes_number()) !=
-                          session().shapes_number();
+  const bool has_shapes =
+      std::exchange(shapes_number, session().shapes_number()) != session().shapes_number();
   const std::size_t known = materials.size();
   if (!is_another && !has_shapes && table.size() == known) return;
   materials.clear();
@@ -212,8 +211,8 @@ void WorldClient::State::take_news() {
   if (std::exchange(players_serial, session().players_serial()) != session().players_serial())
     has_other_players = true;
   for (ChatLine& line : session().drain_chat())
-    events.push(ChatReceived{from_of(line.kind), std::move(line.name), std::move(line.text),
-                             line.utc_us});
+    events.push(
+        ChatReceived{from_of(line.kind), std::move(line.name), std::move(line.text), line.utc_us});
   if (!is_commanding || session().commanding()) return;
   is_commanding = false;
   events.push(
@@ -362,7 +361,8 @@ Result<EditNumber, Refusal> WorldClient::submit(const EditDescriptor& edit, Edit
     return refused(valid.error().code, valid.error().what);
   if (!has_voxels(edit)) return refused(ErrorCode::unknown_kind, "the edit has no voxels");
   if (state.events.edit_events() + state.edits.count() >= kEditsWaitingMax)
-    return refused(ErrorCode::limit_exceeded, "too many edits wait for the server, or to be drained");
+    return refused(ErrorCode::limit_exceeded,
+                   "too many edits wait for the server, or to be drained");
   const TimeUs now_us = steady_now_us();
   const auto seq = state.session().offer(edit, now_us, now_us, action);
   if (!seq) {
