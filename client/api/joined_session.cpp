@@ -25,12 +25,12 @@ constexpr std::size_t kReportsMax = 64;
 constexpr std::uint64_t kUnusedFeatures =
     kFeatureNames | kFeatureKeyTransfer | kFeatureTextures | kFeaturePreviews;
 
-struct JoinAddress {
+struct ServerAddresses {
   std::vector<HostPort> servers;  // at least one
   std::string ticket;
 };
 
-Result<JoinAddress, std::string> join_address(const WorldClientOptions& options) {
+Result<ServerAddresses, std::string> addresses_of(const WorldClientOptions& options) {
   auto link = parse_server_link(options.server);
   if (!link) return failure("server: " + link.error());
   auto servers = parse_host_ports(link->address, kDefaultPort);
@@ -38,7 +38,7 @@ Result<JoinAddress, std::string> join_address(const WorldClientOptions& options)
   if (!options.invite.empty()) link->ticket = options.invite;
   if (const auto right = check_ticket(link->ticket); !right)
     return failure("invite: " + right.error());
-  return JoinAddress{*std::move(servers), std::move(link->ticket)};
+  return ServerAddresses{*std::move(servers), std::move(link->ticket)};
 }
 
 Result<void, std::string> check_options(const WorldClientOptions& options) {
@@ -85,7 +85,7 @@ KeyPair keys_of(const WorldClientOptions& options) {
 Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
     const WorldClientOptions& options, std::function<void()> wake) {
   if (const auto right = check_options(options); !right) return failure(right.error());
-  auto address = join_address(options);
+  auto address = addresses_of(options);
   if (!address) return failure(address.error());
   const bool is_kept = !options.key_file.empty() || options.key_seed;
   if (!address->ticket.empty() && !is_kept)

@@ -50,13 +50,13 @@ struct MaterialRow;     // common/core/material_row.hpp, of runstone::core
 struct MeshMaterials;   // common/mesh/mesh_materials.hpp, of runstone::mesh
 
 /// Why a call did nothing. `text` is a line for the player.
-struct Refusal {
+struct ClientRefusal {
   ErrorCode code = ErrorCode::bad_value;
   std::string text;
 };
 
 /// Where a player stands and looks.
-struct PlayerPlace {
+struct ClientPlace {
   WorldPos at;               // of the eye
   double yaw_degrees = 0;    // 0 looks along +z; grows towards +x
   double pitch_degrees = 0;  // -90 .. 90; positive looks up
@@ -66,11 +66,11 @@ struct PlayerInfo {
   AuthorId author = 0;
   std::string name;
   std::string role;  // empty: the server did not name it
-  std::optional<PlayerPlace> place;
+  std::optional<ClientPlace> place;
 };
 
 /// The open world, as its server describes it.
-struct WorldInfo {
+struct ClientWorld {
   std::array<std::uint8_t, 16> id{};
   std::int32_t chunk_edge = 0;        // voxels
   std::int32_t y_min = 0, y_max = 0;  // edits may cover voxels with y_min <= y < y_max
@@ -122,18 +122,18 @@ class WorldClient {
 
   ConnectionState state() const;
   /// Returns nullopt before the first WorldOpened. Stays over a lost connection.
-  const std::optional<WorldInfo>& world() const;
+  const std::optional<ClientWorld>& world() const;
   /// Returns true if the world is open, and all chunks around the player have arrived.
   bool is_complete() const;
 
   /// Moves the player, and the view with it. A server that a client joins for the first time begins
   /// at the spawn, and later where the player left; place() says where. Fails before the first
   /// WorldOpened, and for numbers that are not finite or outside of the world.
-  Result<void, Refusal> move(const PlayerPlace& place);
+  Result<void, ClientRefusal> move(const ClientPlace& place);
   /// Returns the place of the player: the last move(), or where the server has the player begin.
-  const PlayerPlace& place() const;
+  const ClientPlace& place() const;
   /// Changes the radii of the view, as in WorldClientOptions. Fails above 64.
-  Result<void, Refusal> set_view_radii(std::uint8_t horizontal, std::uint8_t vertical);
+  Result<void, ClientRefusal> set_view_radii(std::uint8_t horizontal, std::uint8_t vertical);
 
   /// Shows an edit at once and sends it to the server. EditConfirmed or EditRejected tells the
   /// outcome, also after a lost connection. Edits with the same `action` are undone as one: pass
@@ -144,17 +144,17 @@ class WorldClient {
   ///   - with not_permitted if the player may not make it, as far as the client knows;
   ///   - with limit_exceeded if the budget of the player does not suffice yet (wait_us()), or if
   ///     kEditsWaitingMax edits or events of edits wait.
-  Result<EditNumber, Refusal> submit(const EditDescriptor& edit, EditNumber action = 0);
+  Result<EditNumber, ClientRefusal> submit(const EditDescriptor& edit, EditNumber action = 0);
   /// Returns how long the budget of the player needs until it suffices for the edit. 0: it does.
   TimeUs wait_us(const EditDescriptor& edit) const;
 
   /// Sends a line to everybody. Fails unless a world is open, and if the server has no chat or the
   /// line is empty, too long or not UTF-8.
-  Result<void, Refusal> chat(std::string_view line);
+  Result<void, ClientRefusal> chat(std::string_view line);
   /// Sends a command, such as "undo". CommandDone has the answer. Fails unless a world is open,
   /// while another command runs, if the text is empty, too long or not UTF-8, and if the server
   /// accepts no commands.
-  Result<void, Refusal> command(std::string_view text);
+  Result<void, ClientRefusal> command(std::string_view text);
 
   /// Return null or nullopt if the chunk is not shown.
   std::shared_ptr<const RunChunk> chunk(ChunkCoord at) const;

@@ -20,7 +20,7 @@ struct WorldOpened {
   /// Not the world that was open before. All chunks and edits of that one are gone.
   bool is_another = false;
   /// The key of the server was not known for this world. A player compares
-  /// WorldInfo::server_fingerprint with that of the host.
+  /// ClientWorld::server_fingerprint with that of the host.
   bool is_first_contact = false;
 };
 

@@ -36,7 +36,7 @@ TEST_CASE("a program that meshes the chunks that it is told keeps no mesh out of
   CHECK(ada.terrain_again == 0);  // each chunk waited for its neighbours
 
   // The view moves: chunks at its edge get neighbours, and others lose theirs.
-  PlayerPlace place = ada->place();
+  ClientPlace place = ada->place();
   place.at.x += 3 * 16;
   REQUIRE(ada->move(place).has_value());
   ada.catch_up();
@@ -72,7 +72,7 @@ TEST_CASE("edits are confirmed, durable, rejected and refused, each with words",
   CHECK(ada->submit(voxel({0, 20, 0}, 1)).error().text == "no world is open");
   CHECK_FALSE(ada->move({}).has_value());
   ada.catch_up();
-  const PlayerPlace place = ada->place();
+  const ClientPlace place = ada->place();
   const VoxelPos near{static_cast<std::int32_t>(place.at.x),
                       static_cast<std::int32_t>(place.at.y) + 3,
                       static_cast<std::int32_t>(place.at.z)};
@@ -102,7 +102,7 @@ TEST_CASE("edits are confirmed, durable, rejected and refused, each with words",
   CHECK(refused.error().code == ErrorCode::not_permitted);
   CHECK_FALSE(refused.error().text.empty());
 
-  PlayerPlace nowhere = place;
+  ClientPlace nowhere = place;
   nowhere.at.x = std::numeric_limits<double>::quiet_NaN();
   CHECK_FALSE(ada->move(nowhere).has_value());
   nowhere.at.x = 1e300;
