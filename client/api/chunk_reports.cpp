@@ -31,9 +31,8 @@ std::optional<ChunkChanged> ChunkReports::next() {
   // The program meshes the source that it gets. The planner has nothing to wait for.
   static_cast<void>(planner_.finish(job->key, job->number, nullptr));
   reported_.insert(job->key.at);
-  return ChunkChanged{
-      {job->key.at, job->serial, std::move(job->chunk), std::move(job->neighbours)},
-      cause_of(job->urgency)};
+  return ChunkChanged{{job->key.at, job->serial, std::move(job->chunk), std::move(job->neighbours)},
+                      cause_of(job->urgency)};
 }
 
 std::optional<MeshSource> ChunkReports::source(ChunkCoord at) const {

@@ -1,6 +1,6 @@
 // EventQueue: the events of a WorldClient that were not drained yet. Full: the oldest event of the
-// same kind is dropped, except of edits of this client, which the caller bounds, and of removed chunks,
-// of which there are no more than were reported. One thread.
+// same kind is dropped, except of edits of this client, which the caller bounds, and of removed
+// chunks, of which there are no more than were reported. One thread.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,9 +23,9 @@ class EventQueue {
     const std::size_t kind = event.index();
     if (counts_[kind] >= kEventsMax && !is_of_edit(event) &&
         !std::holds_alternative<ChunkRemoved>(event)) {
-      const auto oldest = std::find_if(events_.begin(), events_.end(), [&](const WorldEvent& other) {
-        return other.index() == kind;
-      });
+      const auto oldest =
+          std::find_if(events_.begin(), events_.end(),
+                       [&](const WorldEvent& other) { return other.index() == kind; });
       events_.erase(oldest);
       --counts_[kind];
     }

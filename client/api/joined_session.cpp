@@ -25,12 +25,12 @@ constexpr std::size_t kReportsMax = 64;
 constexpr std::uint64_t kUnusedFeatures =
     kFeatureNames | kFeatureKeyTransfer | kFeatureTextures | kFeaturePreviews;
 
-struct JoinAddress {
+struct ServerAddresses {
   std::vector<HostPort> servers;  // at least one
   std::string ticket;
 };
 
-Result<JoinAddress, std::string> join_address(const WorldClientOptions& options) {
+Result<ServerAddresses, std::string> addresses_of(const WorldClientOptions& options) {
   auto link = parse_server_link(options.server);
   if (!link) return failure("server: " + link.error());
   auto servers = parse_host_ports(link->address, kDefaultPort);
@@ -38,7 +38,7 @@ Result<JoinAddress, std::string> join_address(const WorldClientOptions& options)
   if (!options.invite.empty()) link->ticket = options.invite;
   if (const auto right = check_ticket(link->ticket); !right)
     return failure("invite: " + right.error());
-  return JoinAddress{*std::move(servers), std::move(link->ticket)};
+  return ServerAddresses{*std::move(servers), std::move(link->ticket)};
 }
 
 Result<void, std::string> check_options(const WorldClientOptions& options) {
@@ -85,7 +85,7 @@ KeyPair keys_of(const WorldClientOptions& options) {
 Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
     const WorldClientOptions& options, std::function<void()> wake) {
   if (const auto right = check_options(options); !right) return failure(right.error());
-  auto address = join_address(options);
+  auto address = addresses_of(options);
   if (!address) return failure(address.error());
   const bool is_kept = !options.key_file.empty() || options.key_seed;
   if (!address->ticket.empty() && !is_kept)
@@ -107,9 +107,11 @@ Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
   config.has_cache = !options.cache_folder.empty();
 
   std::unique_ptr<CacheThread> cache;
+  std::string warning;
   if (config.has_cache) {
     auto opened = ChunkCache::open(options.cache_folder, options.cache_mib << 20);
     if (!opened) return failure(opened.error());
+    warning = (*opened)->take_warning();
     cache = std::make_unique<CacheThread>(*std::move(opened), nullptr, wake);
   }
 
@@ -118,8 +120,10 @@ Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
   net.port = address->servers.front().port;
   net.more.assign(address->servers.begin() + 1, address->servers.end());
   net.tls = *std::move(tls);
-  return std::unique_ptr<JoinedSession>(new JoinedSession(
+  std::unique_ptr<JoinedSession> joined(new JoinedSession(
       options.key_file, std::move(config), std::move(cache), std::move(net), std::move(wake)));
+  if (!warning.empty()) joined->reports_.emplace_back(ClientWarning{std::move(warning)});
+  return joined;
 }
 
 JoinedSession::JoinedSession(std::string key_file, SessionConfig config,
@@ -182,8 +186,8 @@ bool JoinedSession::keep_first_contact() {
   try {
     save_pinned_servers(key_file_, session_.pinned());
   } catch (const std::runtime_error& error) {
-    reports_.emplace_back(ClientWarning{std::string("the key of the server is not kept: ") +
-                                        error.what()});
+    reports_.emplace_back(
+        ClientWarning{std::string("the key of the server is not kept: ") + error.what()});
   }
   return true;
 }
@@ -203,8 +207,7 @@ void JoinedSession::on_disconnected(const LinkDisconnected& event) {
 
 void JoinedSession::report_loss(const LinkDisconnected& event) {
   const auto& end = session_.end();
-  FailureWords words =
-      end ? words_of(*end) : words_of_link(event.why, to_string(event.server));
+  FailureWords words = end ? words_of(*end) : words_of_link(event.why, to_string(event.server));
   ConnectionLost loss{std::move(words.headline), std::move(words.detail), end && end->final,
                       session_.lacks_password()};
   const bool is_known = loss_ && loss_->headline == loss.headline && loss_->detail == loss.detail &&

@@ -1,6 +1,6 @@
-// JoinedSession: the session of a WorldClient with the threads that serve it: the network thread, which
-// carries its messages, and the cache thread, which keeps chunks on disk between runs. Thread: one. No call
-// waits for a peer or for the disk, except the constructor and stop().
+// JoinedSession: the session of a WorldClient with the threads that serve it: the network thread,
+// which carries its messages, and the cache thread, which keeps chunks on disk between runs.
+// Thread: one. No call waits for a peer or for the disk, except the constructor and stop().
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,8 +22,8 @@ namespace runstone {
 
 class JoinedSession {
  public:
-  /// Starts connecting. `wake` is called from the other threads when there is something to handle. Fails
-  /// with words as WorldClient::connect() does. May throw what the system throws.
+  /// Starts connecting. `wake` is called from the other threads when there is something to handle.
+  /// Fails with words as WorldClient::connect() does. May throw what the system throws.
   static Result<std::unique_ptr<JoinedSession>, std::string> start(
       const WorldClientOptions& options, std::function<void()> wake);
   ~JoinedSession();
@@ -33,20 +33,21 @@ class JoinedSession {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
 
-  /// Handles what the network thread received, for kReceiveUsMax at most. Ends the network thread if the
-  /// server has refused this client for good.
+  /// Handles what the network thread received, for kReceiveUsMax at most. Ends the network thread
+  /// if the server has refused this client for good.
   void receive();
   /// Returns true if receive() left something for the next call.
   bool has_more() const { return !events_.empty(); }
-  /// Returns the openings and losses since the last call, in their order: WorldOpened and ConnectionLost.
+  /// Returns the openings and losses since the last call, in their order: WorldOpened and
+  /// ConnectionLost.
   std::vector<WorldEvent> take_events();
   /// Queues the session's outgoing messages on the network thread.
   void flush();
-  /// Passes lookups and their results between session and cache, and gives the cache the chunks to keep, at
-  /// most every kKeepUs. A lookup finds chunks that take `room_bytes` at most.
+  /// Passes lookups and their results between session and cache, and gives the cache the chunks to
+  /// keep, at most every kKeepUs. A lookup finds chunks that take `room_bytes` at most.
   void step_cache(TimeUs now_us, std::size_t room_bytes);
-  /// Writes the last chunks to the cache, sends a goodbye and stops both threads. Waits for the disk, and for
-  /// the network at most kGoodbyeMs. Later calls do nothing.
+  /// Writes the last chunks to the cache, sends a goodbye and stops both threads. Waits for the
+  /// disk, and for the network at most kGoodbyeMs. Later calls do nothing.
   void stop();
   /// Returns true after stop(), and if the server has refused this client for good.
   bool is_ended() const { return is_ended_; }
@@ -75,13 +76,13 @@ class JoinedSession {
   const std::string key_file_;
   std::unique_ptr<CacheThread> cache_;  // null without a cache
   ClientSession session_;
-  std::size_t pins_kept_ = 0;  // worlds of which the key was reported, and saved with a key file
-  std::deque<LinkEvent> events_;      // taken from the network thread, not handled yet
-  std::vector<WorldEvent> reports_;   // not taken; kReportsMax at most
-  ConnectionNumber connection_ = 0;   // 0: none
+  std::size_t pins_kept_ = 0;     // worlds of which the key was reported, and saved with a key file
+  std::deque<LinkEvent> events_;  // taken from the network thread, not handled yet
+  std::vector<WorldEvent> reports_;  // not taken; kReportsMax at most
+  ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t connects_handled_ = 0;
-  std::uint64_t servers_seen_ = 0;    // servers_number() of the list that the network thread has
-  std::optional<WorldId> world_;      // that was open last
+  std::uint64_t servers_seen_ = 0;      // servers_number() of the list that the network thread has
+  std::optional<WorldId> world_;        // that was open last
   std::optional<ConnectionLost> loss_;  // reported last; nullopt while a world is open
   bool is_ended_ = false;
   TimeUs kept_us_ = 0;              // when the cache last got a batch

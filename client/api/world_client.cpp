@@ -32,7 +32,7 @@ constexpr unsigned kStepMs = 10;
 /// A view whose chunks have been here for this long is taken as complete by the memory budget.
 constexpr TimeUs kCompleteUs = 2'000'000;
 
-Pose pose_of(const PlayerPlace& place) {
+Pose pose_of(const ClientPlace& place) {
   const double turns = place.yaw_degrees / 360;
   Pose pose;
   pose.at = place.at;
@@ -41,7 +41,7 @@ Pose pose_of(const PlayerPlace& place) {
   return pose;
 }
 
-PlayerPlace place_of(const Pose& pose) {
+ClientPlace place_of(const Pose& pose) {
   return {pose.at, pose.yaw / 65536.0 * 360, pose.pitch / 32768.0 * 180};
 }
 
@@ -52,9 +52,9 @@ bool is_in_world(const WorldPos& at) {
   return fits(at.x) && fits(at.y) && fits(at.z);
 }
 
-bool is_valid(const PlayerPlace& place) {
-  return is_in_world(place.at) && std::isfinite(place.yaw_degrees) &&
-         place.pitch_degrees >= -90 && place.pitch_degrees <= 90;
+bool is_valid(const ClientPlace& place) {
+  return is_in_world(place.at) && std::isfinite(place.yaw_degrees) && place.pitch_degrees >= -90 &&
+         place.pitch_degrees <= 90;
 }
 
 ChunkCoord chunk_at(const WorldPos& at, std::int32_t edge) {
@@ -78,13 +78,13 @@ ChatReceived::From from_of(ChatLineKind kind) {
   return ChatReceived::From::other;
 }
 
-Unexpected<Refusal> refused(ErrorCode code, std::string text) {
-  return {Refusal{code, std::move(text)}};
+Unexpected<ClientRefusal> refused(ErrorCode code, std::string text) {
+  return {ClientRefusal{code, std::move(text)}};
 }
 
-WorldInfo info_of(const ClientSession& session) {
+ClientWorld info_of(const ClientSession& session) {
   const Welcome& welcome = *session.welcome();
-  WorldInfo out;
+  ClientWorld out;
   out.id = welcome.world_id;
   out.chunk_edge = welcome.chunk_edge;
   out.y_min = welcome.heights.y_min;
@@ -105,7 +105,6 @@ struct WorldClient::State {
         wanted{options.view_radius, options.view_radius_vertical},
         budget(options.memory_mib << 20, wanted) {}
 
-  void start(const WorldClientOptions& options);
   void step();
   void open(const WorldOpened& event);
   void take_materials(bool is_another);
@@ -122,8 +121,8 @@ struct WorldClient::State {
   WakeUp wake_up;
   EventQueue events;
   EditOutcomes edits;
-  std::optional<WorldInfo> world;
-  PlayerPlace place;
+  std::optional<ClientWorld> world;
+  ClientPlace place;
   std::optional<WorldId> placed_in;  // the world of `place`
   ViewRadii wanted;
   MemoryBudget budget;
@@ -134,9 +133,9 @@ struct WorldClient::State {
   std::uint64_t shapes_number = 0;  // of the session, when `materials` was made
   std::uint64_t players_serial = 0;
   bool has_new_materials = false, has_other_players = false;  // not drained
-  bool is_commanding = false;                                 // CommandDone is to come, or not drained
-  std::unique_ptr<JoinedSession> joined;                      // set by start()
-  std::optional<ChunkReports> chunks;                         // set by start()
+  bool is_commanding = false;             // CommandDone is to come, or not drained
+  std::unique_ptr<JoinedSession> joined;  // set by connect()
+  std::optional<ChunkReports> chunks;     // set by connect()
 };
 
 void WorldClient::State::step() {
@@ -165,7 +164,7 @@ void WorldClient::State::open(const WorldOpened& event) {
   world = info_of(session());
   if (placed_in != world->id) {
     placed_in = world->id;
-    place = session().place() ? place_of(*session().place()) : PlayerPlace{world->spawn};
+    place = session().place() ? place_of(*session().place()) : ClientPlace{world->spawn};
     if (!is_valid(place)) place = {};
   }
   take_materials(event.is_another);
@@ -177,8 +176,8 @@ void WorldClient::State::open(const WorldOpened& event) {
 /// Takes over the materials of the session. `is_another`: they are of another world.
 void WorldClient::State::take_materials(bool is_another) {
   const MaterialTable& table = session().welcome()->materials;
-  const bool has_shapes = std::exchange(shapes_number, session().shapes_number()) !=
-                          session().shapes_number();
+  const bool has_shapes =
+      std::exchange(shapes_number, session().shapes_number()) != session().shapes_number();
   const std::size_t known = materials.size();
   if (!is_another && !has_shapes && table.size() == known) return;
   materials.clear();
@@ -212,8 +211,8 @@ void WorldClient::State::take_news() {
   if (std::exchange(players_serial, session().players_serial()) != session().players_serial())
     has_other_players = true;
   for (ChatLine& line : session().drain_chat())
-    events.push(ChatReceived{from_of(line.kind), std::move(line.name), std::move(line.text),
-                             line.utc_us});
+    events.push(
+        ChatReceived{from_of(line.kind), std::move(line.name), std::move(line.text), line.utc_us});
   if (!is_commanding || session().commanding()) return;
   is_commanding = false;
   events.push(
@@ -330,20 +329,21 @@ ConnectionState WorldClient::state() const {
   return state_->session().is_open() ? ConnectionState::open : ConnectionState::connecting;
 }
 
-const std::optional<WorldInfo>& WorldClient::world() const { return state_->world; }
+const std::optional<ClientWorld>& WorldClient::world() const { return state_->world; }
 
 bool WorldClient::is_complete() const { return state_->world && state_->is_complete(); }
 
-Result<void, Refusal> WorldClient::move(const PlayerPlace& place) {
+Result<void, ClientRefusal> WorldClient::move(const ClientPlace& place) {
   if (!state_->world) return refused(ErrorCode::bad_value, "no world is open");
   if (!is_valid(place)) return refused(ErrorCode::bad_value, "this place is outside of the world");
   state_->place = place;
   return {};
 }
 
-const PlayerPlace& WorldClient::place() const { return state_->place; }
+const ClientPlace& WorldClient::place() const { return state_->place; }
 
-Result<void, Refusal> WorldClient::set_view_radii(std::uint8_t horizontal, std::uint8_t vertical) {
+Result<void, ClientRefusal> WorldClient::set_view_radii(std::uint8_t horizontal,
+                                                        std::uint8_t vertical) {
   if (horizontal > kViewRadiusMax || vertical > kViewRadiusMax)
     return refused(ErrorCode::limit_exceeded, "a view has a radius of 0 to 64 chunks");
   State& state = *state_;
@@ -354,7 +354,8 @@ Result<void, Refusal> WorldClient::set_view_radii(std::uint8_t horizontal, std::
   return {};
 }
 
-Result<EditNumber, Refusal> WorldClient::submit(const EditDescriptor& edit, EditNumber action) {
+Result<EditNumber, ClientRefusal> WorldClient::submit(const EditDescriptor& edit,
+                                                      EditNumber action) {
   State& state = *state_;
   if (!state.world || state.joined->is_ended())
     return refused(ErrorCode::bad_value, "no world is open");
@@ -362,7 +363,8 @@ Result<EditNumber, Refusal> WorldClient::submit(const EditDescriptor& edit, Edit
     return refused(valid.error().code, valid.error().what);
   if (!has_voxels(edit)) return refused(ErrorCode::unknown_kind, "the edit has no voxels");
   if (state.events.edit_events() + state.edits.count() >= kEditsWaitingMax)
-    return refused(ErrorCode::limit_exceeded, "too many edits wait for the server, or to be drained");
+    return refused(ErrorCode::limit_exceeded,
+                   "too many edits wait for the server, or to be drained");
   const TimeUs now_us = steady_now_us();
   const auto seq = state.session().offer(edit, now_us, now_us, action);
   if (!seq) {
@@ -378,7 +380,7 @@ TimeUs WorldClient::wait_us(const EditDescriptor& edit) const {
   return state_->session().edit_wait_us(edit, steady_now_us());
 }
 
-Result<void, Refusal> WorldClient::chat(std::string_view line) {
+Result<void, ClientRefusal> WorldClient::chat(std::string_view line) {
   if (state_->joined->is_ended()) return refused(ErrorCode::bad_value, "no world is open");
   auto sent = state_->session().chat(line);
   if (!sent) return refused(ErrorCode::bad_value, sent.error());
@@ -386,7 +388,7 @@ Result<void, Refusal> WorldClient::chat(std::string_view line) {
   return {};
 }
 
-Result<void, Refusal> WorldClient::command(std::string_view text) {
+Result<void, ClientRefusal> WorldClient::command(std::string_view text) {
   if (state_->joined->is_ended()) return refused(ErrorCode::bad_value, "no world is open");
   if (state_->is_commanding)
     return refused(ErrorCode::bad_value, "the previous command is still running");

@@ -14,13 +14,13 @@ namespace runstone {
 /// The number of an edit of this client, ascending from 1.
 using EditNumber = ClientSequence;
 
-/// The world is open: for the first time, after a lost connection, or because the server opened another
-/// one. WorldClient::world() describes it.
+/// The world is open: for the first time, after a lost connection, or because the server opened
+/// another one. WorldClient::world() describes it.
 struct WorldOpened {
   /// Not the world that was open before. All chunks and edits of that one are gone.
   bool is_another = false;
   /// The key of the server was not known for this world. A player compares
-  /// WorldInfo::server_fingerprint with that of the host.
+  /// ClientWorld::server_fingerprint with that of the host.
   bool is_first_contact = false;
 };
 
@@ -30,8 +30,8 @@ struct ConnectionLost {
   std::string headline;
   /// The exact reason by the server or the system; may be empty.
   std::string detail;
-  /// The client does not connect again: another attempt with the same options is pointless, for example
-  /// because the password is wrong.
+  /// The client does not connect again: another attempt with the same options is pointless, for
+  /// example because the password is wrong.
   bool is_final = false;
   /// The world has a password, and the options have none.
   bool lacks_password = false;
@@ -44,8 +44,8 @@ enum class ChangeCause : std::uint8_t {
   own_edit,     // an edit of this client, which may not be confirmed yet
 };
 
-/// The mesh of a chunk is out of date, or it has none: mesh `source`. The chunk or a neighbour changed,
-/// arrived or left. Changes of a chunk are merged until they are drained.
+/// The mesh of a chunk is out of date, or it has none: mesh `source`. The chunk or a neighbour
+/// changed, arrived or left. Changes of a chunk are merged until they are drained.
 struct ChunkChanged {
   MeshSource source;
   ChangeCause cause = ChangeCause::terrain;
@@ -61,8 +61,8 @@ struct ChunkMissing {
   ChunkCoord at;
 };
 
-/// The server ordered an edit of this client. If the server crashes before EditDurable, the client offers
-/// the edit again, and EditRejected may follow.
+/// The server ordered an edit of this client. If the server crashes before EditDurable, the client
+/// offers the edit again, and EditRejected may follow.
 struct EditConfirmed {
   EditNumber edit = 0;
   Sequence sequence = 0;  // its place in the log of the world
@@ -82,8 +82,8 @@ struct EditDurable {
   EditNumber edit = 0;
 };
 
-/// The server resolved an edit of this client, but its answer was lost with a connection. The chunks show
-/// whether it was applied.
+/// The server resolved an edit of this client, but its answer was lost with a connection. The
+/// chunks show whether it was applied.
 struct EditUnseen {
   EditNumber edit = 0;
 };
@@ -115,19 +115,22 @@ struct ChatReceived {
 /// A command has ended.
 struct CommandDone {
   bool is_ok = false;
-  /// True: the connection ended before the answer was complete, and the command may have been carried out.
+  /// True: the connection ended before the answer was complete, and the command may have been
+  /// carried out.
   bool is_answer_lost = false;
   std::vector<std::string> lines;
 };
 
-/// WorldClient::materials() has more rows, or rows with other shapes. Chunks with them are reported again.
+/// WorldClient::materials() has more rows, or rows with other shapes. Chunks with them are reported
+/// again.
 struct MaterialsChanged {};
 
-/// Players joined, left, or changed name or role: WorldClient::players() differs. Poses are not reported.
+/// Players joined, left, or changed name or role: WorldClient::players() differs. Poses are not
+/// reported.
 struct PlayersChanged {};
 
-/// Something is not as the options want it, and the client goes on: the cache cannot be written, or the key
-/// of a server cannot be kept.
+/// Something is not as the options want it, and the client goes on: the cache cannot be written, or
+/// the key of a server cannot be kept.
 struct ClientWarning {
   std::string text;
 };

@@ -24,9 +24,9 @@ class LostEdits {
   /// The time from a rejection to the next attempt.
   static constexpr TimeUs kAgainUs = 1'000'000;
 
-  /// Takes the edit over if it is older than the connection, which opened at `opened_us`, the reason of
-  /// the rejection is temporary, and no ActionSender offers it again. Call it before LocalEdits
-  /// takes the rejection. Returns true if it took the edit over.
+  /// Takes the edit over if it is older than the connection, which opened at `opened_us`, the
+  /// reason of the rejection is temporary, and no ActionSender offers it again. Call it before
+  /// LocalEdits takes the rejection. Returns true if it took the edit over.
   bool take(const LocalEdits& edits, const Reject& reject, TimeUs opened_us, TimeUs now_us) {
     const bool is_temporary =
         reject.reason == RejectReason::busy || reject.reason == RejectReason::rate_limited;
