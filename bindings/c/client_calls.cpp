@@ -21,7 +21,7 @@ using namespace runstone::c_interface;
 
 namespace runstone::c_interface {
 
-void refuse_as(const Refusal& refusal) {
+void refuse_as(const ClientRefusal& refusal) {
   const auto status = static_cast<runstone_status>(static_cast<int>(refusal.code) + 1);
   throw RefusedCall{keep_words(status, "%s", refusal.text.c_str())};
 }
@@ -30,7 +30,7 @@ void refuse_as(const Refusal& refusal) {
 
 namespace {
 
-void take(const Result<void, Refusal>& done) {
+void take(const Result<void, ClientRefusal>& done) {
   if (!done) refuse_as(done.error());
 }
 
@@ -68,10 +68,10 @@ WorldClientOptions options_of(const runstone_client_options& from) {
   return out;
 }
 
-PlayerPlace place_from(const runstone_place& from) {
+ClientPlace place_from(const runstone_place& from) {
   return {{from.at.x, from.at.y, from.at.z}, from.yaw_degrees, from.pitch_degrees};
 }
-runstone_place place_to(const PlayerPlace& from) {
+runstone_place place_to(const ClientPlace& from) {
   return {{from.at.x, from.at.y, from.at.z}, from.yaw_degrees, from.pitch_degrees};
 }
 
@@ -171,7 +171,7 @@ runstone_status runstone_client_move(runstone_client* client, const runstone_pla
 
 runstone_status runstone_client_place(runstone_client* client, runstone_place* out) {
   return answer([&] {
-    const PlayerPlace& place = live(client, "client").client.place();
+    const ClientPlace& place = live(client, "client").client.place();
     given(out, "out") = place_to(place);
   });
 }

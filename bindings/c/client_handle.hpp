@@ -20,7 +20,7 @@ struct runstone_client : runstone::c_interface::Handle<0x746e6c63> {
 namespace runstone::c_interface {
 
 /// Refuses a call with the words of the client.
-[[noreturn]] void refuse_as(const Refusal& refusal);
+[[noreturn]] void refuse_as(const ClientRefusal& refusal);
 
 /// Copies a text to a field, cut to its size, with a zero at the end.
 template <std::size_t kSize>

@@ -117,7 +117,7 @@ class PythonClient {
 };
 using ClientSelf = Self<PythonClient>;
 
-void take(const Result<void, Refusal>& done) {
+void take(const Result<void, ClientRefusal>& done) {
   if (!done) throw RunstoneError(done.error().text);
 }
 
@@ -174,7 +174,7 @@ ChunkCoord key_of(const Triple& key) {
           static_cast<std::int32_t>(key[2])};
 }
 
-py::tuple place_tuple(const PlayerPlace& place) {
+py::tuple place_tuple(const ClientPlace& place) {
   return py::make_tuple(place.at.x, place.at.y, place.at.z, place.yaw_degrees, place.pitch_degrees);
 }
 
@@ -386,7 +386,7 @@ std::vector<std::shared_ptr<PythonClientEvent>> drained(const ClientSelf& self,
 }
 
 py::object world_dict(const ClientSelf& self) {
-  const std::optional<WorldInfo> world =
+  const std::optional<ClientWorld> world =
       self->with([](WorldClient& client) { return client.world(); });
   if (!world) return py::none();
   static constexpr char kDigits[] = "0123456789abcdef";
