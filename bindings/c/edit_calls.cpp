@@ -3,6 +3,7 @@
 
 #include "bindings/c/buffer.hpp"
 #include "bindings/c/chunk_handle.hpp"
+#include "bindings/c/edits_handle.hpp"
 #include "bindings/c/runstone.h"
 #include "bindings/c/versioned.hpp"
 #include "common/core/thread_scratch.hpp"
@@ -11,10 +12,6 @@
 
 using namespace runstone;
 using namespace runstone::c_interface;
-
-struct runstone_edits : Handle<0x74696465> {
-  std::vector<EditDescriptor> list;
-};
 
 namespace {
 
@@ -38,13 +35,6 @@ void add(runstone_edits& edits, EditShape shape, const runstone_brush* brush) {
 std::uint16_t radius_of(std::uint32_t radius) {
   check_at_most(radius, std::uint32_t{kEditRadiusMax}, "radius", "is larger than 512");
   return static_cast<std::uint16_t>(radius);
-}
-
-const EditDescriptor& edit_at(const runstone_edits* edits, std::size_t index) {
-  const auto& list = live(edits, "edits").list;
-  if (index >= list.size())
-    refuse(RUNSTONE_BAD_ARGUMENT, "index", "is not below the number of edits");
-  return list[index];
 }
 
 void write_layers(const DirtyLayers& dirty, runstone_changes& out) {

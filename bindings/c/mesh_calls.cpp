@@ -7,7 +7,7 @@
 #include "bindings/c/runstone.h"
 #include "bindings/c/visibility_handle.hpp"
 #include "common/core/thread_scratch.hpp"
-#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/chunk_mesher.hpp"
 
 using namespace runstone;
 using namespace runstone::c_interface;
@@ -94,6 +94,7 @@ std::optional<OutdatedLayers> outdated_layers(const runstone_mesh& mesh, const M
 }
 
 void note_made_of(runstone_mesh& mesh, const MeshInput& in) {
+  mesh.materials = in.visibility.materials;
   mesh.of_chunk = in.chunk.revision;
   mesh.of_visibility = in.visibility.revision;
   for (std::size_t d = 0; d < kDirectionCount; ++d)
@@ -102,8 +103,10 @@ void note_made_of(runstone_mesh& mesh, const MeshInput& in) {
 
 void make_whole(runstone_mesh& mesh, const MeshInput& in) {
   mesh.of_chunk = 0;  // so that a mesh that memory ran out for is made anew
-  with_scratch<RdmScratch>([&](RdmScratch& scratch) {
-    mesh_rdm(in.chunk.runs, in.neighbours, in.borders, in.visibility.table, scratch, mesh.quads);
+  mesh.has_occlusion = false;
+  with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
+    mesh_chunk(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials, scratch,
+               mesh.quads);
   });
 }
 
@@ -139,13 +142,14 @@ runstone_status runstone_mesh_update(runstone_mesh* mesh, const runstone_chunk* 
     const MeshInput in(chunk, neighbours, borders, visibility);
     const auto outdated = outdated_layers(made, in);
     bool in_part = outdated.has_value();
+    made.has_occlusion = false;
     if (!outdated) {
       make_whole(made, in);
     } else if (outdated->any()) {
       made.of_chunk = 0;
-      in_part = with_scratch<RdmScratch>([&](RdmScratch& scratch) {
-        return mesh_rdm_layers(in.chunk.runs, in.neighbours, in.borders, in.visibility.table,
-                               outdated->inside, outdated->beyond, scratch, made.quads);
+      in_part = with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
+        return mesh_chunk_layers(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials,
+                                 outdated->inside, outdated->beyond, scratch, made.quads);
       });
     }
     note_made_of(made, in);

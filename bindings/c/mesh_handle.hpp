@@ -5,10 +5,17 @@
 
 #include "bindings/c/handle.hpp"
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/mesh_materials.hpp"
+#include "common/mesh/occlusion/quad_occlusion.hpp"
 
 struct runstone_mesh : runstone::c_interface::Handle<0x6873656d> {
   runstone::ChunkMesh quads;
+  /// With the shapes that the quads name. Null before the first mesh.
+  runstone::MeshMaterialsPtr materials;
   // Revisions; 0: none, or the mesh has to be made anew.
   std::uint64_t of_chunk = 0, of_visibility = 0;
   std::array<std::uint64_t, runstone::kDirectionCount> of_neighbours{};
+  /// By pass. Valid if the mesh has occlusion: its quads are then these, and not `quads`.
+  std::array<runstone::OccludedQuads, 2> occluded;
+  bool has_occlusion = false;
 };

@@ -1,5 +1,6 @@
 /* runstone.h: the C interface of Runstone's libraries: chunks of runs, their bytes, edits, quads,
- * levels of detail and collision. docs/c.md has a program, and the rules below in full.
+ * levels of detail, collision, and the client that joins a server. docs/c.md has programs, and the
+ * rules below in full.
  *
  * Handles. A handle is a pointer to an opaque struct. Functions that end in _create, _clone,
  * _decode or _build give a new one, which the caller frees with the _free function of its kind.
@@ -22,6 +23,8 @@
  * Threads. Any number of threads may use a handle by functions that take it as a pointer to
  * const. A function that takes a pointer to non-const needs the handle for itself. Each thread
  * has its own last error and its own buffers, which live until the thread ends.
+ *
+ * Texts are UTF-8 and end with a zero.
  *
  * Units. Positions are voxels or chunks, y is up. A material is 0 (empty) to 65535. The sides of
  * a chunk are 8 to 128 voxels; chunks of a world are cubes of edge 16, 32, 64 or 128. */
@@ -58,16 +61,17 @@ enum {
   RUNSTONE_BAD_CHECKSUM = 7,     /* damaged bytes */
   RUNSTONE_BROKEN_INVARIANT = 8, /* a rule of runs does not hold */
   RUNSTONE_UNKNOWN_KIND = 9,     /* an unknown encoding or kind of edit */
-  RUNSTONE_NOT_FOUND = 10,
-  RUNSTONE_IO_FAILED = 11,     /* reserved: no call returns it */
-  RUNSTONE_NOT_PERMITTED = 12, /* reserved: no call returns it */
+  RUNSTONE_NOT_FOUND = 10,       /* a client has no such chunk, material or event */
+  RUNSTONE_IO_FAILED = 11,       /* the network or a file of a client failed */
+  RUNSTONE_NOT_PERMITTED = 12,   /* the player of a client may not do this */
   RUNSTONE_BAD_ARGUMENT =
       13, /* NULL, a number out of range, or handles that do not belong together */
   RUNSTONE_BAD_HANDLE = 14,       /* a handle of another kind, or one that was freed */
   RUNSTONE_BUFFER_TOO_SMALL = 15, /* *count says how many elements are needed */
   RUNSTONE_NO_MEMORY = 16,
-  RUNSTONE_DAMAGED = 17, /* memory ran out while the handle was changed: only free it */
-  RUNSTONE_INTERNAL = 18 /* a defect of the library */
+  RUNSTONE_DAMAGED = 17,    /* memory ran out while the handle was changed: only free it */
+  RUNSTONE_INTERNAL = 18,   /* a defect of the library */
+  RUNSTONE_UNSUPPORTED = 19 /* this build of the library has no client */
 };
 
 /* Axis orders, fastest axis first. */
@@ -102,14 +106,38 @@ enum {
 };
 enum { RUNSTONE_EMPTY = 0, RUNSTONE_OPAQUE = 1, RUNSTONE_TRANSPARENT = 2 }; /* visibilities */
 enum { RUNSTONE_PASS_OPAQUE = 0, RUNSTONE_PASS_TRANSPARENT = 1 };
+enum { RUNSTONE_SHAPE_BOXES = 0, RUNSTONE_SHAPE_CROSSED = 1 }; /* forms of shapes */
 
-typedef struct runstone_chunk runstone_chunk; /* voxels as runs */
-typedef struct runstone_edits runstone_edits; /* edits, in the order in which they are applied */
+/* The fields of a quad of 8 bytes: its lowest bit and the number of bits. WIDTH and HEIGHT hold one
+ * less. runstone_quads.glsl has the same numbers for shaders. */
+enum {
+  RUNSTONE_QUAD_X_SHIFT = 0,
+  RUNSTONE_QUAD_X_BITS = 7,
+  RUNSTONE_QUAD_Y_SHIFT = 7,
+  RUNSTONE_QUAD_Y_BITS = 7,
+  RUNSTONE_QUAD_Z_SHIFT = 14,
+  RUNSTONE_QUAD_Z_BITS = 7,
+  RUNSTONE_QUAD_WIDTH_SHIFT = 21,
+  RUNSTONE_QUAD_WIDTH_BITS = 7,
+  RUNSTONE_QUAD_HEIGHT_SHIFT = 28,
+  RUNSTONE_QUAD_HEIGHT_BITS = 7,
+  RUNSTONE_QUAD_DIRECTION_SHIFT = 35,
+  RUNSTONE_QUAD_DIRECTION_BITS = 3,
+  RUNSTONE_QUAD_MATERIAL_SHIFT = 38,
+  RUNSTONE_QUAD_MATERIAL_BITS = 16,
+  RUNSTONE_QUAD_FACE_SHIFT = 54,
+  RUNSTONE_QUAD_FACE_BITS = 10
+};
+
+typedef struct runstone_chunk runstone_chunk;   /* voxels as runs */
+typedef struct runstone_edits runstone_edits;   /* edits, in the order in which they are applied */
+typedef struct runstone_shapes runstone_shapes; /* the shapes of materials that are no cubes */
 typedef struct runstone_visibility runstone_visibility; /* how each material is drawn */
 typedef struct runstone_borders
     runstone_borders; /* the outermost layers of a chunk, for its neighbours */
-typedef struct runstone_mesh runstone_mesh;   /* quads of a chunk */
-typedef struct runstone_space runstone_space; /* chunks of a world, for collision */
+typedef struct runstone_mesh runstone_mesh;     /* quads of a chunk */
+typedef struct runstone_space runstone_space;   /* chunks of a world, for collision */
+typedef struct runstone_client runstone_client; /* a player in the world of a server */
 
 typedef struct runstone_pos {
   int32_t x, y, z;
@@ -158,6 +186,7 @@ typedef struct runstone_quad_fields {
   /* (u, v) is (y, z) for direction x, (z, x) for y, (x, y) for z */
   uint32_t direction;
   uint32_t material;
+  uint32_t face; /* 0 for a cube; otherwise face - 1 of the material's shape */
 } runstone_quad_fields;
 
 typedef struct runstone_vertex { /* 36 bytes, for a vertex buffer */
@@ -165,7 +194,7 @@ typedef struct runstone_vertex { /* 36 bytes, for a vertex buffer */
   float normal[3];
   float uv[2]; /* counts faces along u and v, so that a texture repeats once a voxel */
   uint16_t material;
-  uint16_t reserved; /* 0 */
+  uint16_t occlusion; /* 0 .. 3, darkest; 0 without runstone_mesh_occlude() */
 } runstone_vertex;
 
 typedef struct runstone_sweep {
@@ -304,13 +333,34 @@ RUNSTONE_API runstone_status runstone_chunk_apply(runstone_chunk* chunk, runston
                                                   const runstone_edits* edits,
                                                   runstone_changes* changes);
 
-/* Meshes. A face belongs to the chunk of its solid voxel. Shapes that are no cubes are drawn as
- * cubes. */
+/* Shapes. Materials without a shape are cubes. A shape is one of boxes in sixteenths of a voxel. */
+
+RUNSTONE_API runstone_status runstone_shapes_create(runstone_shapes** out);
+RUNSTONE_API runstone_status runstone_shapes_free(runstone_shapes* shapes);
+/* Gives a material the shape of 1 to 32 boxes: their union, or the two upright diagonal planes of
+ * each for RUNSTONE_SHAPE_CROSSED, which are plants. min is 0 .. 15, and max is min + 1 .. 16.
+ * Replaces a shape that the material has. Refuses more than 1023 faces. */
+RUNSTONE_API runstone_status runstone_shapes_add(runstone_shapes* shapes, uint16_t material,
+                                                 uint32_t form, const runstone_local_box* boxes,
+                                                 size_t count);
+/* Gives a material the shape of a kind, such as "stairs" with the states "facing=east,half=top"
+ * (docs/materials.md). States that are missing or unknown have their defaults, and `states` may be
+ * NULL. States that make a cube, such as "type=double" of a slab, remove the shape. */
+RUNSTONE_API runstone_status runstone_shapes_add_kind(runstone_shapes* shapes, uint16_t material,
+                                                      const char* kind, const char* states);
+
+/* Meshes. A face belongs to the chunk of its solid voxel. */
 
 /* visibilities[i] is RUNSTONE_EMPTY, OPAQUE or TRANSPARENT for material i. Materials without an
  * entry are opaque; material 0 is always empty. */
 RUNSTONE_API runstone_status runstone_visibility_create(const uint8_t* visibilities, size_t count,
                                                         runstone_visibility** out);
+/* Makes a table in which materials have shapes. Meshes of it have quads of shapes, and levels of
+ * detail take a shape for a cube if it fills at least half of its voxel. The shapes are copied. */
+RUNSTONE_API runstone_status runstone_visibility_create_with_shapes(const uint8_t* visibilities,
+                                                                    size_t count,
+                                                                    const runstone_shapes* shapes,
+                                                                    runstone_visibility** out);
 RUNSTONE_API runstone_status runstone_visibility_free(runstone_visibility* visibility);
 /* Keeps the outermost layers of a chunk as it is now, so that its neighbours are meshed without
  * its runs. */
@@ -338,7 +388,21 @@ RUNSTONE_API runstone_status runstone_mesh_update(runstone_mesh* mesh, const run
                                                   const runstone_borders* const borders[6],
                                                   const runstone_visibility* visibility,
                                                   uint32_t* is_whole);
-/* Writes the quads of a pass, 8 bytes each (docs/meshing.md), by direction, then layer. */
+/* Darkens the corners of the quads of cubes by the opaque voxels around them: quads are cut so that
+ * the four corners of each give every face its own values, and vertices get their occlusion.
+ * `around` is NULL or 27 chunks of which each may be NULL: the one at an offset of x, y and z of -1,
+ * 0 or 1 is around[x + 1 + 3 * (y + 1) + 9 * (z + 1)], and around[13] is not read. Refuses a mesh
+ * that is not of this chunk, these neighbours and this visibility as they are now. The next
+ * runstone_mesh_chunk() or runstone_mesh_update() takes the occlusion away. */
+RUNSTONE_API runstone_status runstone_mesh_occlude(runstone_mesh* mesh, const runstone_chunk* chunk,
+                                                   const runstone_chunk* const around[27],
+                                                   const runstone_visibility* visibility);
+/* Writes the occlusion of the corners of each quad of a pass, for programs that unpack quads in a
+ * shader: bits 2 * i and 2 * i + 1 are that of corner i, in the order of the vertices of a quad
+ * that has none. Zeros without runstone_mesh_occlude(). */
+RUNSTONE_API runstone_status runstone_mesh_occlusion(const runstone_mesh* mesh, uint32_t pass,
+                                                     uint8_t* out, size_t capacity, size_t* count);
+/* Writes the quads of cubes of a pass, 8 bytes each (docs/meshing.md), by direction, then layer. */
 RUNSTONE_API runstone_status runstone_mesh_quads(const runstone_mesh* mesh, uint32_t pass,
                                                  uint64_t* out, size_t capacity, size_t* count);
 /* Writes the quads of one direction and layer, 0 .. 127, so that a vertex buffer can be replaced
@@ -347,13 +411,28 @@ RUNSTONE_API runstone_status runstone_mesh_layer_quads(const runstone_mesh* mesh
                                                        uint32_t direction, uint32_t layer,
                                                        uint64_t* out, size_t capacity,
                                                        size_t* count);
-/* Writes four vertices for each quad of a pass, counter-clockwise seen from outside. */
+/* Writes four vertices for each quad of cubes of a pass, counter-clockwise seen from outside. A quad
+ * with occlusion may begin at its second corner, so that the triangles of runstone_mesh_indices()
+ * meet at the diagonal that is less dark. */
 RUNSTONE_API runstone_status runstone_mesh_vertices(const runstone_mesh* mesh, uint32_t pass,
                                                     runstone_vertex* out, size_t capacity,
                                                     size_t* count);
-/* Writes six indices for each quad of a pass: two triangles of its four vertices. */
+/* Writes six indices for each quad of cubes of a pass: two triangles of its four vertices. */
 RUNSTONE_API runstone_status runstone_mesh_indices(const runstone_mesh* mesh, uint32_t pass,
                                                    uint32_t* out, size_t capacity, size_t* count);
+/* Writes the quads of shapes of a pass by direction. Their `face` is not 0. */
+RUNSTONE_API runstone_status runstone_mesh_shape_quads(const runstone_mesh* mesh, uint32_t pass,
+                                                       uint64_t* out, size_t capacity,
+                                                       size_t* count);
+/* Writes four vertices for each quad of shapes of a pass, counter-clockwise seen from its side. The
+ * planes of plants have a quad for each side. */
+RUNSTONE_API runstone_status runstone_mesh_shape_vertices(const runstone_mesh* mesh, uint32_t pass,
+                                                          runstone_vertex* out, size_t capacity,
+                                                          size_t* count);
+/* Writes six indices for each quad of shapes of a pass. */
+RUNSTONE_API runstone_status runstone_mesh_shape_indices(const runstone_mesh* mesh, uint32_t pass,
+                                                         uint32_t* out, size_t capacity,
+                                                         size_t* count);
 /* Unpacks a quad that a mesh gave. */
 RUNSTONE_API runstone_status runstone_quad_unpack(uint64_t quad, runstone_quad_fields* out);
 
@@ -405,6 +484,247 @@ RUNSTONE_API runstone_status runstone_chunk_boxes(const runstone_chunk* chunk, c
                                                   size_t solid_count, uint32_t others,
                                                   runstone_local_box* out, size_t capacity,
                                                   size_t* count);
+
+/* The client (docs/c.md#the-client). A client joins a server and keeps the chunks around a player
+ * up to date. A program calls runstone_client_step() every frame, drains the events and meshes the
+ * chunks that they name: no mesh is then out of date for longer than that.
+ *
+ * Threads. The calls of one client are made by one thread at a time, also those that only read. No
+ * call waits for the network or a disk but _connect() with files, _wait(), _close() and _free().
+ *
+ * A build of the library without the client has these functions, too. runstone_client_connect()
+ * then returns RUNSTONE_UNSUPPORTED. */
+
+enum {
+  RUNSTONE_ENCRYPTION_ANY_CERTIFICATE = 0, /* TLS 1.3; the handshake proves the server's key */
+  RUNSTONE_ENCRYPTION_AUTHORITIES = 1,     /* TLS 1.3 with a certificate of an authority */
+  RUNSTONE_ENCRYPTION_NONE = 2             /* for servers that run with --insecure */
+};
+enum {
+  RUNSTONE_CLIENT_CONNECTING = 0, /* there is no open world; attempts to connect go on */
+  RUNSTONE_CLIENT_OPEN = 1,
+  RUNSTONE_CLIENT_ENDED = 2 /* closed, or refused by the server for good */
+};
+/* The action of the first edit of a new action, for runstone_client_submit(). */
+#define RUNSTONE_NEW_ACTION UINT64_MAX
+
+/* Kinds of events. Later libraries may have more: ignore what you do not know. */
+enum {
+  /* The world is open. flags: RUNSTONE_FLAG_ANOTHER_WORLD, RUNSTONE_FLAG_FIRST_CONTACT */
+  RUNSTONE_EVENT_WORLD_OPENED = 1,
+  /* A connection ended or could not be made. text: a sentence; more: the exact reason. flags:
+   * RUNSTONE_FLAG_FINAL, RUNSTONE_FLAG_LACKS_PASSWORD */
+  RUNSTONE_EVENT_CONNECTION_LOST = 2,
+  /* The mesh of a chunk is out of date, or it has none. at; detail: RUNSTONE_CAUSE_... */
+  RUNSTONE_EVENT_CHUNK_CHANGED = 3,
+  RUNSTONE_EVENT_CHUNK_REMOVED = 4,  /* A chunk is not shown any more: remove its mesh. at */
+  RUNSTONE_EVENT_CHUNK_MISSING = 5,  /* The server cannot send a chunk. at */
+  RUNSTONE_EVENT_EDIT_CONFIRMED = 6, /* The server ordered an edit. edit, sequence */
+  /* The server rejected an edit, which is not shown any more. edit; text: words for the player;
+   * more: the name of the reason (docs/protocol.md) */
+  RUNSTONE_EVENT_EDIT_REJECTED = 7,
+  RUNSTONE_EVENT_EDIT_DURABLE = 8, /* An edit is on the disk of the server. edit */
+  /* An edit is resolved, but the answer was lost with a connection. edit */
+  RUNSTONE_EVENT_EDIT_UNSEEN = 9,
+  /* An edit of another author changed chunks of the view. author, sequence; chunks:
+   * runstone_client_event_chunks() */
+  RUNSTONE_EVENT_OTHERS_EDIT = 10,
+  /* A line of the chat. detail: RUNSTONE_CHAT_...; text; more: the name of a player; utc_us */
+  RUNSTONE_EVENT_CHAT = 11,
+  /* A command ended. flags: RUNSTONE_FLAG_OK, RUNSTONE_FLAG_ANSWER_LOST; text: its lines */
+  RUNSTONE_EVENT_COMMAND_DONE = 12,
+  RUNSTONE_EVENT_MATERIALS_CHANGED = 13, /* There are more materials, or other shapes. */
+  RUNSTONE_EVENT_PLAYERS_CHANGED = 14,   /* Players joined, left or changed their name or role. */
+  /* Something is not as the options say, and the client goes on. text */
+  RUNSTONE_EVENT_WARNING = 15
+};
+enum { /* flags of events */
+       RUNSTONE_FLAG_ANOTHER_WORLD =
+           1, /* not the world that was open before; all chunks are gone */
+       RUNSTONE_FLAG_FIRST_CONTACT = 2,  /* the key of the server was not known */
+       RUNSTONE_FLAG_FINAL = 4,          /* the client does not connect again */
+       RUNSTONE_FLAG_LACKS_PASSWORD = 8, /* the world has a password, and the options have none */
+       RUNSTONE_FLAG_OK = 16,
+       RUNSTONE_FLAG_ANSWER_LOST = 32 /* the command may have been carried out */
+};
+enum { /* why a chunk changed */
+       RUNSTONE_CAUSE_TERRAIN = 0,
+       RUNSTONE_CAUSE_OTHERS_EDIT = 1,
+       RUNSTONE_CAUSE_OWN_EDIT = 2
+};
+enum { /* who wrote a line of the chat */
+       RUNSTONE_CHAT_PLAYER = 0,
+       RUNSTONE_CHAT_SERVER = 1,
+       RUNSTONE_CHAT_MESSAGE_OF_THE_DAY = 2,
+       RUNSTONE_CHAT_REFUSED = 3, /* why a line of this client was not passed on */
+       RUNSTONE_CHAT_VISIT = 4,   /* a player has joined or left */
+       RUNSTONE_CHAT_OTHER = 5    /* of a newer server */
+};
+
+typedef struct runstone_client_options {
+  uint32_t struct_size;
+  uint32_t encryption; /* RUNSTONE_ENCRYPTION_... */
+  /* Texts may be NULL, which is the default in brackets. */
+  const char* server;            /* HOST, HOST:PORT or a link runstone://... (refused) */
+  const char* name;              /* of the player, 1 to 32 bytes ("builder") */
+  const char* invite;            /* a token (that of the link) */
+  const char* password;          /* of the world (none) */
+  const char* key_file;          /* of the player's identity, made if missing (not kept) */
+  const uint8_t* key_seed;       /* 32 bytes, used without a key file (random) */
+  const char* authorities_file;  /* PEM (those of the system) */
+  const char* cache_folder;      /* where chunks are kept between runs (not kept) */
+  uint32_t view_radius;          /* chunks around the player, 0 to 64 (8) */
+  uint32_t view_radius_vertical; /* (4) */
+  uint64_t memory_mib;           /* of chunks and edits, 16 to 65536 (1024) */
+  uint64_t cache_mib;            /* 1 to 1048576 (256) */
+  /* Called when there is something to step, by a thread of the library. It must not call the client
+   * (NULL). */
+  void (*wake)(void* context);
+  void* wake_context;
+} runstone_client_options;
+
+typedef struct runstone_event {
+  uint32_t struct_size;
+  uint32_t kind;     /* RUNSTONE_EVENT_... */
+  uint32_t flags;    /* RUNSTONE_FLAG_... */
+  uint32_t detail;   /* RUNSTONE_CAUSE_... or RUNSTONE_CHAT_... */
+  runstone_pos at;   /* a chunk */
+  uint32_t author;   /* 0: the server */
+  uint64_t edit;     /* the number of an edit of this client */
+  uint64_t sequence; /* in the log of the world */
+  int64_t utc_us;    /* microseconds since 1970 */
+} runstone_event;
+
+typedef struct runstone_place { /* 40 bytes */
+  runstone_vec at;              /* of the eye */
+  double yaw_degrees;           /* 0 looks along +z, and grows towards +x */
+  double pitch_degrees;         /* -90 .. 90; positive looks up */
+} runstone_place;
+
+typedef struct runstone_world_info {
+  uint32_t struct_size;
+  uint32_t chunk_edge;      /* voxels */
+  int32_t y_min, y_max;     /* edits may cover voxels with y_min <= y < y_max */
+  uint64_t edit_volume_max; /* voxels of an edit */
+  runstone_vec spawn;
+  uint8_t id[16];
+  uint32_t author;       /* this player */
+  char name[36];         /* of this player */
+  char fingerprint[136]; /* of the server's key, to be compared by people; cut if it is longer */
+} runstone_world_info;
+
+typedef struct runstone_material_info {
+  uint32_t struct_size;
+  uint32_t visibility; /* RUNSTONE_EMPTY, OPAQUE or TRANSPARENT */
+  uint32_t is_cube;    /* 0: it has a shape */
+  uint8_t colour[4];   /* sRGB and alpha */
+  char name[68];
+} runstone_material_info;
+
+typedef struct runstone_player { /* 120 bytes */
+  uint32_t author;
+  uint32_t has_place; /* 0: it is not known where the player is */
+  runstone_place place;
+  char name[36];
+  char role[36]; /* "" if the server did not name it; cut if it is longer */
+} runstone_player;
+
+/* Fills options with their defaults. out->struct_size is set by the caller. */
+RUNSTONE_API runstone_status runstone_client_default_options(runstone_client_options* out);
+/* Starts connecting, and returns at once: an event tells the outcome. After a loss the client
+ * connects again by itself. Refuses wrong options, and files that cannot be used. Texts are copied. */
+RUNSTONE_API runstone_status runstone_client_connect(const runstone_client_options* options,
+                                                     runstone_client** out);
+/* Closes and frees. */
+RUNSTONE_API runstone_status runstone_client_free(runstone_client* client);
+/* Sends what is queued and a goodbye, and ends the threads, in about a second at most. Chunks and
+ * events stay readable. Does nothing the second time. */
+RUNSTONE_API runstone_status runstone_client_close(runstone_client* client);
+/* Handles what has arrived and sends what is due. Call it every frame, or every 10 ms. Takes a few
+ * milliseconds at most; `has_more`, if not NULL, becomes 1 if something is left. */
+RUNSTONE_API runstone_status runstone_client_step(runstone_client* client, uint32_t* has_more);
+/* Waits until there is something to step, `milliseconds` at most. */
+RUNSTONE_API runstone_status runstone_client_wait(runstone_client* client, uint32_t milliseconds);
+/* Writes the next events to an array of `capacity` elements of `event_size` bytes, which is
+ * sizeof(runstone_event), and their number to *count. Events that do not fit are kept, so a program
+ * calls again while *count is the capacity. At most `chunks_max` of them are new chunks that
+ * changed, the most important ones; the others stay outdated until a later call. Events are named by
+ * their index until the next call. Requires a capacity of at least 1. */
+RUNSTONE_API runstone_status runstone_client_drain(runstone_client* client, size_t chunks_max,
+                                                   runstone_event* out, size_t event_size,
+                                                   size_t capacity, size_t* count);
+/* Write the texts of a drained event. *count includes the zero at the end. */
+RUNSTONE_API runstone_status runstone_client_event_text(runstone_client* client, size_t index,
+                                                        char* out, size_t capacity, size_t* count);
+RUNSTONE_API runstone_status runstone_client_event_more(runstone_client* client, size_t index,
+                                                        char* out, size_t capacity, size_t* count);
+/* Writes the chunks of a drained RUNSTONE_EVENT_OTHERS_EDIT. */
+RUNSTONE_API runstone_status runstone_client_event_chunks(runstone_client* client, size_t index,
+                                                          runstone_pos* out, size_t capacity,
+                                                          size_t* count);
+/* Makes handles of the chunk of a drained RUNSTONE_EVENT_CHUNK_CHANGED, and of its six neighbours if
+ * `neighbours` is not NULL; those that are missing become NULL. The caller frees them. They are
+ * copies, which any thread may mesh. */
+RUNSTONE_API runstone_status runstone_client_take_chunk(runstone_client* client, size_t index,
+                                                        runstone_chunk** chunk,
+                                                        runstone_chunk* neighbours[6]);
+/* Meshes the chunk of a drained RUNSTONE_EVENT_CHUNK_CHANGED with the materials and shapes of the
+ * world, without copies of chunks. */
+RUNSTONE_API runstone_status runstone_client_mesh(runstone_client* client, size_t index,
+                                                  runstone_mesh* mesh);
+/* Gives the number of chunks that have to be meshed and were not drained yet. */
+RUNSTONE_API runstone_status runstone_client_outdated(runstone_client* client, size_t* count);
+/* Gives RUNSTONE_CLIENT_..., and 1 in `is_complete`, if not NULL, if all chunks around the player
+ * have arrived. */
+RUNSTONE_API runstone_status runstone_client_state(runstone_client* client, uint32_t* state,
+                                                   uint32_t* is_complete);
+/* Describes the world. Returns RUNSTONE_NOT_FOUND before it was open for the first time. */
+RUNSTONE_API runstone_status runstone_client_world(runstone_client* client,
+                                                   runstone_world_info* out);
+/* Moves the player, and the view with it. */
+RUNSTONE_API runstone_status runstone_client_move(runstone_client* client,
+                                                  const runstone_place* place);
+/* Gives the place of the player: that of the last move, or where the server let the player begin. */
+RUNSTONE_API runstone_status runstone_client_place(runstone_client* client, runstone_place* out);
+RUNSTONE_API runstone_status runstone_client_set_view(runstone_client* client, uint32_t radius,
+                                                      uint32_t radius_vertical);
+/* Shows edit `index` of a list at once and sends it. An event tells the outcome of the edit with
+ * this `number`, also after a lost connection. Edits with one action are undone as one: pass
+ * RUNSTONE_NEW_ACTION with the first, and the number of the first with the others; with 0 the edit
+ * is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of the player does not
+ * suffice yet. `number` may be NULL. */
+RUNSTONE_API runstone_status runstone_client_submit(runstone_client* client,
+                                                    const runstone_edits* edits, size_t index,
+                                                    uint64_t action, uint64_t* number);
+/* Gives the microseconds until the budget of the player suffices for an edit; 0 if it does. */
+RUNSTONE_API runstone_status runstone_client_submit_delay(runstone_client* client,
+                                                          const runstone_edits* edits, size_t index,
+                                                          int64_t* wait_us);
+/* Sends a line to everybody. */
+RUNSTONE_API runstone_status runstone_client_chat(runstone_client* client, const char* line);
+/* Sends a command, such as "undo". RUNSTONE_EVENT_COMMAND_DONE has the answer. */
+RUNSTONE_API runstone_status runstone_client_command(runstone_client* client, const char* text);
+/* Makes a handle of a chunk that is shown. The caller frees it. */
+RUNSTONE_API runstone_status runstone_client_chunk(runstone_client* client, runstone_pos at,
+                                                   runstone_chunk** out);
+/* Writes the places of the chunks that are shown, ascending. */
+RUNSTONE_API runstone_status runstone_client_chunks(runstone_client* client, runstone_pos* out,
+                                                    size_t capacity, size_t* count);
+/* Gives the material of a voxel that is shown. */
+RUNSTONE_API runstone_status runstone_client_material_at(runstone_client* client,
+                                                         runstone_pos voxel, uint16_t* material);
+/* Gives the number of materials, which are 0 .. count - 1; 0 before the world was open. */
+RUNSTONE_API runstone_status runstone_client_material_count(runstone_client* client, size_t* count);
+RUNSTONE_API runstone_status runstone_client_material(runstone_client* client, uint32_t material,
+                                                      runstone_material_info* out);
+RUNSTONE_API runstone_status runstone_client_find_material(runstone_client* client,
+                                                           const char* name, uint16_t* material);
+/* Makes a table of the materials and shapes of the world as they are now. The caller frees it. */
+RUNSTONE_API runstone_status runstone_client_visibility(runstone_client* client,
+                                                        runstone_visibility** out);
+/* Writes the other players in the world, ascending by author. */
+RUNSTONE_API runstone_status runstone_client_players(runstone_client* client, runstone_player* out,
+                                                     size_t capacity, size_t* count);
 
 #ifdef __cplusplus
 }

@@ -18,7 +18,7 @@ runstone_status runstone_tile_build(const runstone_chunk* const children[8], uin
     given(children, "children");
     const auto tile_edge = static_cast<unsigned>(edge_of(edge));
     const AxisOrder axis_order = order_of(order);
-    const VisibilityTable& table = live(visibility, "visibility").table;
+    const VisibilityTable& table = live(visibility, "visibility").materials->tiles;
     TileChildren of{};
     for (std::size_t i = 0; i < of.size(); ++i) {
       if (children[i] == nullptr) continue;
@@ -35,7 +35,7 @@ runstone_status runstone_tile_build(const runstone_chunk* const children[8], uin
 runstone_status runstone_tile_veil(runstone_chunk* tile, const runstone_visibility* visibility) {
   return answer([&] {
     runstone_chunk& changed = whole(tile, "tile");
-    const VisibilityTable& table = live(visibility, "visibility").table;
+    const VisibilityTable& table = live(visibility, "visibility").materials->tiles;
     auto veil = with_scratch<VeilScratch>(
         [&](VeilScratch& scratch) { return veiled(changed.runs, table, scratch); });
     if (!veil) return;

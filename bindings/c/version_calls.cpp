@@ -30,8 +30,9 @@ const char* runstone_status_name(runstone_status status) {
                                         "buffer too small",
                                         "not enough memory",
                                         "damaged",
-                                        "internal"};
-  static_assert(kNames.size() == RUNSTONE_INTERNAL + 1);
-  if (status < 0 || status > RUNSTONE_INTERNAL) return "unknown status";
+                                        "internal",
+                                        "unsupported"};
+  static_assert(kNames.size() == RUNSTONE_UNSUPPORTED + 1);
+  if (status < 0 || status > RUNSTONE_UNSUPPORTED) return "unknown status";
   return kNames[static_cast<std::size_t>(status)];
 }

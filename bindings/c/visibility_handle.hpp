@@ -1,17 +1,20 @@
-// The objects behind runstone_visibility and runstone_borders.
+// The objects behind runstone_visibility and runstone_borders. A visibility holds all that meshers read
+// of materials, with their shapes.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <utility>
 
 #include "bindings/c/chunk_handle.hpp"
 #include "bindings/c/handle.hpp"
+#include "common/mesh/mesh_materials.hpp"
 #include "common/mesh/rdm/chunk_borders.hpp"
-#include "common/mesh/visibility.hpp"
 
 struct runstone_visibility : runstone::c_interface::Handle<0x65737576> {
-  explicit runstone_visibility(runstone::VisibilityTable of) : table(std::move(of)) {}
+  /// Requires materials, not null.
+  explicit runstone_visibility(runstone::MeshMaterialsPtr of) : materials(std::move(of)) {}
 
-  runstone::VisibilityTable table;
+  runstone::MeshMaterialsPtr materials;
   // Tells tables apart, also after one was freed.
   std::uint64_t revision = runstone::c_interface::new_revision();
 };
@@ -19,7 +22,7 @@ struct runstone_visibility : runstone::c_interface::Handle<0x65737576> {
 struct runstone_borders : runstone::c_interface::Handle<0x64726f62> {
   runstone_borders(const runstone_chunk& chunk, const runstone_visibility& visibility)
       : of_chunk(chunk.revision), of_visibility(visibility.revision) {
-    borders.read(chunk.runs, visibility.table);
+    borders.read(chunk.runs, visibility.materials->cubes);
   }
 
   runstone::ChunkBorders borders;

@@ -28,8 +28,7 @@ class CMakeBuild(build_ext):
         if not (folder / "build.ninja").exists():
             subprocess.run(
                 ["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
-                 "-DCMAKE_UNITY_BUILD_BATCH_SIZE=20", "-DRUNSTONE_PYTHON=ON", "-DRUNSTONE_CLIENT=OFF",
-                 "-DRUNSTONE_TESTS=OFF", f"-DPython_EXECUTABLE={sys.executable}"], check=True)
+                 "-DCMAKE_UNITY_BUILD_BATCH_SIZE=20", "-DRUNSTONE_PYTHON=ON", "-DRUNSTONE_TESTS=OFF", f"-DPython_EXECUTABLE={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", folder, "--target", "runstone_python"], check=True)
         built = list((folder / "python/runstone").glob("_runstone.*.so"))
         if len(built) != 1:

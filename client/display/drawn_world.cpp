@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "client/render/drawn_materials.hpp"
 #include "common/core/assert.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 #include "common/os/steady_clock.hpp"
 #include "common/runs/layer_diff.hpp"
 

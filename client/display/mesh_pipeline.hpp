@@ -17,7 +17,6 @@
 #include "client/display/look_control.hpp"
 #include "client/display/upload_tracker.hpp"
 #include "client/far/far_planner.hpp"
-#include "client/render/drawn_materials.hpp"
 #include "client/report/report.hpp"
 #include "client/schedule/byte_ledger.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -27,6 +26,7 @@
 #include "client/session/client_session.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/mesh/mesh_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 
 namespace runstone {
 

@@ -8,7 +8,7 @@
 #include "client/display/ground_marker.hpp"
 #include "client/display/player_body.hpp"
 #include "client/far/far_reach.hpp"
-#include "client/render/liquid_surface.hpp"
+#include "common/materials/liquids.hpp"
 
 namespace runstone {
 namespace {

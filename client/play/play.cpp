@@ -6,11 +6,11 @@
 
 #include "client/play/player_actions.hpp"
 #include "client/play/time_travel.hpp"
-#include "client/render/drawn_materials.hpp"
 #include "client/ui/log_words.hpp"
 #include "common/core/text.hpp"
 #include "common/core/utc_text.hpp"
 #include "common/core/world_time.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 
 namespace runstone {
 namespace {

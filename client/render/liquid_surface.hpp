@@ -3,17 +3,9 @@
 // those of cubes.
 #pragma once
 #include "client/render/surface_glsl.hpp"
-#include "common/materials/material_table.hpp"
 #include "common/mesh/shapes/liquid_steps.hpp"
 
 namespace runstone {
-
-/// Returns true for the liquids whose surface lies lower: the transparent ones. An opaque one hides
-/// the faces of its neighbours, which a lower surface would show.
-inline bool has_lowered_surface(const MaterialInfo& row) {
-  return row.body == MaterialBody::liquid && row.visibility == Visibility::transparent &&
-         row.colour[3] < 255 && row.shape.is_cube();
-}
 
 static_assert(kLiquidDrop == 2);         // RUNSTONE_LOWERED_GLSL and RUNSTONE_QUAD_GLSL have 2/16
 static_assert(kLiquidSurface == 15.0F);  // RUNSTONE_LOWERED_GLSL and is_liquid() have 15.0

@@ -18,6 +18,7 @@ Result<ClientSequence> LocalEdits::add(const EditDescriptor& edit, std::vector<C
   local.action = in_action.action == kBeginsAction ? last_ + 1 : in_action.action;
   local.is_optional = in_action.is_optional;
   local.has_sender = in_action.has_sender;
+  local.again_of = in_action.again_of;
   local.chunks = std::move(chunks);
   local.submitted_us = submitted_us;
   bytes_ += bytes_of(local);

@@ -50,6 +50,8 @@ struct InAction {
   bool is_optional = false;
   /// An ActionSender has the edit, and offers it again if it is rejected for a while.
   bool has_sender = false;
+  /// The rejected edit that this one repeats (LostEdits), or 0.
+  ClientSequence again_of = 0;
   InAction(ClientSequence action_ = 0, bool is_optional_ = false, bool has_sender_ = false)
       : action(action_), is_optional(is_optional_), has_sender(has_sender_) {}
 };
@@ -64,6 +66,7 @@ struct LocalEdit {
   TimeUs sent_us = kNever;       // last put on the wire
   LocalEditState state = LocalEditState::pending;
   bool is_optional = false, has_sender = false;  // as in InAction
+  ClientSequence again_of = 0;                   // as in InAction
   Version version;                               // confirmed: of its commit; unseen: an upper bound
 
   bool needs_answer() const {

@@ -177,7 +177,7 @@ void Replica::retire_durable() {
   changes_.unseen(retired.unseen);
 }
 
-void Replica::receive(const Reject& reject, TimeUs now_us) {
+void Replica::receive(const Reject& reject, TimeUs now_us, bool is_offered_again) {
   if (!parameters_) return;
   const auto rejection = local_edits_.reject(reject, {parameters_->epoch, newest_});
   if (!rejection) return;
@@ -195,7 +195,7 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
     if (chunk->confirmed() && may_lack && !past_.is_past()) updater_.request(*chunk, now_us);
   }
   if (rejection->is_resolved) return retire_durable();
-  changes_.reject({reject.client_seq, reject.reason, reject.detail});
+  changes_.reject({reject.client_seq, reject.reason, reject.detail, is_offered_again});
 }
 
 std::vector<ClientSequence> Replica::resume(ClientSequence resolved) {

@@ -83,6 +83,8 @@ struct RejectedEdit {
   ClientSequence seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
+  /// The session offers the edit again, as a new one (LocalEdit::again_of).
+  bool is_offered_again = false;
 };
 
 /// The server cannot send a chunk of the view.

@@ -37,6 +37,7 @@ void ClientSession::disconnected() {
   looked_up_.clear();
   lookup_keys_.clear();
   lookups_stale_ += std::exchange(lookups_open_, 0);
+  if (!others_.empty()) ++players_serial_;
   others_.clear();
   previews_.reset();
   history_.clear();
@@ -96,8 +97,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
         } else if constexpr (std::is_same_v<T, Reject>) {
           if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
-          lost_.take(replica_->local_edits(), m, opened_us_, arrival.now_us);
-          replica_->receive(m, arrival.now_us);
+          const bool is_kept = lost_.take(replica_->local_edits(), m, opened_us_, arrival.now_us);
+          replica_->receive(m, arrival.now_us, is_kept);
         } else if constexpr (std::is_same_v<T, DigestCheck>) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Permissions>) {
@@ -191,7 +192,9 @@ void ClientSession::tick(TimeUs now_us) {
 void ClientSession::offer_lost_edits(TimeUs now_us) {
   lost_.forget_settled(replica_->local_edits());
   while (const LostEdit* lost = lost_.due(now_us)) {
-    const auto offered = offer(lost->edit, lost->submitted_us, now_us, lost_.action());
+    InAction in_action = lost_.action();
+    in_action.again_of = lost->seq;
+    const auto offered = offer(lost->edit, lost->submitted_us, now_us, in_action);
     const bool is_later = !offered && offered.error().code == ErrorCode::limit_exceeded;
     if (is_later) return lost_.put_off(now_us);
     if (offered) {
@@ -448,6 +451,7 @@ bool ClientSession::loaded() const {
 }
 
 void ClientSession::on_player_list(const PlayerList& list) {
+  ++players_serial_;
   std::map<AuthorId, OtherPlayer> known = std::exchange(others_, {});
   if (list.is_change) std::swap(known, others_);
   for (const AuthorId author : list.left) {

@@ -86,8 +86,8 @@ class ClientSession {
   bool has_large_actions() const;
   /// Returns true if the edit, as one of an action, would be sent at once.
   bool has_window_for(const EditDescriptor& edit) const;
-  /// Returns how long the edit of an action waits for the player's edit budget, so that a part of the
-  /// budget is left for clicks.
+  /// Returns how long the edit of an action waits for the player's edit budget, so that a part of
+  /// the budget is left for clicks.
   TimeUs action_wait_us(const EditDescriptor& edit, TimeUs now_us) {
     return allowance_.wait_us(edit, now_us, EditAllowance::kLeftForClicks);
   }
@@ -141,8 +141,8 @@ class ClientSession {
   /// Returns a number that rises with each change of the timeline.
   std::uint64_t timeline_serial() const { return timeline_serial_; }
 
-  /// Follows the voxel at the crosshair, or none with nullopt, and asks who set it last if a request
-  /// is due. Does nothing unless open, in the past, and with servers that cannot say it.
+  /// Follows the voxel at the crosshair, or none with nullopt, and asks who set it last if a
+  /// request is due. Does nothing unless open, in the past, and with servers that cannot say it.
   void step_voxel_author(const std::optional<VoxelPos>& at, TimeUs now_us);
   const VoxelAuthor& voxel_author() const { return voxel_author_; }
   /// Returns true if voxel_author().found() may return something else than at the last call.
@@ -225,6 +225,11 @@ class ClientSession {
   std::uint64_t pongs() const { return connection_.pongs(); }
   const ClockOffset& clock() const { return connection_.clock(); }
   const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
+  /// Returns a number that rises with each change of others(), except of the poses.
+  std::uint64_t players_serial() const { return players_serial_; }
+  /// Returns true if a rejected edit, which was offered first with this sequence, waits to be
+  /// offered again.
+  bool keeps_lost_edit(ClientSequence seq) const { return lost_.has(seq); }
   /// Returns the server keys by world: those configured, and those of worlds seen for the first
   /// time.
   const std::map<WorldId, PublicKey>& pinned() const { return connection_.config().pinned; }
@@ -281,6 +286,7 @@ class ClientSession {
   TimeUs opened_us_ = 0;          // when the connection opened
   std::uint32_t tile_rules_ = 0;  // of the server, see SessionAccepted
   std::map<AuthorId, OtherPlayer> others_;
+  std::uint64_t players_serial_ = 0;
 };
 
 }  // namespace runstone

@@ -7,7 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include "client/render/drawn_materials.hpp"
 #include "client/replica/copy_box.hpp"
 #include "client/tools/action_source.hpp"
 #include "client/tools/build_words.hpp"
@@ -24,6 +23,7 @@
 #include "common/formats/turned_names.hpp"
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 #include "common/sculpt/voxel_rows.hpp"
 #include "common/shapes/shape_faces.hpp"
 #include "common/shapes/turned_shape.hpp"

@@ -1,4 +1,5 @@
-// The liquids of a table, by material, for code that treats them as a set.
+// The liquids of a table, by material, for code that treats them as a set, and those whose surface
+// lies lower than their cubes.
 #pragma once
 #include <vector>
 
@@ -13,6 +14,13 @@ inline std::vector<bool> liquids(const MaterialTable& table) {
   for (const MaterialInfo& row : table.rows())
     out.push_back(row.body == MaterialBody::liquid && row.visibility != Visibility::empty);
   return out;
+}
+
+/// Returns true for the liquids whose surface lies lower: the transparent ones. An opaque one hides
+/// the faces of its neighbours, which a lower surface would show.
+inline bool has_lowered_surface(const MaterialInfo& row) {
+  return row.body == MaterialBody::liquid && row.visibility == Visibility::transparent &&
+         row.colour[3] < 255 && row.shape.is_cube();
 }
 
 }  // namespace runstone

@@ -218,6 +218,7 @@ class CallScript {
         return renew(edits_, runstone_edits_create, runstone_edits_free);
       case 5: {
         const auto kinds = in_.take(4);
+        if (in_.byte() % 4 == 3) return make_shaped(kinds);
         return renew(
             tables_,
             [&](auto** out) { return runstone_visibility_create(kinds.data(), kinds.size(), out); },
@@ -230,6 +231,29 @@ class CallScript {
       default:
         return renew(meshes_, runstone_mesh_create, runstone_mesh_free);
     }
+  }
+
+  /// Makes a table in which material 1 may have a shape of boxes as they come.
+  runstone_status make_shaped(std::span<const std::uint8_t> kinds) {
+    runstone_shapes* shapes = nullptr;
+    require(runstone_shapes_create(&shapes) == RUNSTONE_OK, "shapes are not made");
+    const std::uint8_t form = in_.byte();
+    std::vector<runstone_local_box> boxes(in_.byte() % 40U);
+    for (runstone_local_box& box : boxes) {
+      const auto bytes = in_.take(6);
+      std::copy_n(bytes.begin(), std::min<std::size_t>(bytes.size(), 3), box.min);
+      for (std::size_t i = 3; i < bytes.size(); ++i) box.max[i - 3] = bytes[i];
+    }
+    const runstone_status added =
+        runstone_shapes_add(shapes, 1, form % 3U, boxes.data(), boxes.size());
+    const runstone_status made = renew(
+        tables_,
+        [&](auto** out) {
+          return runstone_visibility_create_with_shapes(kinds.data(), kinds.size(), shapes, out);
+        },
+        runstone_visibility_free);
+    require(runstone_shapes_free(shapes) == RUNSTONE_OK, "shapes are not freed");
+    return made == RUNSTONE_OK ? added : made;
   }
 
   runstone_status change(unsigned which) {
@@ -332,17 +356,21 @@ class CallScript {
   runstone_status mesh(unsigned which) {
     const runstone_chunk* chunk = pick(chunks_);
     const runstone_visibility* table = pick(tables_);
-    if (which % 4 == 0) {
+    if (which % 6 == 0) {
       return renew(
           borders_, [&](auto** out) { return runstone_borders_create(chunk, table, out); },
           runstone_borders_free);
     }
     runstone_mesh* to = pick(meshes_);
-    if (which % 4 == 1) {
+    if (which % 6 == 1) {
       std::vector<runstone_vertex> out(in_.byte() * 4U);
       std::size_t count = 0;
-      return runstone_mesh_vertices(to, in_.byte() % 3U, out.data(), out.size(), &count);
+      const std::uint8_t choice = in_.byte();
+      return choice % 2 == 0
+                 ? runstone_mesh_vertices(to, choice % 3U, out.data(), out.size(), &count)
+                 : runstone_mesh_shape_vertices(to, choice % 3U, out.data(), out.size(), &count);
     }
+    if (which % 6 == 4) return occlude(to, chunk, table);
     std::array<const runstone_chunk*, 6> neighbours{};
     std::array<const runstone_borders*, 6> kept{};
     const std::uint8_t given = in_.byte();
@@ -350,12 +378,41 @@ class CallScript {
       if ((given >> d & 1) != 0) neighbours[d] = pick(chunks_);
       if ((given >> 6 & 1) != 0) kept[d] = pick(borders_);
     }
-    if (which % 4 == 2)
+    if (which % 6 == 2)
       return runstone_mesh_chunk(to, chunk, neighbours.data(), kept.data(), table);
     const runstone_status status =
         runstone_mesh_update(to, chunk, neighbours.data(), kept.data(), table, nullptr);
     if (status == RUNSTONE_OK) check_mesh(to, chunk, neighbours.data(), table);
     return status;
+  }
+
+  /// Meshes a chunk in the middle of 26 others and darkens its corners.
+  runstone_status occlude(runstone_mesh* to, const runstone_chunk* chunk,
+                          const runstone_visibility* table) {
+    std::array<const runstone_chunk*, 27> around{};
+    for (std::uint8_t given = in_.byte(); given != 0; given /= 2)
+      around[in_.byte() % 27] = pick(chunks_);
+    const std::array<const runstone_chunk*, 6> beside = {around[12], around[14], around[10],
+                                                         around[16], around[4],  around[22]};
+    const runstone_status meshed = runstone_mesh_chunk(to, chunk, beside.data(), nullptr, table);
+    if (meshed != RUNSTONE_OK) return meshed;
+    const std::uint64_t faces = face_count(to);
+    const runstone_status status = runstone_mesh_occlude(to, chunk, around.data(), table);
+    require(face_count(to) == faces, "occlusion changes the faces of a mesh");
+    return status;
+  }
+
+  static std::uint64_t face_count(const runstone_mesh* mesh) {
+    std::uint64_t out = 0;
+    for (const std::uint32_t pass : {0U, 1U}) {
+      for (const std::uint64_t quad : quads_of(mesh, pass)) {
+        runstone_quad_fields fields{};
+        fields.struct_size = sizeof fields;
+        require(runstone_quad_unpack(quad, &fields) == RUNSTONE_OK, "a quad is not unpacked");
+        out += std::uint64_t{fields.width} * fields.height;
+      }
+    }
+    return out;
   }
 
   runstone_status collide(unsigned which) {

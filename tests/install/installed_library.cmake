@@ -12,8 +12,15 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
     "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --no-tests=error)
+set(tests 4)
+set(has_client OFF)
+if(EXISTS ${WORK}/prefix/include/runstone/client/api/world_client.hpp)
+  set(tests 5)
+  set(has_client ON)
+  expect("examples.join_and_edit")
+endif()
 expect("examples.array_to_quads" "examples.edit_layers" "examples.walk_on_runs" "examples.c_hill"
-       "100% tests passed, 0 tests failed out of 4")
+       "100% tests passed, 0 tests failed out of ${tests}")
 
 # No flag of this project reaches the user, and no header of the source tree does.
 file(READ ${WORK}/build/compile_commands.json output)
@@ -34,6 +41,29 @@ separate_arguments(options UNIX_COMMAND "${FLAGS} ${output}")
 run(${COMPILER} -std=c++20 ${SOURCE}/examples/edit_layers.cpp -o ${WORK}/edit_layers ${options})
 run(${WORK}/edit_layers)
 expect("voxels changed")
+
+# The client joins a server, once as CMake has built it and once as pkg-config says.
+if(has_client)
+  run(${PKG_CONFIG} --cflags --libs runstone-client)
+  separate_arguments(options UNIX_COMMAND "${FLAGS} ${output}")
+  run(${COMPILER} -std=c++20 ${SOURCE}/examples/join_and_edit.cpp -o ${WORK}/join_and_edit ${options})
+  file(GLOB_RECURSE headers ${WORK}/prefix/include/runstone/client/*)
+  foreach(header ${headers})
+    file(READ ${header} output)
+    if(output MATCHES "#include [<\"](asio|spdlog|openssl|GL|client/[^a]|protocol)")
+      message(FATAL_ERROR "${header} includes ${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  foreach(program ${WORK}/build/example-join-and-edit ${WORK}/join_and_edit)
+    file(REMOVE_RECURSE ${WORK}/world ${WORK}/port)
+    run(bash -c "'${BUILD}/bin/runstone-server' --world '${WORK}/world' --create --generator flat --listen 127.0.0.1:0 \
+      --port-file '${WORK}/port' > /dev/null 2>&1 & server=$!
+      for i in $(seq 200); do [ -s '${WORK}/port' ] && break; sleep 0.1; done
+      timeout 60 '${program}' 127.0.0.1:$(cat '${WORK}/port'); result=$?
+      kill $server; wait $server; exit $result")
+    expect("quads" "the edit is number 1 of the world")
+  endforeach()
+endif()
 
 # The C interface needs a C compiler alone.
 run(${PKG_CONFIG} --cflags --libs runstone-c)

@@ -1,8 +1,8 @@
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import AsyncIterator, Iterator, Sequence
 from datetime import datetime
 from types import TracebackType
-from typing import Literal, final
+from typing import ClassVar, Literal, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ MaskWord = Literal["everything", "empty", "solid"] | int
 Voxels = npt.NDArray[np.uint16]
 
 class Error(Exception):
-    """A world that cannot be read, or a file that cannot be written."""
+    """A world that cannot be read, a file that cannot be written, or what a server refuses."""
 
 class Edit:
     @property
@@ -208,6 +208,124 @@ class World:
     def players(self) -> dict[int, str]: ...
     @property
     def loss(self) -> str | None: ...
+
+ClientEventKind = Literal[
+    "opened",
+    "lost",
+    "chunk",
+    "chunk removed",
+    "chunk missing",
+    "edit confirmed",
+    "edit rejected",
+    "edit durable",
+    "edit unseen",
+    "others edit",
+    "chat",
+    "command done",
+    "materials",
+    "players",
+    "warning",
+]
+Place = tuple[float, float, float, float, float]
+
+class _ClientWorld(TypedDict):
+    id: str
+    edge: int
+    y_min: int
+    y_max: int
+    edit_volume_max: int
+    spawn: tuple[float, float, float]
+    author: int
+    name: str
+    fingerprint: str
+
+class _ClientPlayer(TypedDict):
+    author: int
+    name: str
+    role: str
+    place: Place | None
+
+@final
+class ClientEvent:
+    @property
+    def kind(self) -> ClientEventKind: ...
+    @property
+    def key(self) -> tuple[int, int, int] | None: ...
+    @property
+    def cause(self) -> Literal["terrain", "own edit", "others edit"] | None: ...
+    @property
+    def chunk(self) -> Chunk: ...
+    @property
+    def neighbours(self) -> list[Chunk | None]: ...
+    def mesh(self) -> Mesh: ...
+    @property
+    def edit(self) -> int | None: ...
+    @property
+    def sequence(self) -> int | None: ...
+    @property
+    def author(self) -> int | None: ...
+    @property
+    def chunks(self) -> list[tuple[int, int, int]]: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def is_final(self) -> bool: ...
+    @property
+    def is_ok(self) -> bool: ...
+
+class Client(AsyncIterator[ClientEvent]):
+    NEW_ACTION: ClassVar[int]
+    def __init__(
+        self,
+        server: str,
+        name: str = "builder",
+        *,
+        invite: str = "",
+        password: str = "",
+        key_file: str | os.PathLike[str] = "",
+        encryption: Literal["any certificate", "authorities", "none"] = "any certificate",
+        authorities_file: str | os.PathLike[str] = "",
+        view_radius: int = 8,
+        view_radius_vertical: int = 4,
+        memory_mib: int = 1024,
+        cache_folder: str | os.PathLike[str] = "",
+        cache_mib: int = 256,
+    ) -> None: ...
+    async def join(self) -> Client: ...
+    async def close(self) -> None: ...
+    async def __aenter__(self) -> Client: ...
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+    def __aiter__(self) -> Client: ...
+    async def __anext__(self) -> ClientEvent: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def state(self) -> Literal["connecting", "open", "ended"]: ...
+    @property
+    def world(self) -> _ClientWorld | None: ...
+    @property
+    def materials(self) -> list[Material]: ...
+    def find_material(self, name: str) -> int | None: ...
+    @property
+    def players(self) -> list[_ClientPlayer]: ...
+    @property
+    def place(self) -> Place: ...
+    def move(self, x: float, y: float, z: float, yaw: float = 0.0, pitch: float = 0.0) -> None: ...
+    async def travel(self, x: float, y: float, z: float, yaw: float = 0.0, pitch: float = 0.0) -> None: ...
+    async def loaded(self) -> None: ...
+    def set_view(self, radius: int, radius_vertical: int) -> None: ...
+    def chunk(self, key: Position) -> Chunk | None: ...
+    def chunks(self) -> list[tuple[int, int, int]]: ...
+    def material_at(self, at: Position) -> int | None: ...
+    def __getitem__(self, box: tuple[slice | int, slice | int, slice | int]) -> Voxels: ...
+    def submit(self, edit: Edit, action: int | None = None) -> int: ...
+    async def edit(self, edit: Edit, action: int | None = None) -> int | None: ...
+    def chat(self, line: str) -> None: ...
+    async def command(self, text: str) -> list[str]: ...
 
 def write_build(
     path: str | os.PathLike[str],

@@ -114,11 +114,12 @@ def test_the_type_stubs_name_what_the_module_has():
     folder = Path(runstone.__file__).parent
     assert (folder / "py.typed").exists()
     tree = ast.parse((folder / "__init__.pyi").read_text())
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_")}
     functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
     assert set(classes) | functions | {"__version__"} == set(runstone.__all__)
     for name, node in classes.items():
-        stub = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+        stub = {part.name for part in node.body if isinstance(part, (ast.FunctionDef, ast.AsyncFunctionDef))}
+        stub |= {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
         real = {part for part in vars(getattr(runstone, name)) if not part.startswith("_")}
         assert {part for part in stub if not part.startswith("_")} == real, name
         for part in stub - {"__init__", "__enter__"}:

@@ -16,7 +16,7 @@ std::string text_of_file(const std::string& path) {
 TEST_CASE("the page for embedders holds the code of the examples", "[house][docs]") {
   const std::string page = text_of_file("docs/library.md");
   REQUIRE(!page.empty());
-  for (const char* name : {"array_to_quads", "edit_layers", "walk_on_runs"}) {
+  for (const char* name : {"array_to_quads", "edit_layers", "walk_on_runs", "join_and_edit"}) {
     CAPTURE(name);
     const std::string code = text_of_file("examples/" + std::string(name) + ".cpp");
     REQUIRE(!code.empty());
@@ -24,8 +24,11 @@ TEST_CASE("the page for embedders holds the code of the examples", "[house][docs
   }
 }
 
-TEST_CASE("the page of the C interface holds its example", "[house][docs]") {
-  const std::string code = text_of_file("examples/c/hill.c");
-  REQUIRE(!code.empty());
-  CHECK(text_of_file("docs/c.md").find("```c\n" + code + "```\n") != std::string::npos);
+TEST_CASE("the page of the C interface holds its examples", "[house][docs]") {
+  for (const char* name : {"hill", "join"}) {
+    CAPTURE(name);
+    const std::string code = text_of_file("examples/c/" + std::string(name) + ".c");
+    REQUIRE(!code.empty());
+    CHECK(text_of_file("docs/c.md").find("```c\n" + code + "```\n") != std::string::npos);
+  }
 }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "client/panels/rollback_control.hpp"
-#include "client/render/drawn_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 #include "tests/integration/client/travel/live_session.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/server/app/server_commands.hpp"

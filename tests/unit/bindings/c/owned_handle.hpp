@@ -14,6 +14,8 @@ struct FreeHandle {
   void operator()(runstone_chunk* handle) const { runstone_chunk_free(handle); }
   void operator()(runstone_edits* handle) const { runstone_edits_free(handle); }
   void operator()(runstone_visibility* handle) const { runstone_visibility_free(handle); }
+  void operator()(runstone_shapes* handle) const { runstone_shapes_free(handle); }
+  void operator()(runstone_client* handle) const { runstone_client_free(handle); }
   void operator()(runstone_borders* handle) const { runstone_borders_free(handle); }
   void operator()(runstone_mesh* handle) const { runstone_mesh_free(handle); }
   void operator()(runstone_space* handle) const { runstone_space_free(handle); }

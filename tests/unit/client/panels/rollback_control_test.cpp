@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "client/render/drawn_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 #include "tests/unit/client/session/session_bench.hpp"
 
 namespace runstone::test::session_bench {

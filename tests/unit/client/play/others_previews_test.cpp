@@ -1,7 +1,7 @@
 #include "client/play/others_previews.hpp"
 
 #include "client/render/author_rgb.hpp"
-#include "client/render/drawn_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
 namespace runstone {

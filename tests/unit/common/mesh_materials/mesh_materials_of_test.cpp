@@ -1,4 +1,4 @@
-#include "client/render/drawn_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 
 #include <catch2/catch.hpp>
 

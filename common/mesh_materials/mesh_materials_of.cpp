@@ -1,6 +1,6 @@
-#include "client/render/drawn_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 
-#include "client/render/liquid_surface.hpp"
+#include "common/materials/liquids.hpp"
 
 namespace runstone {
 

@@ -1,0 +1,143 @@
+#include "common/mesh/occlusion/opaque_bits.hpp"
+
+#include <algorithm>
+
+#include "common/runs/bit_row.hpp"
+#include "common/runs/layer.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::uint32_t kWordBits = 64;
+
+}  // namespace
+
+void OpaqueBits::set_range(std::uint32_t place, std::uint32_t count) {
+  std::uint64_t* word = &words_[place / kWordBits];
+  const std::uint32_t first = place % kWordBits;
+  if (first + count <= kWordBits) {
+    *word |= bits_below<Row64>(count) << first;
+    return;
+  }
+  *word++ |= ~std::uint64_t{0} << first;
+  count -= kWordBits - first;
+  for (; count >= kWordBits; count -= kWordBits) *word++ = ~std::uint64_t{0};
+  *word |= bits_below<Row64>(count);
+}
+
+void OpaqueBits::read(const RunChunk& chunk, const ChunksAround& around,
+                      const VisibilityTable& visibility) {
+  axes_ = axes_of(chunk.order);
+  for (std::size_t axis = 0; axis < 3; ++axis) sides_[axis] = chunk.extent.sides()[axis];
+  const auto padded = [this](Axis axis) {
+    return static_cast<std::uint32_t>(sides_[static_cast<std::size_t>(axis)]) + 2;
+  };
+  const std::uint32_t row = (padded(axes_[0]) + kWordBits - 1) / kWordBits * kWordBits;
+  steps_[static_cast<std::size_t>(axes_[0])] = 1;
+  steps_[static_cast<std::size_t>(axes_[1])] = row;
+  steps_[static_cast<std::size_t>(axes_[2])] = row * padded(axes_[1]);
+  words_.assign(std::size_t{row} * padded(axes_[1]) * padded(axes_[2]) / kWordBits, 0);
+  read_inside(chunk, visibility);
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        const RunChunk* const beyond = around[around_place(x, y, z)];
+        if (beyond != nullptr && (x != 0 || y != 0 || z != 0))
+          read_beyond(*beyond, {x, y, z}, visibility);
+      }
+    }
+  }
+}
+
+void OpaqueBits::read_inside(const RunChunk& chunk, const VisibilityTable& visibility) {
+  const OrderedExtent e = ordered(chunk.extent, chunk.order);
+  const std::uint32_t row = steps_[static_cast<std::size_t>(axes_[1])];
+  const std::uint32_t gap = steps_[static_cast<std::size_t>(axes_[2])] - row * e.m;
+  chunk.runs.visit([&](const auto& runs) {
+    // The line of the voxel `begin`: its first bit, its first voxel and its number in its layer.
+    std::uint32_t line_bit = place(0, 0, 0), line_begin = 0, line = 0;
+    const auto next_line = [&] {
+      line_begin += e.f;
+      line_bit += row;
+      if (++line < e.m) return;
+      line = 0;
+      line_bit += gap;
+    };
+    std::uint32_t begin = 0;
+    for (std::size_t i = 0; i < runs.size(); begin = runs.end(i), ++i) {
+      if (visibility[runs.material(i)] != Visibility::opaque) continue;
+      const std::uint32_t end = runs.end(i);
+      while (begin - line_begin >= e.f) next_line();
+      while (end - line_begin > e.f) {
+        set_range(line_bit + begin - line_begin, line_begin + e.f - begin);
+        next_line();
+        begin = line_begin;
+      }
+      set_range(line_bit + begin - line_begin, end - begin);
+    }
+  });
+}
+
+void OpaqueBits::read_beyond(const RunChunk& beyond, const Place3& offset,
+                             const VisibilityTable& visibility) {
+  std::size_t across = 0, across_count = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (offset[axis] == 0) continue;
+    across = axis;
+    ++across_count;
+  }
+  if (beyond.is_uniform() && visibility[beyond.runs.material(0)] != Visibility::opaque) return;
+  if (across_count == 1) return read_side(beyond, offset, across, visibility);
+  // An edge or a corner. Along at most one axis there is more than one voxel.
+  Place3 at{}, from{}, move{};
+  int count = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (offset[axis] == 0) {
+      move[axis] = 1;
+      count = sides_[axis];
+    } else {
+      at[axis] = offset[axis] < 0 ? -1 : sides_[axis];
+      from[axis] = offset[axis] < 0 ? beyond.extent.sides()[axis] - 1 : 0;
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const auto along = [&](std::size_t axis) {
+      return static_cast<std::uint8_t>(from[axis] + i * move[axis]);
+    };
+    if (visibility[material_at(beyond, {along(0), along(1), along(2)})] == Visibility::opaque)
+      set(place(at[0] + i * move[0], at[1] + i * move[1], at[2] + i * move[2]));
+  }
+}
+
+void OpaqueBits::read_side(const RunChunk& beyond, const Place3& offset, std::size_t axis,
+                           const VisibilityTable& visibility) {
+  // u lies along the fastest axis of the chunk if it can, so that its bits are neighbours.
+  const Axis u_axis = axes_[static_cast<std::size_t>(axes_[0]) == axis ? 1 : 0];
+  const Axis v_axis = axes_[static_cast<std::size_t>(axes_[2]) == axis ? 1 : 2];
+  const auto u_count = static_cast<std::uint32_t>(sides_[static_cast<std::size_t>(u_axis)]);
+  const auto v_count = static_cast<std::uint32_t>(sides_[static_cast<std::size_t>(v_axis)]);
+  Place3 at{};
+  at[axis] = offset[axis] < 0 ? -1 : sides_[axis];
+  std::uint32_t line = place(at[0], at[1], at[2]);
+  const std::uint32_t u_step = step(u_axis), v_step = step(v_axis);
+  const bool is_opaque = beyond.is_uniform();  // read_beyond() returned for any other material
+  if (!is_opaque) {
+    layer_.resize(std::size_t{u_count} * v_count);
+    read_layer(beyond, static_cast<Axis>(axis),
+               offset[axis] < 0 ? beyond.extent.sides()[axis] - 1U : 0U, u_axis, layer_);
+  }
+  const Material* voxel = layer_.data();
+  for (std::uint32_t v = 0; v < v_count; ++v, line += v_step) {
+    if (u_step == 1 && is_opaque) {
+      set_range(line, u_count);
+    } else {
+      for (std::uint32_t u = 0; u < u_count; ++u) {
+        const bool opaque = is_opaque || visibility[*voxel++] == Visibility::opaque;
+        const std::uint32_t bit = line + u * u_step;
+        words_[bit / kWordBits] |= std::uint64_t{opaque} << (bit % kWordBits);
+      }
+    }
+  }
+}
+
+}  // namespace runstone
