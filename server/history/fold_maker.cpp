@@ -11,6 +11,22 @@
 #include "server/history/base_chunk.hpp"
 
 namespace runstone {
+namespace {
+
+constexpr FoldSize kFoldSizeMax{4'096, 128}, kFoldSizeMin{16, 4};
+
+}  // namespace
+
+FoldSize next_fold_size(const FoldSize& now, std::chrono::microseconds taken) {
+  FoldSize next = now;
+  if (taken > kFoldTimeMax) {
+    next = {now.edits_max / 2, now.chunks_max / 2};
+  } else if (taken < kFoldTimeMax / 2) {
+    next = {now.edits_max + now.edits_max / 4, now.chunks_max + now.chunks_max / 4};
+  }
+  return {std::clamp(next.edits_max, kFoldSizeMin.edits_max, kFoldSizeMax.edits_max),
+          std::clamp(next.chunks_max, kFoldSizeMin.chunks_max, kFoldSizeMax.chunks_max)};
+}
 
 StoreResult<std::optional<LogFold>> FoldMaker::next(Sequence until, const FoldSize& size) {
   // Head, log and base are read at one moment.

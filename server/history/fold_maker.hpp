@@ -3,6 +3,7 @@
 // Each fold begins at the head of the log, so a world is whole after each of them.
 // Threads: one, which alone uses the reader.
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <optional>
 
@@ -18,6 +19,12 @@ struct FoldSize {
   Sequence edits_max = 256;
   std::size_t chunks_max = 32;
 };
+
+/// The time of the log writer that a fold takes, as far as its size can bound it.
+inline constexpr std::chrono::milliseconds kFoldTimeMax{20};
+
+/// Returns the size of the next fold, if one of size `now` took the log writer `taken`.
+FoldSize next_fold_size(const FoldSize& now, std::chrono::microseconds taken);
 
 class FoldMaker {
  public:

@@ -13,7 +13,6 @@ namespace {
 
 using RetentionClock = std::chrono::steady_clock;
 
-constexpr FoldSize kFoldSizeMax{4'096, 128}, kFoldSizeMin{16, 4};
 // A part that gives space back takes about a millisecond for 64 pages.
 constexpr std::uint32_t kPagesBack = 256;
 
@@ -38,17 +37,6 @@ struct WriterAnswer {
 };
 
 }  // namespace
-
-FoldSize next_fold_size(const FoldSize& now, std::chrono::microseconds taken) {
-  FoldSize next = now;
-  if (taken > kRetentionPartMax) {
-    next = {now.edits_max / 2, now.chunks_max / 2};
-  } else if (taken < kRetentionPartMax / 2) {
-    next = {now.edits_max + now.edits_max / 4, now.chunks_max + now.chunks_max / 4};
-  }
-  return {std::clamp(next.edits_max, kFoldSizeMin.edits_max, kFoldSizeMax.edits_max),
-          std::clamp(next.chunks_max, kFoldSizeMin.chunks_max, kFoldSizeMax.chunks_max)};
-}
 
 RetentionThread::RetentionThread(std::string place, const Generator& generator, LogWriter& writer,
                                  std::uint64_t days, std::function<TimeUs()> utc_now,

@@ -1,8 +1,8 @@
 // RetentionThread: removes the oldest edits of a world's log while people play, by a policy or by a
 // command. It moves them into the base in many small parts (folds). A part is one transaction of the
 // log writer, and the world is whole after each of them.
-//   - The size of a part follows the time that the log writer took for the parts before:
-//     kRetentionPartMax. A single edit is not divided, so a part with one edit of very many chunks
+//   - The size of a part follows the time that the log writer took for the parts before
+//     (next_fold_size()). A single edit is not divided, so a part with one edit of very many chunks
 //     takes longer.
 //   - After each part the thread rests 9 times as long as the part took, reading included. Then the
 //     records that were queued meanwhile are on disk.
@@ -31,9 +31,6 @@
 
 namespace runstone {
 
-/// The time of the log writer that a part takes, as far as the size of a part can bound it.
-inline constexpr std::chrono::milliseconds kRetentionPartMax{20};
-
 struct RetentionPace {
   std::int64_t rest_parts = 9;  // a rest is so many times as long as the part before it
   std::chrono::nanoseconds first_run = std::chrono::minutes(5);  // after the start
@@ -41,9 +38,6 @@ struct RetentionPace {
   std::chrono::nanoseconds pause =
       std::chrono::milliseconds(200);  // between two looks whether to go on
 };
-
-/// Returns the size of the next part, if a part of size `now` took the log writer `taken`.
-FoldSize next_fold_size(const FoldSize& now, std::chrono::microseconds taken);
 
 class RetentionThread {
  public:

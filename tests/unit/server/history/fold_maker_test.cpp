@@ -2,12 +2,17 @@
 // disk fail between or in them.
 #include "server/history/fold_maker.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
+#include <limits>
 #include <tuple>
 
 #include "server/history/moments.hpp"
+#include "server/history/retention_plan.hpp"
 #include "tests/support/core/temp_folder.hpp"
+#include "tests/support/edits/builder_session.hpp"
 #include "tests/support/sql/power_loss_vfs.hpp"
 #include "tests/support/sql/raw_sql.hpp"
 #include "tests/unit/server/history/retention_world.hpp"
@@ -292,6 +297,83 @@ TEST_CASE("space goes back to the disk in parts, and an older file gets that by 
   CHECK(give_all_back(*store) == 1);
   REQUIRE(store->shrink().has_value());
   CHECK(store->free_space()->can_be_given_back);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("the size of a part follows the time of the log writer", "[server][retention]") {
+  using std::chrono::microseconds;
+  const FoldSize size{256, 32};
+  CHECK(next_fold_size(size, microseconds(25'000)).edits_max == 128);
+  CHECK(next_fold_size(size, microseconds(25'000)).chunks_max == 16);
+  CHECK(next_fold_size(size, microseconds(15'000)).edits_max == 256);
+  CHECK(next_fold_size(size, microseconds(1'000)).edits_max == 320);
+  CHECK(next_fold_size({16, 4}, microseconds(90'000)).edits_max == 16);
+  CHECK(next_fold_size({4'096, 128}, microseconds(1)).chunks_max == 128);
+}
+
+// Prints the sizes and the times of the parts. Takes a minute.
+TEST_CASE("the size of a world after a retention of 30 of 365 days", "[.][retention-size]") {
+  constexpr Sequence kAll = 200'000, kBatch = 4'096;
+  constexpr TimeUs kYear = 365 * 24 * kRetentionHour;
+  const TempFolder folder;
+  WorldMeta meta = sample_meta();
+  meta.generator.name = "flat";
+  meta.chunk_edge = 32;
+  const auto store = *create_world(folder.path(), meta);
+  REQUIRE(store->raise_epoch().has_value());
+  std::vector<PlayerRow> players;
+  for (AuthorId author = 1; author <= 8; ++author) players.push_back(sample_player(author));
+  BuilderSession session(1);
+  std::vector<EditRecord> batch;
+  for (Sequence seq = 1; seq <= kAll; ++seq) {
+    batch.push_back(session.next());
+    batch.back().time_us = kRetentionStart + static_cast<TimeUs>(seq) * (kYear / kAll);
+    if (batch.size() < kBatch && seq < kAll) continue;
+    REQUIRE(store->append(std::exchange(players, {}), std::exchange(batch, {})).has_value());
+  }
+  const auto generator = retention_generator(*store);
+  KeyframeMaker keyframes(*store, *generator, {});
+  REQUIRE(keyframes
+              .make_due([&](const KeyframeMaker::Chunks& chunks,
+                            const std::optional<Keyframe>& keyframe) {
+                return store->save_keyframe(chunks, keyframe);
+              })
+              .has_value());
+  std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots;
+  for (const auto& [key, chunk] : moment_chunks(*store, kAll))
+    snapshots.emplace_back(key, std::make_shared<const Chunk>(chunk));
+  REQUIRE(store->save_snapshots(snapshots, kAll).has_value());
+  const auto file_bytes = [&] {
+    REQUIRE(store->complete_file().has_value());
+    return std::filesystem::file_size(folder / "world.sqlite");
+  };
+  const auto before = file_bytes();
+  const auto plan = plan_retention(*store, 30, std::numeric_limits<TimeUs>::max());
+  REQUIRE(plan.has_value());
+  FoldMaker maker(*store, *generator);
+  FoldSize size;
+  std::vector<std::int64_t> parts_us;
+  for (;;) {
+    const auto fold = maker.next(plan->cut.version.seq, size);
+    REQUIRE(fold.has_value());
+    if (!fold->has_value()) break;
+    const auto begun = std::chrono::steady_clock::now();
+    REQUIRE(store->fold_log(**fold).has_value());
+    const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(
+        std::chrono::steady_clock::now() - begun);
+    parts_us.push_back(taken.count());
+    size = next_fold_size(size, taken);
+  }
+  for (auto more = store->give_back_space(256); *more;) more = store->give_back_space(256);
+  const auto after = file_bytes();
+  std::sort(parts_us.begin(), parts_us.end());
+  WARN("bytes before " << before << ", after " << after << ", percent "
+                       << 100.0 * static_cast<double>(after) / static_cast<double>(before)
+                       << "; chunks " << snapshots.size() << "; planned bytes "
+                       << plan->volume.log_bytes + plan->volume.keyframe_bytes << " less "
+                       << plan->volume.base_bytes_max << "; parts " << parts_us.size()
+                       << ", median us " << parts_us[parts_us.size() / 2] << ", longest us "
+                       << parts_us.back());
   CHECK(store->check().has_value());
 }
 
