@@ -7,6 +7,7 @@
 #include "common/core/utc_text.hpp"
 #include "server/admin/amount_text.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/rollback/count_text.hpp"
 #include "server/store/removed_history.hpp"
 
 namespace runstone {
@@ -19,10 +20,6 @@ constexpr std::array<const char*, 12> kCauseWords = {
     "of players",     "of the console", "of rollbacks", "of undos",
     "of redos",       "of imports",     "of rights",    "with new materials",
     "of the library", "of the clock",   "of textures",  "gaps"};
-
-std::string counted(std::uint64_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 
 std::string causes_text(const LogVolume& volume) {
   std::string text;
@@ -59,7 +56,7 @@ void show_retention(const CommandCall& call) {
       });
 }
 
-Result<std::optional<std::uint64_t>, std::string> parse_preview(WordReader& reader) {
+Result<std::optional<std::uint64_t>, std::string> parse_retention_preview(WordReader& reader) {
   std::optional<std::uint64_t> days;
   if (!reader.at_end()) {
     days = static_cast<std::uint64_t>(reader.number("retention preview", 0, kRetentionDaysMax));
@@ -89,7 +86,7 @@ void preview_retention(const CommandCall& call, const std::optional<std::uint64_
             [call](const RetentionPlan& plan) { call.answer(retention_plan_text(plan)); });
 }
 
-Result<std::uint64_t, std::string> parse_run(WordReader& reader) {
+Result<std::uint64_t, std::string> parse_retention_run(WordReader& reader) {
   const auto days =
       static_cast<std::uint64_t>(reader.number("retention run", 0, kRetentionDaysMax));
   reader.expect_end("retention run DAYS");
@@ -109,7 +106,7 @@ void run_retention(const CommandCall& call, std::uint64_t days) {
       return call.refuse(
           "retention run: one is under way already, or the log cannot be written (`retention` says "
           "more)");
-    call.answer("removing " + counted(plan.volume.edits, "edit", "edits") + " up to " +
+    call.answer("removing " + counted(plan.volume.edits, "edit") + " up to " +
                 removed_place(plan.cut) +
                 " in small parts, while people play: `retention` says how far");
   });
@@ -130,11 +127,11 @@ constexpr std::array<CommandRow, 4> kRetentionRows = {{
      alone<show_retention>()},
     {"retention preview", kLookAtRetention,
      "retention preview [DAYS]  what would go if the edits of so many days stayed",
-     parsed_by<parse_preview, preview_retention>()},
+     parsed_by<parse_retention_preview, preview_retention>()},
     {.words = "retention run",
      .rule = kLocal,
      .help = "retention run DAYS        remove older edits from the log, while people play",
-     .functions = parsed_by<parse_run, run_retention>(),
+     .functions = parsed_by<parse_retention_run, run_retention>(),
      .may_be_confirmed = true},
     {"retention stop", kLocal, "retention stop            end what retention run has begun",
      alone<stop_retention>()},
@@ -146,7 +143,7 @@ std::span<const CommandRow> retention_commands() { return kRetentionRows; }
 
 std::string retention_plan_text(const RetentionPlan& plan) {
   const LogVolume& volume = plan.volume;
-  const std::string days = counted(plan.days, "day", "days");
+  const std::string days = counted(plan.days, "day");
   const std::string reach =
       plan.head.version.seq == 0 ? "the first edit" : removed_place(plan.head);
   if (plan.newest.version.seq == 0) return "nothing would go: the log has no edit";
@@ -154,12 +151,11 @@ std::string retention_plan_text(const RetentionPlan& plan) {
     return "nothing would go: no edit of the log is older than " + days +
            " before the newest one (" + utc_text(plan.newest.time_us) +
            ")\nreach       time travel, rollback and undo go back to " + reach;
-  std::string text = "goes        " + counted(volume.edits, "edit", "edits") + " up to " +
+  std::string text = "goes        " + counted(volume.edits, "edit") + " up to " +
                      removed_place(plan.cut) + causes_text(volume) + "; " +
-                     counted(volume.keyframes, "keyframe", "keyframes");
-  text += "\nstays       " +
-          counted(plan.newest.version.seq - plan.cut.version.seq, "edit", "edits") + " of " + days +
-          " before the newest one (" + utc_text(plan.newest.time_us) +
+                     counted(volume.keyframes, "keyframe");
+  text += "\nstays       " + counted(plan.newest.version.seq - plan.cut.version.seq, "edit") +
+          " of " + days + " before the newest one (" + utc_text(plan.newest.time_us) +
           "); the ground as it is; rights, materials, shapes, textures, clock, names, watermarks "
           "and the library";
   text += "\nbytes       about " + byte_count_text(volume.log_bytes) + " of edits and " +

@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
+#include "server/rollback/count_text.hpp"
 #include "server/store/removed_history.hpp"
 
 namespace runstone {
-namespace {
-
-std::string counted_edits(std::uint64_t edits) {
-  return std::to_string(edits) + (edits == 1 ? " edit" : " edits");
-}
-
-}  // namespace
-
 std::string retention_state_text(const RetentionState& state) {
   std::string text = state.days == 0
                          ? "retention: off, every edit stays in the log (retention_days = 0)"
@@ -23,11 +16,11 @@ std::string retention_state_text(const RetentionState& state) {
             "; time travel, rollback and undo reach back to there";
   if (state.is_running) {
     text +=
-        "\nunder way: " + counted_edits(state.cut - std::min(state.cut, state.head.version.seq)) +
+        "\nunder way: " + counted(state.cut - std::min(state.cut, state.head.version.seq), "edit") +
         " to go, up to seq=" + std::to_string(state.cut);
     if (!state.waits_for.empty()) text += "; it waits: " + state.waits_for;
   }
-  text += "\nsince the start: " + counted_edits(state.edits) + " removed in " +
+  text += "\nsince the start: " + counted(state.edits, "edit") + " removed in " +
           std::to_string(state.parts) + (state.parts == 1 ? " part" : " parts");
   if (state.parts > 0)
     text += ", of " + std::to_string(state.writer_us / state.parts / 1000) +

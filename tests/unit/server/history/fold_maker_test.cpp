@@ -28,7 +28,6 @@ struct KeptRows {
   MaterialTable materials;
   std::vector<std::tuple<AuthorId, ClientInstance, ClientSequence, TimeUs>> marks;
   std::vector<std::pair<AuthorId, std::string>> players;
-  bool operator==(const KeptRows&) const = default;
 };
 
 KeptRows kept_rows(Store& store) {
@@ -45,6 +44,13 @@ KeptRows kept_rows(Store& store) {
   for (const PlayerRow& player : *store.players())
     kept.players.emplace_back(player.author, player.name);
   return kept;
+}
+
+void check_same_rows(const KeptRows& found, const KeptRows& expected) {
+  CHECK(found.rights == expected.rights);
+  CHECK((found.materials == expected.materials));
+  CHECK((found.marks == expected.marks));
+  CHECK((found.players == expected.players));
 }
 
 /// Checks the world, and that its present and the moments from the head on are as they were.
@@ -105,7 +111,7 @@ TEST_CASE("a log that is folded in parts leaves the present and every later mome
     }
     CHECK(head == cut);
     check_folded(*store, before);
-    CHECK(kept_rows(*store) == kept);
+    check_same_rows(kept_rows(*store), kept);
     store.reset();
     store = opened_retention_world(folder.path(), StoreAccess::read_write);
     check_folded(*store, before);
