@@ -39,9 +39,11 @@ KeptRows kept_rows(Store& store) {
               })
               .has_value());
   kept.materials = *store.materials();
-  for (const HighWater& mark : *store.high_waters())
+  const auto marks = *store.high_waters();
+  for (const HighWater& mark : marks)
     kept.marks.emplace_back(mark.author, mark.instance, mark.resolved, mark.last_us);
-  for (const PlayerRow& player : *store.players())
+  const auto players = *store.players();
+  for (const PlayerRow& player : players)
     kept.players.emplace_back(player.author, player.name);
   return kept;
 }
