@@ -12,6 +12,7 @@
 #include "server/admin/password_commands.hpp"
 #include "server/admin/player_commands.hpp"
 #include "server/admin/report_commands.hpp"
+#include "server/admin/retention_commands.hpp"
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
@@ -123,7 +124,7 @@ const std::vector<CommandRow>& command_table() {
          {player_commands(), ground_commands(), moderation_commands(), activity_commands(),
           report_commands(), rollback_commands(), role_commands(), password_commands(),
           clock_commands(), library_commands(), shape_commands(), texture_commands(),
-          time_commands(), host_commands()})
+          time_commands(), retention_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

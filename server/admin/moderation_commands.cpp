@@ -40,6 +40,16 @@ std::string backups_text(const OperatorActions& actions) {
   return actions.backup_state ? "\n" + backup_state_text(actions.backup_state()) : "";
 }
 
+/// Returns the lines of a retention that waits or fails, or an empty text.
+std::string retention_text(const OperatorActions& actions) {
+  if (!actions.retention_state) return "";
+  const RetentionState state = actions.retention_state();
+  std::string text;
+  if (!state.doubt.empty()) text += "\nRETENTION WAITS: " + state.doubt;
+  if (!state.failure.empty()) text += "\nRETENTION FAILS: " + state.failure;
+  return text;
+}
+
 /// Returns a line with the border of the world, or an empty text if it has none.
 std::string border_line(const WorldServer& world) {
   return world.border() ? "\nborder: " + border_text(*world.border()) : "";
@@ -57,18 +67,18 @@ void show_status(const CommandCall& call) {
   const ServerHealth health = ask_health ? ask_health() : ServerHealth{};
   const WorldCounters& c = world.counters();
   const WorldMemory memory = world.order().memory();
-  call.answer(version_line(health) + "\nsessions " + std::to_string(world.session_count()) +
-              ", edits " + std::to_string(world.order().head()) + " (on disk " +
-              std::to_string(world.order().durable()) + "), since the start " +
-              std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
-              " rejected\nchunks in memory " +
-              std::to_string(world.order().chunks().resident_count()) + " (" +
-              byte_count_text(memory.voxels) + "), waiting edits " +
-              byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
-              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
-              std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
-              border_line(world) + read_only_text(world.order()) +
-              damage_text(call.services.actions) + backups_text(call.services.actions));
+  call.answer(
+      version_line(health) + "\nsessions " + std::to_string(world.session_count()) + ", edits " +
+      std::to_string(world.order().head()) + " (on disk " +
+      std::to_string(world.order().durable()) + "), since the start " +
+      std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+      " rejected\nchunks in memory " + std::to_string(world.order().chunks().resident_count()) +
+      " (" + byte_count_text(memory.voxels) + "), waiting edits " +
+      byte_count_text(memory.stacked + memory.queued) + ", damaged chunks " +
+      std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+      std::to_string(call.services.rollback.running()) + "\n" + disk_line(health) +
+      border_line(world) + read_only_text(world.order()) + damage_text(call.services.actions) +
+      backups_text(call.services.actions) + retention_text(call.services.actions));
 }
 
 void show_status_of_follower(const FollowerCall& call) {

@@ -9,6 +9,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
 #include "server/admin/backup_state.hpp"
+#include "server/admin/retention_state.hpp"
 #include "server/admin/server_health.hpp"
 #include "server/chat/chat_query.hpp"
 #include "server/rollback/command_reply.hpp"
@@ -42,6 +43,12 @@ struct OperatorActions {
   std::function<BackupState()> backup_state;
   /// Returns how the server is, for `status`. The runtime sets it.
   std::function<ServerHealth()> health;
+  /// The retention of the log. The runtime sets these. `run_retention` begins a run that keeps the edits
+  /// of so many days, and returns false if one is under way or the log cannot be written;
+  /// `stop_retention` ends the run under way, and returns false if there is none.
+  std::function<RetentionState()> retention_state;
+  std::function<bool(std::uint64_t days)> run_retention;
+  std::function<bool()> stop_retention;
   /// Writes a line into the log of the server. The runtime sets it.
   std::function<void(const std::string&)> log_line;
   /// Answers with lines of the log of the chat. The runtime sets it.

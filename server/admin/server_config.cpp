@@ -14,6 +14,7 @@
 #include "server/admin/edit_budget_text.hpp"
 #include "server/admin/operators.hpp"
 #include "server/admin/reserved_names.hpp"
+#include "server/history/retention_plan.hpp"
 #include "server/settings/address_check.hpp"
 #include "server/settings/settings_table.hpp"
 #include "server/store/place_rule.hpp"
@@ -356,6 +357,8 @@ const SettingsTable<ServerConfig>& settings() {
                  "days for which the log of the chat keeps lines, 0: nothing is written to disk"),
           form("message_of_the_day", "text for players who join, at most 512 bytes; empty: none",
                message_of_the_day_field()),
+          number("retention_days", &C::retention_days, 0, kRetentionDaysMax,
+                 "days before the newest edit for which edits stay in the log, 0: for ever"),
           form("backup_every",
                "time between two backups that the server makes by itself, such as 6h; 0: none",
                backup_every_field()),

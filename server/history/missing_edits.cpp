@@ -1,5 +1,6 @@
 #include "server/history/missing_edits.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -54,6 +55,10 @@ StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const Chu
     return serves;
   });
   if (!read) return failure(read.error());
+  // Retention may have removed edits behind `from` since is_in_log().
+  const auto range = store.log_range();
+  if (!range) return failure(range.error());
+  serves = serves && range->first <= std::max<Sequence>(from.seq, 1);
   if (serves && !update.edits.empty() && update.edits.back().seq == last) out = std::move(update);
   return out;
 }

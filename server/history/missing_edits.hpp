@@ -20,8 +20,8 @@ inline constexpr std::size_t kUpdateLooksMax = 4'096;
 /// answer:
 ///   - the edits take more than `bytes_max` bytes;
 ///   - there are more edits than the two bounds above allow;
-///   - `from` is no version of this chunk in this log: its epoch was lost, or it was compacted
-///     away.
+///   - `from` is no version of this chunk in this log: its epoch was lost, or retention has removed
+///     it.
 StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const ChunkKey& key,
                                                      const Chunk& chunk, const Version& from,
                                                      std::size_t bytes_max);

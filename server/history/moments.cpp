@@ -64,6 +64,14 @@ StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
 }
 
 StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {
+  auto made = made_chunk(at, key);
+  // Retention may have moved the beginning of the log past what the moment has read.
+  if (made || made.error().kind != StoreError::Kind::bad_request) return made;
+  forget(at);
+  return made_chunk(at, key);
+}
+
+StoreResult<Chunk> Moments::made_chunk(Sequence at, const ChunkKey& key) {
   const auto moment = find(at);
   if (!moment) return failure(moment.error());
   const std::lock_guard lock((*moment)->mutex);

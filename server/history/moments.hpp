@@ -45,6 +45,7 @@ class Moments {
   /// Returns the moment. Opens it if it is not open.
   StoreResult<std::shared_ptr<Kept>> find(Sequence at);
   void forget(Sequence at);
+  StoreResult<Chunk> made_chunk(Sequence at, const ChunkKey& key);
 
   const std::string place_;
   const Generator& generator_;

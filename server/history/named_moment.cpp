@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/core/utc_text.hpp"
+#include "server/store/removed_history.hpp"
 
 namespace runstone {
 
@@ -41,8 +42,10 @@ StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment) 
   };
   if (const auto* sequence = std::get_if<Sequence>(&moment)) {
     if (*sequence + 1 < range->first) {
+      const auto head = reader.log_head();
+      if (!head) return failure(head.error());
       return refuse("begins at seq=" + std::to_string(range->first) +
-                    ": seq=" + std::to_string(*sequence) + " was compacted away");
+                    ": seq=" + std::to_string(*sequence) + " was " + removed_up_to(*head));
     }
     if (*sequence <= range->last.version.seq) return *sequence;
     return refuse("ends at seq=" + std::to_string(range->last.version.seq) +

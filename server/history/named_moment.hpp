@@ -27,7 +27,7 @@ using NamedMoment = std::variant<Sequence, AtTime, BeforeEnd>;
 Result<NamedMoment, std::string> parse_moment(std::string_view text);
 
 /// Returns the sequence of a moment in this world: that of the last edit that is not later, or 0
-/// before the first edit. Fails (bad_request) if the moment was compacted away, or if it is a
+/// before the first edit. Fails (bad_request) if the moment was removed, or if it is a
 /// sequence after the end of the log.
 StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment);
 

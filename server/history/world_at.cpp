@@ -14,7 +14,8 @@ namespace runstone {
 
 namespace {
 
-constexpr const char* kCompacted = "was compacted while it was read; open the moment again";
+constexpr const char* kRemoved =
+    "was shortened by retention while it was read; open the moment again";
 
 }  // namespace
 
@@ -68,7 +69,7 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress,
     outcome = failure(StoreError{StoreError::Kind::cancelled, reader_->file(), "edit_log",
                                  "was not read to the end"});
   } else if (edits_.size() - known != at - from) {
-    outcome = refuse(kCompacted);
+    outcome = refuse(kRemoved);
   }
   if (!outcome) {
     edits_.resize(known);
@@ -120,12 +121,12 @@ StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited,
                                      WorldReader& reader) const {
   if (edited == nullptr || !edited->stored) {
     auto chunk = base_chunk_in_any_order(reader, *generator_, key);
-    if (chunk && chunk->version != Version{}) return refuse(kCompacted);
+    if (chunk && chunk->version != Version{}) return refuse(kRemoved);
     return chunk;
   }
   auto stored = reader.load_stored(*edited->stored);
   if (!stored) return failure(stored.error());
-  if (!stored->has_value()) return refuse(kCompacted);
+  if (!stored->has_value()) return refuse(kRemoved);
   return **std::move(stored);
 }
 

@@ -4,7 +4,8 @@
 // Memory: every edit read, once; for each chunk ever edited its stored form without voxels, and the
 // list of its edits. No chunk is kept.
 // Threads: one, which alone uses the reader, except for voxels(). A server may write the world
-// meanwhile. A compaction beyond the moment is detected and reported.
+// meanwhile. Retention that moves the beginning of the log past what the object needs is detected and
+// reported.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -28,7 +29,7 @@ class WorldAt {
   static constexpr Sequence kProgressEdits = 1024;
 
   /// Opens the world after edit `at`; 0 means before the first edit. Reader and generator must
-  /// outlive the object. Fails (bad_request) if `at` was compacted away or lies after the end of
+  /// outlive the object. Fails (bad_request) if `at` was removed or lies after the end of
   /// the log. The error names the beginning or the end.
   static StoreResult<WorldAt> open(WorldReader& reader, const Generator& generator, Sequence at,
                                    const Progress& progress = {});

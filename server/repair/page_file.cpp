@@ -21,6 +21,11 @@ constexpr std::uint32_t kLogMagic = 0x377f0682;  // the last bit: checksums are 
 constexpr std::uint32_t kFormatRepaired = 4;     // the first format that can be repaired
 constexpr std::array<std::size_t, 4> kPageBytesTried = {2'048, 4'096, 1'024, 8'192};
 
+// An entry of a page of back references: its kind, and the number of a page.
+constexpr std::size_t kPointerBytes = 5;
+constexpr std::uint8_t kPointerKindMax = 5;
+constexpr std::uint64_t kLockByte = std::uint64_t{1} << 30;
+
 /// The running checksum of the write-ahead log.
 class LogChecksum {
  public:
@@ -217,6 +222,20 @@ std::optional<Bytes> PageFile::record_of(const PageCell& cell, Age age) {
                   part->begin() + 4 + static_cast<std::ptrdiff_t>(bytes));
   }
   return record;
+}
+
+bool PageFile::is_pointer_map(std::uint32_t number, ByteView page) const {
+  if (number < 2 || page.size() < kPointerBytes) return false;
+  // Each of them stands before the pages that it describes. SQLite never uses the page of the locks.
+  const auto group = static_cast<std::uint32_t>(page_bytes_ / kPointerBytes + 1);
+  const auto lock_page = static_cast<std::uint32_t>(kLockByte / page_bytes_ + 1);
+  std::uint32_t map = (number - 2) / group * group + 2;
+  if (map == lock_page) ++map;
+  if (map != number || page[0] == 0) return false;
+  for (std::size_t at = 0; at + kPointerBytes <= page.size(); at += kPointerBytes) {
+    if (page[at] > kPointerKindMax) return false;
+  }
+  return true;
 }
 
 void PageFile::read_free_pages() {

@@ -2,7 +2,8 @@
 // without the SQLite library. SQLite stops reading the write-ahead log at the first damaged frame;
 // the frames behind it are read here too, as *torn* ones: each row in them has a checksum of its
 // own.
-// Source: "The Database Header", "The Freelist" and "The Write-Ahead Log" in
+// Source: "The Database Header", "The Freelist", "Pointer Map or Ptrmap Pages" and "The Write-Ahead
+// Log" in
 // https://sqlite.org/fileformat2.html
 // Threads: one thread at a time.
 #pragma once
@@ -43,6 +44,9 @@ class PageFile {
   /// Returns the whole record of a cell, with its overflow pages. Returns nullopt if they end
   /// early.
   std::optional<Bytes> record_of(const PageCell& cell, Age age);
+  /// Returns true for a page of back references, which has no rows. Files that can give space back in
+  /// parts have such pages. It looks at the page alone, because the header may be damaged.
+  bool is_pointer_map(std::uint32_t number, ByteView page) const;
   /// Returns true for each page that SQLite does not use. Element 0 is not a page.
   const std::vector<bool>& free_pages() const { return is_free_; }
 

@@ -25,6 +25,7 @@ class Scan {
       : pages_(pages), proof_(proof), events_(events) {}
 
   StoreResult<void> page(std::uint32_t number, const Bytes& bytes, RowOrigin origin) {
+    if (pages_.is_pointer_map(number, bytes)) return {};
     const auto found = cells_of(bytes, PageFile::header_bytes(number), pages_.page_bytes());
     if (!found) {
       const bool is_blank = std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0; });
@@ -95,6 +96,7 @@ StoreResult<void> scan_index_pages(
     PageFile& pages, const std::function<StoreResult<void>(const std::vector<IndexEntry>&)>& each) {
   for (std::uint32_t number = 1; number <= pages.pages(); ++number) {
     const auto bytes = pages.page(number);
+    if (bytes && pages.is_pointer_map(number, *bytes)) continue;
     const auto found =
         bytes ? cells_of(*bytes, PageFile::header_bytes(number), pages.page_bytes()) : std::nullopt;
     if (!found || pages.free_pages()[number]) continue;

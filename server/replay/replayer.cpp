@@ -6,6 +6,7 @@
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/history/base_chunk.hpp"
+#include "server/store/removed_history.hpp"
 
 namespace runstone {
 
@@ -123,7 +124,9 @@ StoreResult<void> Replayer::compare_rest() {
   }
   for (const auto& [key, rows] : listed_) {
     for (const auto& [version, expected] : rows) {
-      if (key.lod != 0 || version.seq > report_.seq) {
+      // What retention has removed cannot be compared: the log begins with a later version.
+      const bool is_removed = head_ > 0 && version.seq <= head_ && chunks_.contains(key);
+      if (key.lod != 0 || version.seq > report_.seq || is_removed) {
         ++report_.not_compared;
         continue;
       }
@@ -151,14 +154,17 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   if (!range) return failure(range.error());
   report_.seq = std::min(at, range->last.version.seq);
   if (report_.seq + 1 < range->first) {
+    const auto head = store_.log_head();
+    if (!head) return failure(head.error());
     return failure(StoreError{StoreError::Kind::bad_request, store_.file(), "edit_log",
                               "begins at seq=" + std::to_string(range->first) +
-                                  ": what lies before is in the base and cannot be taken apart"});
+                                  ": what lies before is in the base, " + removed_up_to(*head)});
   }
   if (const auto expected = expect_snapshots(); !expected) return failure(expected.error());
 
-  if (range->first > 1) {
-    // Chunks whose edits were all compacted into the base belong to the world too.
+  head_ = range->first - 1;
+  if (head_ > 0) {
+    // Chunks whose edits were all moved into the base belong to the world too.
     const auto base = store_.base_chunks();
     if (!base) return failure(base.error());
     for (const StoredChunk& stored : *base) {

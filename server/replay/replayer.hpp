@@ -93,6 +93,7 @@ class Replayer {
   std::map<ChunkKey, ReplayedChunk> chunks_;
   std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
   std::map<ChunkKey, Version> snapshots_;
+  Sequence head_ = 0;  // up to which edits were moved from the log into the base
   ReplayScratch scratch_;
   ReplayReport report_;
 };

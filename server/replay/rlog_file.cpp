@@ -116,7 +116,7 @@ Result<RlogExport, std::string> write_rlog(WorldReader& store, FileWriter& out,
   if (!read) return failure(read.error().message());
   if (!added) return bad(added.error());
   if (done.edits != done.last + 1 - done.first)
-    return failure(store.file() + ": was compacted meanwhile");
+    return failure(store.file() + ": was shortened by retention meanwhile: export it again");
   if (const auto finished = writer.finish(); !finished) return bad(finished.error());
   done.bytes = writer.bytes();
   return done;

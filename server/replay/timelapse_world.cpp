@@ -153,7 +153,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   if (!read) return read;
   if (read_to != seq) {
     return failure(StoreError{StoreError::Kind::bad_request, reader_->file(), "edit_log",
-                              "was compacted while it was read; begin again"});
+                              "was shortened by retention while it was read; begin again"});
   }
   at_ = seq;
   for (const ChunkKey& key : touched) {

@@ -14,6 +14,7 @@
 #include "server/replay/replayer.hpp"
 #include "server/replay/subcommand.hpp"
 #include "server/replay/tile_check.hpp"
+#include "server/store/removed_history.hpp"
 
 namespace runstone {
 namespace {
@@ -45,13 +46,15 @@ std::string result_text(std::uint64_t differences, bool has_loss) {
   return differences == 0 ? "equal" : count;
 }
 
-void print_table(std::ostream& out, const Store& store, const VerifyReport& whole, double seconds) {
+void print_table(std::ostream& out, const Store& store, const VerifyReport& whole,
+                 const LogEnd& head, double seconds) {
   const ReplayReport& report = whole.replay;
   const WorldMeta& meta = store.meta();
   out << std::fixed;
   print_world(out, store);
   row(out, "base") << meta.generator.name << " version " << meta.generator.version << ", seed "
                    << meta.generator.seed << '\n';
+  if (head.version.seq > 0) row(out, "history") << removed_up_to(head) << '\n';
   row(out, "edits") << report.edits << ", up to sequence " << report.seq << '\n';
   row(out, "chunks") << report.digests.size() << " edited\n";
   row(out, "voxels") << report.voxels_changed << " changed\n";
@@ -114,10 +117,23 @@ Result<void, std::string> expect_all(Replayer& replayer, Store& store,
   }
   if (options.quick) return {};
   if (const auto checked = store.check(); !checked) return failure(checked.error().message());
-  const auto keyframes = store.keyframe_chunks();
-  if (!keyframes) return failure(keyframes.error().message());
-  replayer.expect_keyframes(*keyframes);
   return {};
+}
+
+/// Replays the log at one moment of the world: retention of a running server moves edits from the log
+/// into the base.
+StoreResult<ReplayReport> replay_at_one_moment(Replayer& replayer, Store& store,
+                                               const VerifyOptions& options, Sequence end) {
+  if (const auto begun = store.begin_reads(); !begun) return failure(begun.error());
+  if (!options.quick) {
+    const auto keyframes = store.keyframe_chunks();
+    if (!keyframes) return failure(keyframes.error());
+    replayer.expect_keyframes(*keyframes);
+  }
+  ProgressLine line("edits replayed", options.common.progress);
+  auto replayed = replayer.run(end, [&](Sequence done, Sequence last) { line.show(done, last); });
+  if (const auto ended = store.end_reads(); !ended && replayed) return failure(ended.error());
+  return replayed;
 }
 
 }  // namespace
@@ -141,10 +157,7 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
     return failure(expected.error());
   }
   const auto start = std::chrono::steady_clock::now();
-  StoreResult<ReplayReport> replayed = [&] {
-    ProgressLine line("edits replayed", options.common.progress);
-    return replayer.run(world->end, [&](Sequence done, Sequence last) { line.show(done, last); });
-  }();
+  StoreResult<ReplayReport> replayed = replay_at_one_moment(replayer, store, options, world->end);
   const double seconds = seconds_since(start);
   if (!replayed) return failure(replayed.error().message());
   VerifyReport report{*std::move(replayed), std::nullopt};
@@ -156,7 +169,9 @@ Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& 
     if (!tiles) return failure(tiles.error().message());
     report.tiles = *std::move(tiles);
   }
-  print_table(out, store, report, seconds);
+  const auto head = store.log_head();
+  if (!head) return failure(head.error().message());
+  print_table(out, store, report, *head, seconds);
   const auto written = write_report(options.common.json, report_json(store, report, seconds));
   if (!written) return failure(written.error());
   return report.differences() == 0 && !store.loss() ? kReplayEqual : kReplayDifferent;

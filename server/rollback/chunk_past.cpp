@@ -21,7 +21,7 @@ StoreResult<std::optional<Chunk>> stored_form(WorldReader& reader, const ChunkKe
   if (base && base->has_value() && (*base)->version.seq > at) {
     return failure(StoreError{
         StoreError::Kind::bad_request, reader.file(), "base chunk=" + text_of(key),
-        "the log before sequence " + std::to_string((*base)->version.seq) + " was compacted"});
+        "its edits were removed by retention up to seq=" + std::to_string((*base)->version.seq)});
   }
   return base;
 }
@@ -39,8 +39,10 @@ StoreResult<Chunk> replayed_to(Chunk stored, const ChunkKey& key, std::int32_t e
   return std::move(replayed.chunk());
 }
 
-StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
-                              Sequence at, ReplayScratch& scratch) {
+namespace {
+
+StoreResult<Chunk> past_at_one_moment(WorldReader& reader, const Generator& generator,
+                                      const ChunkKey& key, Sequence at, ReplayScratch& scratch) {
   auto stored = stored_form(reader, key, at);
   if (!stored) return failure(stored.error());
   const std::uint16_t edge = reader.meta().chunk_edge;
@@ -48,6 +50,17 @@ StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, c
   chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
   ChunkLogs logs(reader);
   return replayed_to(std::move(chunk), key, edge, logs, at, scratch);
+}
+
+}  // namespace
+
+StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
+                              Sequence at, ReplayScratch& scratch) {
+  // Stored form and log are read at one moment: retention moves edits from one to the other.
+  if (const auto begun = reader.begin_reads(); !begun) return failure(begun.error());
+  auto past = past_at_one_moment(reader, generator, key, at, scratch);
+  if (const auto ended = reader.end_reads(); !ended && past) return failure(ended.error());
+  return past;
 }
 
 }  // namespace runstone

@@ -49,6 +49,7 @@ void RestorePlanner::in_batches(
     std::vector<StoreResult<StoredForm>> stored;
     stored.reserve(batch.size());
     std::vector<ChunkLogs::Need> needs;
+    const auto head = reader_.log_head();
     {
       ReadSpan reads(reader_);
       for (const Item& item : batch) {
@@ -67,6 +68,9 @@ void RestorePlanner::in_batches(
       }
     }
     const auto read = logs_.read_ahead(needs, end);
+    // Retention may have moved edits from the log into the base meanwhile.
+    const auto head_now = reader_.log_head();
+    if (head && head_now && *head != *head_now) continue;
     if (read && !*read && batch.size() > 1) {
       batch_max = batch.size() / 2;
       continue;

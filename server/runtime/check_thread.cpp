@@ -119,7 +119,10 @@ bool CheckThread::check_log(Store& reader) {
       // The record behind the last sound one is damaged.
       if (next != first) skipped = 1;
       if (read && next == first) {
-        next = range->last.version.seq + 1;  // the log has become shorter
+        // Retention has moved the beginning of the log, or a repair has made it shorter.
+        const auto now = reader.log_range();
+        if (!now) return only_error(now);
+        next = now->first > first ? now->first : range->last.version.seq + 1;
       } else if (!read) {
         next += skipped;
         skipped = std::min(2 * skipped, kSkippedMax);

@@ -51,12 +51,13 @@ std::string sending_part(const WorldServer& world, const NetCounters& net,
   return fmt::format(
       "queue_full={} digest_checks_sent={} digest_mismatches={} commits_sent={} "
       "commit_enqueue_us={} commit_sends={} commit_send_ms={} bytes_in={} bytes_out={} "
-      "chunk_bytes_out={} edit_bytes_out={} memory_bytes={} log_lines_dropped={} row_faults={}{}",
+      "chunk_bytes_out={} edit_bytes_out={} memory_bytes={} log_lines_dropped={} row_faults={} {}{}",
       w.queue_full, w.digest_checks_sent, w.digest_mismatches, w.commits_sent,
       runtime.commit_enqueue_us, net.commit_sends.load(), net.commit_send_ns.load() / 1'000'000,
       net.bytes_in.load(), net.bytes_out.load(), net.chunk_bytes_out.load(),
       net.edit_bytes_out.load(), runtime.memory_bytes, runtime.log_lines_dropped,
-      runtime.row_faults, runtime.backups ? " " + backup_counters(*runtime.backups) : "");
+      runtime.row_faults, retention_counters(runtime.retention),
+      runtime.backups ? " " + backup_counters(*runtime.backups) : "");
 }
 
 std::string waits_part(const char* name, const WaitHistogram& waits) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/admin/backup_state.hpp"
+#include "server/admin/retention_state.hpp"
 #include "server/admin/server_health.hpp"
 #include "server/net/net_session.hpp"
 #include "server/store/log_writer.hpp"
@@ -21,6 +22,7 @@ struct RuntimeCounters {
   std::uint64_t log_lines_dropped = 0;
   std::uint64_t row_faults = 0;                       // that the check of the rows has found
   std::optional<BackupState> backups = std::nullopt;  // that the server makes by itself
+  RetentionState retention = {};
   ServerHealth health = {};
   WaitHistogram durable_waits = {};  // from ordering an edit until it was on disk
 };

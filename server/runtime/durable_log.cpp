@@ -5,6 +5,7 @@
 
 #include "common/os/free_space.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/read_clocks.hpp"
 
 namespace runstone {
 namespace {
@@ -40,6 +41,8 @@ DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string&
   if (options.keyframes) {
     keyframes_ = std::make_unique<KeyframeThread>(place, generator, *options.keyframes, *writer_);
   }
+  retention_ = std::make_unique<RetentionThread>(place, generator, *writer_, options.retention_days,
+                                                 [] { return read_clocks().utc_us; });
   if (options.checks_rows) check_ = std::make_unique<CheckThread>(place);
   store_.watch_ownership([this](const StoreError& error) { on_failed(error); });
 }
@@ -90,6 +93,7 @@ void DurableLog::stop() {
   store_.watch_ownership({});
   if (check_) check_->stop();
   if (keyframes_) keyframes_->stop();
+  retention_->stop();
   writer_->stop();
 }
 

@@ -1,5 +1,5 @@
-// DurableLog: the log writer, the keyframe thread and the check of the rows of a running world. It
-// reports their progress on the world strand. Several group commits become one report if the strand
+// DurableLog: the log writer, the keyframe thread, the retention and the check of the rows of a running
+// world. It reports their progress on the world strand. Several group commits become one report if the strand
 // has not run in between.
 // Threads: writer() as LogWriter says; the events run on the world strand.
 #pragma once
@@ -13,6 +13,7 @@
 #include "common/generate/generator.hpp"
 #include "server/runtime/check_thread.hpp"
 #include "server/runtime/keyframe_thread.hpp"
+#include "server/runtime/retention_thread.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/log_writer.hpp"
 #include "server/store/world_sink.hpp"
@@ -27,6 +28,7 @@ class DurableLog {
     Sequence durable = 0;                     // what the log holds already
     std::optional<KeyframePolicy> keyframes;  // nullopt: no keyframes are made
     bool checks_rows = false;                 // all rows are read and verified meanwhile
+    std::uint64_t retention_days = 0;         // for which edits stay, 0: for ever
   };
   struct Events {
     /// Reports that every edit up to the sequence is on disk.
@@ -71,7 +73,9 @@ class DurableLog {
   std::optional<std::uint64_t> log_bytes() const {
     return check_ ? check_->log_bytes() : std::nullopt;
   }
-  /// Stops making keyframes and checking, writes what is queued, and ends the threads. On a full
+  RetentionThread& retention() { return *retention_; }
+  const RetentionThread& retention() const { return *retention_; }
+  /// Stops making keyframes, checking and removing edits, writes what is queued, and ends the threads. On a full
   /// disk the edits behind durable() are lost. It may be called again.
   void stop();
 
@@ -88,8 +92,9 @@ class DurableLog {
   std::atomic<bool> has_failed_{false};
   std::atomic<bool> is_full_{false};
   std::unique_ptr<LogWriter> writer_;
-  std::unique_ptr<KeyframeThread> keyframes_;  // null without a policy; uses writer_
-  std::unique_ptr<CheckThread> check_;         // null without checks_rows
+  std::unique_ptr<KeyframeThread> keyframes_;   // null without a policy; uses writer_
+  std::unique_ptr<CheckThread> check_;          // null without checks_rows
+  std::unique_ptr<RetentionThread> retention_;  // uses writer_
 };
 
 }  // namespace runstone

@@ -1,6 +1,7 @@
 #include "server/runtime/keyframe_thread.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,6 +16,11 @@ namespace {
 // The thread reads the log in portions of so many edits, or up to the place where a keyframe may be
 // due. So a commit of one edit does not wake it.
 constexpr Sequence kPortionEdits = 1024;
+
+// How often a keyframe is begun again because retention moved the beginning of the log meanwhile, and
+// the rest before it. Only a keyframe without another one before it is concerned.
+constexpr int kOutrunsMax = 100;
+constexpr std::chrono::seconds kOutrunRest{1};
 
 /// The result of a slice that the writer saves. It is shared with the writer, which may answer
 /// after the wait has ended.
@@ -64,6 +70,11 @@ bool KeyframeThread::wait_for(Sequence seq) {
   return !stopping_;
 }
 
+bool KeyframeThread::rest(std::chrono::nanoseconds time) {
+  std::unique_lock lock(mutex_);
+  return !work_.wait_for(lock, time, [this] { return stopping_; });
+}
+
 StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
                                        const std::optional<Keyframe>& keyframe) {
   auto answer = std::make_shared<Answer>();
@@ -89,6 +100,7 @@ void KeyframeThread::run() {
   auto reader = open_world(place_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
   KeyframeMaker maker(**reader, generator_, policy_);
+  int outruns = 0;
   for (;;) {
     const std::uint64_t before = maker.made();
     const auto made = maker.make_due(
@@ -99,7 +111,14 @@ void KeyframeThread::run() {
           std::this_thread::yield();  // lets the threads that serve players run first
           return !is_stopping();
         });
+    // Retention has moved the beginning of the log past what the keyframe needed.
+    const bool is_outrun = !made && made.error().kind == StoreError::Kind::bad_request;
+    if (is_outrun && ++outruns <= kOutrunsMax) {
+      if (!rest(kOutrunRest)) return;
+      continue;
+    }
     if (!made) return failed(made.error());
+    outruns = 0;
     if (maker.made() > before)
       logger("store").info("keyframes made={} seq={}", maker.made() - before, maker.read_to());
     if (!wait_for(std::min(maker.read_to() + kPortionEdits, maker.look_again_at()))) return;

@@ -3,6 +3,7 @@
 // logged and ends this thread, not the server: keyframes contain nothing that the log does not, and
 // the next start tries again.
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -37,6 +38,8 @@ class KeyframeThread {
   /// Waits until the log is on disk up to `seq`. Returns false if the thread must end.
   bool wait_for(Sequence seq);
   bool is_stopping() const;
+  /// Rests. Returns false if the thread must end.
+  bool rest(std::chrono::nanoseconds time);
   StoreResult<void> save(KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe);
 
   const std::string place_;

@@ -154,6 +154,11 @@ void ServerCore::make_log(Store& store, Sequence durable) {
       return doubt_of_clock_behind(evidence);
     };
     actions.row_faults = [this] { return log_ ? log_->row_faults() : 0; };
+    actions.retention_state = [this] { return retention_state(); };
+    actions.run_retention = [this](std::uint64_t days) {
+      return log_ != nullptr && !log_->has_failed() && log_->retention().run_now(days);
+    };
+    actions.stop_retention = [this] { return log_ != nullptr && log_->retention().cancel(); };
     actions.health = [this] { return health(); };
     actions.log_line = [](const std::string& line) { logger("app").info("{}", line); };
     // The log writer is another one after each takeover.
@@ -179,6 +184,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
   options.durable = durable;
   if (config_.keyframe_edits > 0) options.keyframes = KeyframePolicy{config_.keyframe_edits};
   options.checks_rows = true;
+  options.retention_days = running_.retention_days;
   // A task that on_space posts from the constructor runs later.
   log_ = std::make_unique<DurableLog>(strand_, store, world_place(config_), generator_, options,
                                       log_events());
@@ -319,6 +325,7 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   if (commands_) commands_->tick(now);
+  if (log_ && commands_) log_->retention().hold(!commands_->is_idle());
   if (const auto successor = world_->cluster().take_better_owner()) hand_over_to(*successor);
 }
 
@@ -357,9 +364,17 @@ std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
   RuntimeCounters runtime{sender_.encoded_count(), environment_.enqueue_ns() / 1'000, memory_bytes,
                           dropped_log_lines(), log_ ? log_->row_faults() : 0};
   if (actions_.backup_state) runtime.backups = actions_.backup_state();
+  runtime.retention = retention_state();
   runtime.health = health();
   runtime.durable_waits = health_.durable_waits();
   return counters_line(*world_, listener_->counters(), log_counters_now(), runtime);
+}
+
+RetentionState ServerCore::retention_state() const {
+  if (log_) return log_->retention().state();
+  RetentionState state;
+  state.days = running_.retention_days;
+  return state;
 }
 
 LogWriter::Counters ServerCore::log_counters_now() const {
@@ -426,6 +441,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     start_logging(running_.log_level, running_.log_format);
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
+    if (log_) log_->retention().set_days(running_.retention_days);
     logger("app").info("reload: {}", reloaded.text());
     reply(CommandAnswer::last(reloaded.text()));
   });

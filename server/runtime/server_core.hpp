@@ -176,6 +176,7 @@ class ServerCore final : public NetEvents {
   std::optional<bool> finish_stop();
   std::string all_counters(std::uint64_t memory_bytes) const;
   ServerHealth health() const { return health_.health(log_ ? log_->log_bytes() : std::nullopt); }
+  RetentionState retention_state() const;
   /// Returns the answer to the command `status` at a server that follows.
   std::string status_of_follower() const;
   /// Logs what happened since the last call, if anything did.

@@ -60,6 +60,7 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
           "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"),
       prepare("INSERT INTO keyframe(seq, epoch, time_us, chunks, digest0, digest1, checksum) "
               "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
+      prepare("SELECT count(*) FROM keyframe WHERE seq <= ?1"),
       prepare("DELETE FROM keyframe_chunk WHERE seq <= ?1"),
       prepare("DELETE FROM keyframe WHERE seq <= ?1")};
   if (!prepared) return failed(prepared.error());
@@ -160,12 +161,19 @@ StoreResult<void> KeyframeTable::save(const Keyframe& keyframe) {
                           .run());
 }
 
-StoreResult<void> KeyframeTable::remove(Sequence last) {
+StoreResult<std::uint64_t> KeyframeTable::remove(Sequence last) {
+  std::uint64_t count = 0;
+  {
+    const sql::ResetAtEnd reset_at_end(s_.count);
+    const auto counted = s_.count.bind(1, static_cast<std::int64_t>(last)).step();
+    if (!counted) return failed(counted.error());
+    count = static_cast<std::uint64_t>(s_.count.integer(0));
+  }
   for (sql::Statement* statement : {&s_.remove_chunks, &s_.remove}) {
     if (auto removed = statement->bind(1, static_cast<std::int64_t>(last)).run(); !removed)
       return failed(removed.error());
   }
-  return {};
+  return count;
 }
 
 StoreResult<void> KeyframeTable::prove(const std::vector<Keyframe>& keyframes,

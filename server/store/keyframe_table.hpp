@@ -39,8 +39,9 @@ class KeyframeTable {
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge);
   /// Inserts a keyframe in the caller's transaction.
   StoreResult<void> save(const Keyframe& keyframe);
-  /// Deletes all rows and keyframes up to a sequence, in the caller's transaction.
-  StoreResult<void> remove(Sequence last);
+  /// Deletes all rows and keyframes up to a sequence, in the caller's transaction. Returns the number
+  /// of keyframes.
+  StoreResult<std::uint64_t> remove(Sequence last);
 
   /// Checks the proof of each keyframe against the chunks of the base (`start`) and `rows`.
   /// Requires that keyframes and rows ascend by sequence. Fails (corrupt) and names the first
@@ -51,7 +52,7 @@ class KeyframeTable {
 
  private:
   struct Statements {
-    sql::Statement all, rows, load, newest, save_chunk, save, remove_chunks, remove;
+    sql::Statement all, rows, load, newest, save_chunk, save, count, remove_chunks, remove;
   };
   KeyframeTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}

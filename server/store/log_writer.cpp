@@ -113,8 +113,26 @@ void LogWriter::remove_build_file(std::uint64_t content) {
   queue(std::move(job));
 }
 
+bool LogWriter::fold_log(LogFold fold, JobDone done) {
+  Job job;
+  job.done = std::move(done);
+  job.fold = std::move(fold);
+  return queue(std::move(job));
+}
+
+bool LogWriter::give_back_space(std::uint32_t pages, SpaceDone done) {
+  Job job;
+  job.pages_back = pages;
+  job.has_more_space = std::make_shared<bool>(false);
+  job.done = [done = std::move(done),
+              has_more = job.has_more_space](const StoreResult<void>& given) {
+    done(given ? StoreResult<bool>(*has_more) : failure(given.error()));
+  };
+  return queue(std::move(job));
+}
+
 std::size_t LogWriter::Job::size() const {
-  if (removes_file) return 1;
+  if (removes_file || fold || pages_back) return 1;
   return file ? (file->size() + kBuildPartBytes - 1) / kBuildPartBytes : chunks.size();
 }
 
@@ -142,6 +160,32 @@ void LogWriter::remove_file(Job& job) {
     --file_jobs_;
   }
   job.done(removed);
+}
+
+void LogWriter::write_fold(Job& job) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto folded = world_.fold_log(*job.fold);
+  const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::steady_clock::now() - begun);
+  job.written = job.size();
+  {
+    const std::lock_guard guard(mutex_);
+    const auto taken_us = static_cast<std::uint64_t>(taken.count());
+    counters_.fold_us += taken_us;
+    counters_.fold_us_max = std::max(counters_.fold_us_max, taken_us);
+    if (folded) {
+      ++counters_.folds;
+      counters_.folded_edits += job.fold->to.version.seq - job.fold->from;
+    }
+  }
+  job.done(folded);
+}
+
+void LogWriter::write_space(Job& job) {
+  const auto given = world_.give_back_space(*job.pages_back);
+  *job.has_more_space = given && *given;
+  job.written = job.size();
+  job.done(given ? StoreResult<void>() : failure(given.error()));
 }
 
 bool LogWriter::queue(Job job) {
@@ -286,6 +330,14 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
     } else {
       remove_file(job);
     }
+    return {};
+  }
+  if (job.fold) {
+    write_fold(job);
+    return {};
+  }
+  if (job.pages_back) {
+    write_space(job);
     return {};
   }
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);

@@ -86,6 +86,31 @@ StoreResult<void> SegmentTable::write(Open& open) {
                           .run());
 }
 
+StoreResult<std::uint64_t> SegmentTable::remove_up_to(Sequence last) {
+  // The R*Tree of SQLite would read all of its entries to find these. Its table of row ids has the
+  // first sequence as the key, and in `a0` the first column that is no coordinate.
+  const bool is_sqlite = database_->dialect() == sql::Dialect::sqlite;
+  auto ending = database_->prepare(
+      is_sqlite ? "SELECT rowid FROM log_box_rowid WHERE rowid <= ?1 AND a0 <= ?1"
+                : "SELECT first_seq FROM log_box WHERE first_seq <= ?1 AND last_seq <= ?1");
+  if (!ending) return failed(ending.error());
+  ending->bind(1, static_cast<std::int64_t>(last));
+  std::vector<std::int64_t> segments;
+  for (;;) {
+    const auto more = ending->step();
+    if (!more) return failed(more.error());
+    if (!*more) break;
+    segments.push_back(ending->integer(0));
+  }
+  auto remove = database_->prepare("DELETE FROM log_box WHERE first_seq = ?1");
+  if (!remove) return failed(remove.error());
+  for (const std::int64_t first : segments) {
+    if (auto removed = remove->bind(1, first).run(); !removed) return failed(removed.error());
+  }
+  std::erase_if(open_, [&](const auto& open) { return open.second.segment.last <= last; });
+  return segments.size();
+}
+
 StoreResult<std::vector<LogSegment>> SegmentTable::find(const LogQuery& query, Sequence first,
                                                         Sequence last) {
   const std::optional<VoxelBox>& box = query.box;

@@ -1,5 +1,5 @@
-// The part of SqlStore that shortens the log: the edits are applied to the base, then they are
-// deleted.
+// The part of SqlStore that shortens the log: edits are applied to the base, then they are deleted.
+// A compaction does it in one transaction, and retention in many small ones (fold_log()).
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -7,10 +7,20 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/index_hint.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
 
 namespace runstone {
+namespace {
+
+// What a row takes besides its descriptor or its voxels, with its indexes: docs/edit-log.md, "Size".
+constexpr std::uint64_t kRowBytes = 82;
+// The stretches of the log that log_volume() reads, and the edits of each.
+constexpr std::uint64_t kStretches = 32, kStretchEdits = 64;
+
+}  // namespace
 
 StoreResult<void> SqlStore::delete_up_to(const char* text, Sequence last) {
   auto statement = database().prepare(text);
@@ -56,6 +66,35 @@ StoreResult<void> SqlStore::complete_base(const StoredMoment& moment) {
   return meta_table_.put_fold(snapshots_.fold_key(), *snapshot_fold);
 }
 
+StoreResult<void> SqlStore::move_head(const LogEnd& head) {
+  const Sequence last = head.version.seq;
+  const auto counts = meta_table_.row_counts();  // before the head moves
+  if (!counts) return failed(counts.error());
+  if (auto put = meta_table_.put_log_head(head); !put) return put;
+  auto eras = meta_table_.log_eras();
+  if (!eras) return failed(eras.error());
+  if (std::erase_if(*eras, [&](const LogEra& era) { return era.first <= last; }) > 0) {
+    if (auto put = meta_table_.put_log_eras(*eras); !put) return put;
+  }
+  if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", last); !gone)
+    return gone;
+  const auto segments = segments_.remove_up_to(last);
+  if (!segments) return failed(segments.error());
+  const auto keyframes = keyframes_.remove(last);
+  if (!keyframes) return failed(keyframes.error());
+  if (!*counts) return {};
+  RowCounts counted = **counts;
+  counted.head = last;
+  counted.keyframes -= std::min(counted.keyframes, *keyframes);
+  counted.segments -= std::min(counted.segments, *segments);
+  if (counted.lost_edits > 0) {
+    const auto lost = count_lost_edits();
+    if (!lost) return failed(lost.error());
+    counted.lost_edits = std::min(counted.lost_edits, *lost);
+  }
+  return put_counts(counted);
+}
+
 StoreResult<void> SqlStore::compact(Sequence keyframe) {
   MaterialTable materials;
   auto compacted = write([&]() -> StoreResult<void> {
@@ -82,38 +121,154 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     auto kept_materials = keep_materials(keyframe);
     if (!kept_materials) return failed(kept_materials.error());
     materials = *std::move(kept_materials);
-    const auto counts = meta_table_.row_counts();  // before the head moves
-    if (!counts) return failed(counts.error());
-    if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
-    auto eras = meta_table_.log_eras();
-    if (!eras) return failed(eras.error());
-    if (std::erase_if(*eras, [&](const LogEra& era) { return era.first <= keyframe; }) > 0) {
-      if (auto put = meta_table_.put_log_eras(*eras); !put) return put;
-    }
-    if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
-        !gone)
-      return gone;
-    // A segment that continues after the head stays as it is. Its box may be larger than needed.
-    if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone)
-      return gone;
-    if (auto gone = keyframes_.remove(keyframe); !gone) return gone;
-    if (!*counts) return {};
-    const auto left = counted_rows();
-    if (!left) return failed(left.error());
-    RowCounts counted = **counts;
-    counted.head = keyframe;
-    counted.keyframes = left->keyframes;
-    counted.segments = left->segments;
-    if (counted.lost_edits > 0) {
-      const auto lost = count_lost_edits();
-      if (!lost) return failed(lost.error());
-      counted.lost_edits = std::min(counted.lost_edits, *lost);
-    }
-    return put_counts(counted);
+    return move_head(moment->at);
   });
   segments_.forget();
   if (compacted) meta_.materials = std::move(materials);
   return compacted;
+}
+
+StoreResult<bool> SqlStore::check_fold_chunks(const LogFold& fold, const LogRange& range) {
+  const auto misfit = [&](const std::string& what) {
+    return refuse("fold seq=" + std::to_string(fold.to.version.seq), what);
+  };
+  std::map<ChunkKey, Version> touched;
+  LogEnd last;
+  bool has_materials = false;
+  const auto read =
+      log_.read(range, fold.from + 1, fold.to.version.seq, [&](const EditRecord& record) {
+        for (const ChunkCoord& at : touched_chunks(record.edit, meta_.chunk_edge))
+          touched[{0, at}] = record.version;
+        has_materials = has_materials || changes_materials(record.edit);
+        last = {record.version, record.time_us};
+        return true;
+      });
+  if (!read) return failed(read.error());
+  if (last != fold.to) return misfit("is no edit of the log");
+  if (touched.size() != fold.chunks.size())
+    return misfit("has other chunks than those that its edits touch");
+  auto expected = touched.begin();
+  for (const auto& [key, chunk] : fold.chunks) {
+    if (expected->first != key || expected->second != chunk->version)
+      return misfit("chunk=" + text_of(key) + " is not as its edits left it");
+    ++expected;
+  }
+  return has_materials;
+}
+
+StoreResult<void> SqlStore::fold_log(const LogFold& fold) {
+  return write([&]() -> StoreResult<void> {
+    const auto head = meta_table_.log_head();
+    if (!head) return failed(head.error());
+    if (head->version.seq != fold.from) {
+      return refuse("fold seq=" + std::to_string(fold.to.version.seq),
+                    "begins at seq=" + std::to_string(fold.from) + ", and the head of the log is " +
+                        std::to_string(head->version.seq));
+    }
+    const auto range = log_.range(*head);
+    if (!range) return failed(range.error());
+    const Sequence last = fold.to.version.seq;
+    const auto checkpoint = meta_table_.counter("checkpoint");
+    if (!checkpoint) return failed(checkpoint.error());
+    // Up to the checkpoint each chunk has a snapshot, so none becomes older than its base.
+    if (last <= fold.from || last > range->last.version.seq || last > *checkpoint) {
+      return refuse(
+          "fold seq=" + std::to_string(last),
+          "lies outside the log, or behind the checkpoint seq=" + std::to_string(*checkpoint));
+    }
+    const auto has_materials = check_fold_chunks(fold, *range);
+    if (!has_materials) return failed(has_materials.error());
+    if (auto saved = save_chunks(base_, fold.chunks); !saved) return saved;
+    for (const Cause cause : {Cause::rights, Cause::textures}) {
+      if (auto kept = keep_records(cause, last); !kept) return kept;
+    }
+    // meta_ stays as it is, because other threads read it: materials() reads the row.
+    if (*has_materials) {
+      if (const auto kept = keep_materials(last); !kept) return failed(kept.error());
+    }
+    return move_head(fold.to);
+  });
+}
+
+StoreResult<bool> SqlStore::give_back_space(std::uint32_t pages) {
+  bool has_more = false;
+  auto given = write([&]() -> StoreResult<void> {
+    const auto more = backend_->give_back(pages);
+    if (!more) return failed(more.error());
+    has_more = *more;
+    return {};
+  });
+  if (!given) return failed(given.error());
+  return has_more;
+}
+
+StoreResult<LogVolume> SqlStore::log_volume(Sequence last) {
+  return at_one_moment<LogVolume>([&]() -> StoreResult<LogVolume> {
+    const auto head = meta_table_.log_head();
+    if (!head) return failed(head.error());
+    const auto range = log_.range(*head);
+    if (!range) return failed(range.error());
+    LogVolume volume;
+    const Sequence until = std::min(last, range->last.version.seq);
+    if (until < range->first) return volume;
+    volume.edits = until + 1 - range->first;
+    const auto sum_of =
+        [&](const std::string& text) -> StoreResult<std::pair<std::uint64_t, std::uint64_t>> {
+      auto row = database().prepare(text);
+      if (!row) return failed(row.error());
+      const sql::ResetAtEnd reset_at_end(*row);
+      const auto there = row->bind(1, static_cast<std::int64_t>(until)).step();
+      if (!there) return failed(there.error());
+      return std::pair(static_cast<std::uint64_t>(row->integer(0)),
+                       static_cast<std::uint64_t>(row->integer(1)));
+    };
+    // Some stretches of the log stand for all of it.
+    std::uint64_t looked_at = 0, descriptor_bytes = 0;
+    auto stretch = database().prepare(
+        "SELECT count(*), CAST(coalesce(sum(length(descriptor)), 0) AS BIGINT) FROM edit_log "
+        "WHERE log = 0 AND seq BETWEEN ?1 AND ?2");
+    if (!stretch) return failed(stretch.error());
+    for (std::uint64_t i = 0; i < kStretches; ++i) {
+      const Sequence first = range->first + volume.edits / kStretches * i;
+      const sql::ResetAtEnd reset_at_end(*stretch);
+      const auto there =
+          stretch->bind(1, static_cast<std::int64_t>(first))
+              .bind(2, static_cast<std::int64_t>(std::min(until, first + kStretchEdits - 1)))
+              .step();
+      if (!there) return failed(there.error());
+      looked_at += static_cast<std::uint64_t>(stretch->integer(0));
+      descriptor_bytes += static_cast<std::uint64_t>(stretch->integer(1));
+    }
+    volume.log_bytes =
+        volume.edits * (kRowBytes + descriptor_bytes / std::max<std::uint64_t>(looked_at, 1));
+    const auto chunks = sum_of(
+        "SELECT count(*), CAST(coalesce(sum(length(data)), 0) AS BIGINT) FROM keyframe_chunk "
+        "WHERE seq <= ?1");
+    if (!chunks) return failed(chunks.error());
+    volume.keyframe_bytes = chunks->first * kRowBytes + chunks->second;
+    const auto keyframes =
+        sum_of("SELECT count(*), CAST(0 AS BIGINT) FROM keyframe WHERE seq <= ?1");
+    if (!keyframes) return failed(keyframes.error());
+    volume.keyframes = keyframes->first;
+    const auto grown = sum_of(
+        "SELECT count(*), CAST(coalesce(sum(length(data)), 0) AS BIGINT) FROM snapshot AS here "
+        "WHERE seq <= ?1 AND NOT EXISTS (SELECT 1 FROM base WHERE base.lod = here.lod "
+        "AND base.x = here.x AND base.y = here.y AND base.z = here.z)");
+    if (!grown) return failed(grown.error());
+    volume.base_bytes_max = grown->first * kRowBytes + grown->second;
+    auto causes = database().prepare(
+        "SELECT cause, count(*) FROM edit_log" + indexed_by(database(), "edit_log_cause") +
+        " WHERE cause <> 0 AND seq <= ?1 GROUP BY cause ORDER BY cause");
+    if (!causes) return failed(causes.error());
+    causes->bind(1, static_cast<std::int64_t>(until));
+    for (;;) {
+      const auto more = causes->step();
+      if (!more) return failed(more.error());
+      if (!*more) return volume;
+      volume.causes.emplace_back(static_cast<Cause>(causes->integer(0)),
+                                 static_cast<std::uint64_t>(causes->integer(1)));
+    }
+  });
 }
 
 StoreResult<void> SqlStore::shrink() {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "server/store/removed_history.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/sql_store.hpp"
 
@@ -31,9 +32,8 @@ StoreResult<StoredMoment> SqlStore::stored_moment(Sequence at) {
     if (!head) return failed(head.error());
     if (at < head->version.seq) {
       return refuse("edit_log", "begins at seq=" + std::to_string(head->version.seq + 1) +
-                                    ": the world at seq=" + std::to_string(at) +
-                                    " was compacted away; the earliest left is that at seq=" +
-                                    std::to_string(head->version.seq));
+                                    ": the world at seq=" + std::to_string(at) + " was " +
+                                    removed_up_to(*head) + ", which is the earliest one left");
     }
     auto start = completed(*head);
     if (!start) return failed(start.error());
@@ -51,17 +51,27 @@ StoreResult<StoredMoment> SqlStore::stored_moment(Sequence at) {
 }
 
 StoreResult<std::optional<Chunk>> SqlStore::load_stored(const StoredChunk& chunk) {
-  auto loaded = chunk.is_base
-                    ? load_base(chunk.key)
-                    : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge, row_check_);
+  const auto matching = [&](StoreResult<std::optional<Chunk>> loaded) {
+    // Retention or a compaction may have replaced it.
+    if (loaded && loaded->has_value() && (*loaded)->version != chunk.version) loaded->reset();
+    return loaded;
+  };
+  auto loaded = matching(
+      chunk.is_base ? load_base(chunk.key)
+                    : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge, row_check_));
+  if (!loaded) return loaded;
+  bool is_base = chunk.is_base;
+  if (!loaded->has_value() && !is_base) {
+    // Retention deletes rows of keyframes and puts chunks of the same versions into the base.
+    loaded = matching(load_base(chunk.key));
+    is_base = true;
+  }
   if (!loaded || !loaded->has_value()) return loaded;
-  if ((*loaded)->version != chunk.version)
-    return std::optional<Chunk>();  // a compaction replaced it
   if ((*loaded)->digest == chunk.digest) return loaded;
-  return failure(StoreError{
-      StoreError::Kind::corrupt, file(),
-      std::string(chunk.is_base ? "base" : "keyframe_chunk") + " chunk=" + text_of(chunk.key),
-      "has another digest than its moment"});
+  return failure(
+      StoreError{StoreError::Kind::corrupt, file(),
+                 std::string(is_base ? "base" : "keyframe_chunk") + " chunk=" + text_of(chunk.key),
+                 "has another digest than its moment"});
 }
 
 StoreResult<std::optional<Chunk>> SqlStore::load_kept(const ChunkKey& key, Sequence at) {

@@ -9,6 +9,7 @@
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/log_search.hpp"
+#include "server/store/removed_history.hpp"
 #include "server/store/sql_result.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -120,17 +121,20 @@ StoreResult<LogRange> SqlStore::log_range() {
 }
 
 StoreResult<Sequence> SqlStore::checkpoint() {
-  const auto checkpoint = meta_table_.counter("checkpoint");
-  if (!checkpoint) return checkpoint;
-  const auto range = log_range();
-  if (!range) return failed(range.error());
-  const Sequence last = range->last.version.seq;
-  if (*checkpoint <= last && *checkpoint + 1 >= range->first) return checkpoint;
-  const std::string log = *checkpoint > last
-                              ? "ends at seq=" + std::to_string(last) + ", before"
-                              : "begins at seq=" + std::to_string(range->first) + ", behind";
-  return failure(StoreError{StoreError::Kind::corrupt, file(), "edit_log",
-                            log + " the checkpoint seq=" + std::to_string(*checkpoint)});
+  // A running server moves checkpoint and head.
+  return at_one_moment<Sequence>([&]() -> StoreResult<Sequence> {
+    const auto checkpoint = meta_table_.counter("checkpoint");
+    if (!checkpoint) return checkpoint;
+    const auto range = log_range();
+    if (!range) return failed(range.error());
+    const Sequence last = range->last.version.seq;
+    if (*checkpoint <= last && *checkpoint + 1 >= range->first) return checkpoint;
+    const std::string log = *checkpoint > last
+                                ? "ends at seq=" + std::to_string(last) + ", before"
+                                : "begins at seq=" + std::to_string(range->first) + ", behind";
+    return failure(StoreError{StoreError::Kind::corrupt, file(), "edit_log",
+                              log + " the checkpoint seq=" + std::to_string(*checkpoint)});
+  });
 }
 
 StoreResult<LogEnd> SqlStore::log_head() { return meta_table_.log_head(); }
@@ -362,9 +366,12 @@ StoreResult<std::vector<ChunkKey>> SqlStore::chunk_keys(ChunkRows rows,
 }
 
 StoreResult<void> SqlStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
-  const auto range = log_range();
-  if (!range) return failed(range.error());
-  return log_.read(*range, first, last, each);
+  // A running server may remove the beginning of the log between two statements.
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto range = log_range();
+    if (!range) return failed(range.error());
+    return log_.read(*range, first, last, each);
+  });
 }
 
 StoreResult<void> SqlStore::query_log(const LogQuery& query, const EachRecord& each) {
@@ -414,7 +421,7 @@ StoreResult<Sequence> SqlStore::sequence_at(TimeUs time_us) {
     if (*found) return **found;
     if (head->version.seq == 0) return range->first - 1;
     return refuse("edit_log", "begins at seq=" + std::to_string(range->first) +
-                                  ": what was before that time was compacted away");
+                                  ": what was before that time was " + removed_up_to(*head));
   });
 }
 

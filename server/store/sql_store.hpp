@@ -91,6 +91,8 @@ class SqlStore final : public Store {
   StoreResult<std::vector<LastPlace>> saved_places() override;
   StoreResult<std::optional<SavedClock>> saved_clock() override;
   AuthorId author_max() const override { return state_.author_max; }
+  StoreResult<LogVolume> log_volume(Sequence last) override;
+  StoreResult<FreeSpace> free_space() override { return backend_->free_space(); }
   StoreResult<void> begin_reads() override;
   StoreResult<void> end_reads() override;
   const std::optional<StoreError>& loss() const override { return loss_; }
@@ -116,6 +118,8 @@ class SqlStore final : public Store {
                                     ByteView data) override;
   StoreResult<void> remove_build_file(std::uint64_t content) override;
   StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) override;
+  StoreResult<void> fold_log(const LogFold& fold) override;
+  StoreResult<bool> give_back_space(std::uint32_t pages) override;
 
   // ImportSink
   StoreResult<void> save_base(ChunkSpan chunks) override;
@@ -195,6 +199,12 @@ class SqlStore final : public Store {
   /// Returns the base chunks that a compaction completed. Reads nothing if there was no compaction.
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
   StoreResult<void> complete_base(const StoredMoment& moment);
+  /// Checks that the chunks of a fold are those that its edits touch. Returns true if an edit changes
+  /// the material table.
+  StoreResult<bool> check_fold_chunks(const LogFold& fold, const LogRange& range);
+  /// Moves the head of the log, in the caller's transaction, and deletes what lies up to there:
+  /// edits, eras, segments and keyframes.
+  StoreResult<void> move_head(const LogEnd& head);
   /// Calls `each` for the records of this cause that compactions kept, then for those of the log.
   StoreResult<void> read_kept(Cause cause, const EachRecord& each);
   /// Copies the records of this cause that the log holds up to `last` to the table of those that

@@ -90,6 +90,11 @@ constexpr int kPageBytes = 2'048;
 // Pages of the WAL that start a checkpoint: 4 MiB of a world that was made with these pages.
 constexpr int kCheckpointPages = 2'048;
 
+// Free pages go back to the disk when give_back() asks for it, and not in the commits of edits. The
+// file has a page of back references for some hundred others.
+constexpr const char* kGiveSpaceBack = "PRAGMA auto_vacuum = INCREMENTAL";
+constexpr std::int64_t kIncremental = 2;  // PRAGMA auto_vacuum
+
 /// For WAL, EXTRA is the same as FULL. During creation it also syncs the folder after the rollback
 /// journal is deleted. The journal then cannot reappear after a crash and undo a world that is
 /// already in use.
@@ -124,7 +129,7 @@ StoreResult<void> write_new_world(sql::Database& database, const FillWorld& fill
   // are then in the main file itself, where check_marks() reads them. A crash before the commit
   // leaves a file without them.
   const std::string pages = "PRAGMA page_size = " + std::to_string(kPageBytes);
-  for (const char* set : {pages.c_str(), "PRAGMA journal_mode = DELETE"}) {
+  for (const char* set : {pages.c_str(), kGiveSpaceBack, "PRAGMA journal_mode = DELETE"}) {
     if (auto done = database.run(set); !done) return failed(done.error());
   }
   if (auto set = database.run(sync_pragma(sync)); !set) return failed(set.error());
@@ -211,8 +216,31 @@ StoreResult<void> SqliteBackend::check() {
 }
 
 StoreResult<void> SqliteBackend::shrink() {
+  // A world of an older program can give space back in parts from now on.
+  if (auto set = database_.run(kGiveSpaceBack); !set) return failed(set.error());
   if (auto done = database_.run("VACUUM"); !done) return failed(done.error());
   return store_result(database_.run("PRAGMA wal_checkpoint(TRUNCATE)"));
+}
+
+StoreResult<FreeSpace> SqliteBackend::free_space() {
+  const auto pages = database_.integer("PRAGMA freelist_count");
+  if (!pages) return failed(pages.error());
+  const auto page_bytes = database_.integer("PRAGMA page_size");
+  if (!page_bytes) return failed(page_bytes.error());
+  const auto mode = database_.integer("PRAGMA auto_vacuum");
+  if (!mode) return failed(mode.error());
+  return FreeSpace{static_cast<std::uint64_t>(*pages * *page_bytes), *mode == kIncremental};
+}
+
+StoreResult<bool> SqliteBackend::give_back(std::uint32_t pages) {
+  const auto free = free_space();
+  if (!free) return failed(free.error());
+  if (!free->can_be_given_back || free->bytes == 0) return false;
+  const std::string text = "PRAGMA incremental_vacuum(" + std::to_string(pages) + ")";
+  if (auto done = database_.run(text.c_str()); !done) return failed(done.error());
+  const auto left = database_.integer("PRAGMA freelist_count");
+  if (!left) return failed(left.error());
+  return *left > 0;
 }
 
 StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,

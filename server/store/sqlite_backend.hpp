@@ -52,6 +52,8 @@ class SqliteBackend final : public WorldBackend {
   void keep_on_close(bool keep) override;
   StoreResult<void> check() override;
   StoreResult<void> shrink() override;
+  StoreResult<FreeSpace> free_space() override;
+  StoreResult<bool> give_back(std::uint32_t pages) override;
 
  private:
   SqliteBackend(std::string folder, std::string vfs, FileLock lock, sql::Database database)

@@ -10,6 +10,7 @@
 #include "common/sql/database.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/store/durable_state.hpp"
+#include "server/store/log_fold.hpp"
 #include "server/store/store_error.hpp"
 
 namespace runstone {
@@ -62,6 +63,10 @@ class WorldBackend {
   virtual StoreResult<void> check() = 0;
   /// See Store::shrink().
   virtual StoreResult<void> shrink() = 0;
+  /// See WorldReader::free_space().
+  virtual StoreResult<FreeSpace> free_space() { return FreeSpace{}; }
+  /// See WorldSink::give_back_space(). Call it in the caller's transaction.
+  virtual StoreResult<bool> give_back(std::uint32_t /*pages*/) { return false; }
 };
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 #include "server/store/chunk_reader.hpp"
 #include "server/store/keyframe.hpp"
 #include "server/store/library_reader.hpp"
+#include "server/store/log_fold.hpp"
 #include "server/store/log_reader.hpp"
 #include "server/world/environment/player_rows.hpp"
 #include "server/world/environment/saved_state.hpp"
@@ -56,6 +57,11 @@ class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
   /// Returns false if the connection with the database was lost: every read fails from then on. A
   /// loss is known after the first read that fails.
   virtual bool is_usable() const { return true; }
+  /// Returns the volume of the edits up to `last`, and of the keyframes up to there. Cost: O(rows of
+  /// keyframes, snapshots and edits with a cause), and some reads of the log.
+  virtual StoreResult<LogVolume> log_volume(Sequence /*last*/) { return LogVolume{}; }
+  /// Returns the free space inside the file of the world.
+  virtual StoreResult<FreeSpace> free_space() { return FreeSpace{}; }
   /// Begins reads that see one moment of the world until end_reads(). Each of them costs less,
   /// because it takes and leaves no lock. Few at a time: meanwhile a server that runs the world
   /// cannot move its write-ahead log into the database. Do not nest them, and write nothing before

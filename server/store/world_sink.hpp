@@ -14,6 +14,7 @@
 #include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/store/keyframe.hpp"
+#include "server/store/log_fold.hpp"
 #include "server/store/store_error.hpp"
 #include "server/world/environment/player_rows.hpp"
 #include "server/world/environment/saved_state.hpp"
@@ -79,6 +80,19 @@ class WorldSink {
   /// they were made, are not those of the materials that are written (tile_rules_of()). Fails
   /// (bad_request) if a tile is ahead of the log.
   virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) = 0;
+  /// Moves the oldest edits of the log into the base: writes the chunks of a fold, moves the head of
+  /// the log, and deletes the edits, their indexes, and the keyframes up to there. Changes of rights,
+  /// textures and new materials stay, as for Store::compact(). Fails (bad_request) and writes nothing
+  /// if
+  ///   - the head of the log is not `from`;
+  ///   - `to` is no edit of the log, or lies behind the checkpoint;
+  ///   - the chunks are not those that the edits touch, or have other versions.
+  virtual StoreResult<void> fold_log(const LogFold& /*fold*/) {
+    return failure(StoreError{StoreError::Kind::bad_request, "", "", "cannot remove old edits"});
+  }
+  /// Returns up to so many pages of free space to the disk. Returns true if there is more of it.
+  /// Returns false at once if the database cannot give space back in parts.
+  virtual StoreResult<bool> give_back_space(std::uint32_t /*pages*/) { return false; }
 };
 
 }  // namespace runstone

@@ -167,8 +167,8 @@ TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][c
     CHECK(marks_of(*store) == marks);
     const auto generator = generator_of(*store);
     CHECK(WorldAt::open(*store, *generator, kCut - 1).error().what ==
-          "begins at seq=101: the world at seq=99 was compacted away; "
-          "the earliest left is that at seq=100");
+          "begins at seq=101: the world at seq=99 was removed by retention up to seq=100 "
+          "(2023-11-14T22:13:20Z), which is the earliest one left");
     CHECK(*sequence_of(*store, AtTime{kCutTime}) == kCut);
     REQUIRE(store->raise_epoch().has_value());
     SplitMix64 rng(2);

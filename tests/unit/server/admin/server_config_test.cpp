@@ -82,6 +82,16 @@ TEST_CASE("a file sets the fields that it names and no others", "[admin]") {
   CHECK(config == expected);
 }
 
+TEST_CASE("retention is set under a header of its own", "[admin][retention]") {
+  ServerConfig config;
+  CHECK(config.retention_days == 0);
+  REQUIRE(read_config_toml(config, "[retention]\ndays = 30\n", "server.toml").has_value());
+  CHECK(config.retention_days == 30);
+  for (const char* wrong : {"-1", "36501", "30 days", "2099-01-01"})
+    CHECK_FALSE(set_config(config, "retention_days", wrong).has_value());
+  CHECK(config.retention_days == 30);
+}
+
 TEST_CASE("backups are set under a header of their own", "[admin]") {
   ServerConfig config;
   REQUIRE(read_config_toml(config,

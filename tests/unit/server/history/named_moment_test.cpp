@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/core/utc_text.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/store/compact_by_hand.hpp"
 #include "tests/support/store/sample_world.hpp"
@@ -110,8 +111,10 @@ TEST_CASE("a moment means the last edit that is not later", "[history][moment]")
   compact_by_hand(folder / "world.sqlite", {records[19].version, records[19].time_us}, {});
   store = *open_world(folder.path(), StoreAccess::read_only);
   CHECK(meant(Sequence{20}) == "20");
-  CHECK(meant(Sequence{19}) == "begins at seq=21: seq=19 was compacted away");
+  const std::string removed =
+      "removed by retention up to seq=20 (" + utc_text(records[19].time_us) + ")";
+  CHECK(meant(Sequence{19}) == "begins at seq=21: seq=19 was " + removed);
   CHECK(meant(AtTime{records[19].time_us}) == "21");
   CHECK(meant(AtTime{records[19].time_us - 1}) ==
-        "begins at seq=21: what was before that time was compacted away");
+        "begins at seq=21: what was before that time was " + removed);
 }

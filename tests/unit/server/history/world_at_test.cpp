@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/core/utc_text.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/edits/edit_oracle.hpp"
 #include "tests/support/runs/dense_chunk.hpp"
@@ -180,8 +181,8 @@ TEST_CASE("a compacted log has the moments from its head on", "[history]") {
     compare(history, world, seq);
   }
   CHECK(refusal(WorldAt::open(*history.store, *history.generator, kHead - 1)) ==
-        "begins at seq=51: the world at seq=49 was compacted away; "
-        "the earliest left is that at seq=50");
+        "begins at seq=51: the world at seq=49 was removed by retention up to seq=50 (" +
+            utc_text(history.end(kHead).time_us) + "), which is the earliest one left");
 }
 
 TEST_CASE("a compaction beyond the moment is an error", "[history]") {
@@ -195,7 +196,8 @@ TEST_CASE("a compaction beyond the moment is an error", "[history]") {
   WorldAt reading = history.at(20);
   compact_by_hand(history.folder / "world.sqlite", history.end(50),
                   {{key, std::make_shared<const Chunk>(*later)}});
-  const std::string compacted = "was compacted while it was read; open the moment again";
+  const std::string compacted =
+      "was shortened by retention while it was read; open the moment again";
   const auto chunk = reading.chunk(key);
   REQUIRE_FALSE(chunk.has_value());
   CHECK(chunk.error().what == compacted);
