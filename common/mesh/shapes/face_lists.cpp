@@ -95,10 +95,10 @@ void FaceLists::finish(AxisOrder order, ShapeQuads& out) {
       count += static_cast<std::size_t>(lists.end[i] - first);
     }
     std::vector<Quad>& to = is_transparent ? out.transparent : out.opaque;
-    to.clear();
-    to.reserve(count);
+    to.resize(count);
+    Quad* next = to.data();
     for (std::size_t i = 0; i < kListCount; ++i)
-      to.insert(to.end(), lists.buffers[i].data(), lists.end[i]);
+      next = std::copy(lists.buffers[i].data(), lists.end[i], next);
   }
 }
 

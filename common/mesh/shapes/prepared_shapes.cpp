@@ -55,18 +55,16 @@ void PreparedShapes::begin(const ShapeTable& shapes, AxisOrder order) {
   memos_.fill({});
 }
 
-const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
-  std::uint16_t& index = index_[number];
-  if (index != 0) return prepared_[index - 1U];
+const PreparedShape& PreparedShapes::append(std::uint16_t number) {
   PreparedShape out;
   out.number = number;
   out.first = static_cast<std::uint32_t>(faces_.size());
   const std::span<const ShapeFace> faces = shapes_->shapes()[number - 1U].faces.faces();
-  const auto append = [&](std::size_t f) { faces_.push_back(prepare_face(faces[f], f, order_)); };
+  const auto add = [&](std::size_t f) { faces_.push_back(prepare_face(faces[f], f, order_)); };
   std::array<std::size_t, kDirectionCount + 1> first{};  // of each direction: the faces ascend
   for (std::size_t i = 0, f = 0; i < kDirectionCount; ++i) {
     for (; f < faces.size() && faces[f].direction == static_cast<Direction>(i); ++f) {
-      if (!is_on_border(faces[f])) append(f);
+      if (!is_on_border(faces[f])) add(f);
     }
     first[i + 1] = f;
   }
@@ -75,7 +73,7 @@ const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
     const auto d = static_cast<std::size_t>(sides_[side]);
     const std::size_t before = faces_.size();
     for (std::size_t f = first[d]; f < first[d + 1]; ++f) {
-      if (is_on_border(faces[f])) append(f);
+      if (is_on_border(faces[f])) add(f);
     }
     out.border[side] = static_cast<std::uint16_t>(faces_.size() - before);
   }
@@ -84,7 +82,7 @@ const PreparedShape& PreparedShapes::prepare(std::uint16_t number) {
   for (std::size_t f = out.first; f < faces_.size(); ++f) ++in_list[faces_[f].list];
   out.most_in_list = *std::max_element(in_list.begin(), in_list.end());
   prepared_.push_back(out);
-  index = static_cast<std::uint16_t>(prepared_.size());
+  index_[number] = static_cast<std::uint16_t>(prepared_.size());
   return prepared_.back();
 }
 

@@ -47,7 +47,10 @@ class PreparedShapes {
 
   /// Returns the shape of this number. It and the faces are valid until the next call.
   /// Cost: O(1); at the first call O(faces).
-  const PreparedShape& prepare(std::uint16_t number);
+  const PreparedShape& prepare(std::uint16_t number) {
+    const std::uint16_t index = index_[number];
+    return index != 0 ? prepared_[index - 1U] : append(number);
+  }
   const PreparedFace* faces(std::uint32_t first) const { return faces_.data() + first; }
   /// Returns the faces of a group that the side of a neighbour's shape fills: bit i stands for face
   /// `first` + i. Requires faces on the border in direction d of the shape `own`, at most
@@ -68,6 +71,7 @@ class PreparedShapes {
     std::uint64_t key = 0;  // 0: none, because numbers of shapes are above 0
     std::uint64_t covered = 0;
   };
+  const PreparedShape& append(std::uint16_t number);
   std::uint64_t cover(std::uint16_t own, std::uint16_t other, Direction d, std::uint32_t first,
                       std::uint32_t end);
 

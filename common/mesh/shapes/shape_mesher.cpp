@@ -46,7 +46,7 @@ class ShapeWalk {
             const ShapeTable& shapes, ShapeScratch::State& state)
       : runs_(runs),
         e_(ordered(chunk.extent, chunk.order)),
-        visibility_(visibility),
+        visibility_(visibility.data()),
         shapes_(shapes),
         state_(state),
         prepared_(state.by_order[static_cast<std::size_t>(chunk.order)]),
@@ -126,19 +126,30 @@ class ShapeWalk {
     const PreparedFace* face = prepared_.faces(shape.first);
     for (const PreparedFace* const end = face + shape.inner; face < end; ++face)
       *ends[face->list]++ = {base | face->bits};
-    for (std::size_t side = 0; side < shape.border.size(); ++side) {
-      const PreparedFace* const end = face + shape.border[side];
-      if (face == end) continue;
-      const Material other = material_beside(piece, side);
+    [&]<std::size_t... kSides>(std::index_sequence<kSides...>) {
+      (add_side<kSides>(piece, shape, base, ends, face), ...);
+    }(std::make_index_sequence<kDirectionCount>{});
+  }
+
+  /// Adds the faces on one side of a single voxel, from `face` on, which moves behind them.
+  template <std::size_t kSide>
+  void add_side(const Piece& piece, const PreparedShape& shape, std::uint64_t base,
+                Quad** const ends, const PreparedFace*& face) {
+    const PreparedFace* const end = face + shape.border[kSide];
+    if (face == end) return;
+    const Material other = material_beside(piece, kSide);
+    if (other != kEmpty) {
       const std::uint16_t number = shapes_.number(other);
       const bool is_opaque = visibility_[other] == Visibility::opaque;
       if (number == 0 ? is_opaque : is_opaque || other == piece.material) {
-        if (number != 0) add_uncovered(base, shape, number, side, face, end);
+        if (number != 0) add_uncovered(base, shape, number, kSide, face, end);
         face = end;
-        continue;
+        return;
       }
-      for (; face < end; ++face) *ends[face->list]++ = {base | face->bits};
     }
+    do {
+      *ends[face->list]++ = {base | face->bits};
+    } while (++face < end);
   }
 
   /// Adds the faces on the border of a single voxel that a shape beside it does not fill.
@@ -292,7 +303,7 @@ class ShapeWalk {
 
   Runs runs_;
   const OrderedExtent e_;
-  const VisibilityTable& visibility_;
+  const Visibility* const visibility_;  // by material
   const ShapeTable& shapes_;
   ShapeScratch::State& state_;
   PreparedShapes& prepared_;
