@@ -5,25 +5,14 @@
 
 #include "common/builds/paste_source.hpp"
 #include "common/core/assert.hpp"
+#include "common/patterns/column_slice.hpp"
 
 namespace runstone {
 namespace {
 
-/// The sides of the area of columns that is read at a time. Its borders are borders of sections.
-constexpr std::int32_t kSliceEdge = 128;
-static_assert(kSliceEdge % kPasteBlockEdge == 0 &&
-              std::int64_t{kSliceEdge + 2} * (kSliceEdge + 2) <= kGroundColumnsMax);
-/// The material of voxels around the box that are not known. The last id is that of a material only
-/// in a table that is full; a filter that names it may match there.
-constexpr Material kUnknownMaterial = UINT16_MAX;
-
-VoxelBox widened_in_world(const VoxelBox& box) {
-  const VoxelBox world{{-kWorldLimit, -kWorldLimit, -kWorldLimit},
-                       {kWorldLimit, kWorldLimit, kWorldLimit}};
-  return intersect({{box.min.x - 1, box.min.y - 1, box.min.z - 1},
-                    {box.max.x + 1, box.max.y + 1, box.max.z + 1}},
-                   world);
-}
+// The borders of slices are borders of sections.
+static_assert(kColumnSliceEdge % kPasteBlockEdge == 0 &&
+              std::int64_t{kColumnSliceEdge + 2} * (kColumnSliceEdge + 2) <= kGroundColumnsMax);
 
 /// Returns the number of chunks that a box meets.
 std::uint64_t chunks_in(const VoxelBox& box, std::int32_t edge) {
@@ -36,8 +25,8 @@ std::uint64_t chunks_in(const VoxelBox& box, std::int32_t edge) {
 /// Returns the number of the first section that lies in the next slice along an axis.
 std::uint32_t next_slice(const std::vector<std::int32_t>& cuts, std::int32_t first,
                          std::uint32_t section) {
-  const std::int32_t slice = floor_div(first + cuts[section], kSliceEdge);
-  while (section + 1 < cuts.size() && floor_div(first + cuts[section], kSliceEdge) == slice)
+  const std::int32_t slice = floor_div(first + cuts[section], kColumnSliceEdge);
+  while (section + 1 < cuts.size() && floor_div(first + cuts[section], kColumnSliceEdge) == slice)
     ++section;
   return section;
 }
@@ -46,21 +35,23 @@ std::uint32_t next_slice(const std::vector<std::int32_t>& cuts, std::int32_t fir
 
 Result<Replacing> Replacing::of(const VoxelBox& box, BoundMix mix,
                                 std::optional<BoundFilter> filter, std::int32_t chunk_edge,
-                                ChunkLookup chunks) {
+                                ChunkLookup chunks, VoxelRowsPtr only) {
   RUNSTONE_ASSERT(!box.empty() && chunk_edge > 0);
   auto builder = BuildBuilder::of(world_cuts(box, kPasteBlockEdge));
   if (!builder) return failure(builder.error());
   return Replacing(box, std::move(mix), std::move(filter), chunk_edge, std::move(chunks),
-                   *std::move(builder));
+                   std::move(only), *std::move(builder));
 }
 
 Replacing::Replacing(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
-                     std::int32_t chunk_edge, ChunkLookup chunks, BuildBuilder builder)
+                     std::int32_t chunk_edge, ChunkLookup chunks, VoxelRowsPtr only,
+                     BuildBuilder builder)
     : box_(box),
       mix_(std::move(mix)),
       filter_(std::move(filter)),
       chunk_edge_(chunk_edge),
       chunks_(std::move(chunks)),
+      only_(std::move(only)),
       builder_(std::move(builder)),
       run_units_(1 + (filter_ ? filter_->conditions() : 0)) {
   slice_high_.x = next_slice(builder_.cuts()[0], box_.min.x, 0);
@@ -72,15 +63,8 @@ Result<void> Replacing::read_slice(std::uint64_t& work) {
   const VoxelBox slice{
       {box_.min.x + cuts[0][slice_low_.x], box_.min.y, box_.min.z + cuts[2][slice_low_.z]},
       {box_.min.x + cuts[0][slice_high_.x], box_.max.y, box_.min.z + cuts[2][slice_high_.z]}};
-  const auto around = [&](ChunkCoord at) {
-    auto chunk = chunks_(at);
-    if (chunk != nullptr || !intersect(box_of(at, chunk_edge_), box_).empty()) return chunk;
-    return std::shared_ptr<const RunChunk>(std::make_shared<RunChunk>(
-        uniform_chunk(Extent::cube(static_cast<std::uint8_t>(chunk_edge_)), kUnknownMaterial)));
-  };
-  const bool is_wide = filter_ && filter_->reads_neighbours();
-  const VoxelBox read = is_wide ? widened_in_world(slice) : slice;
-  auto columns = GroundColumns::read(read, chunk_edge_, around);
+  const VoxelBox read = slice_box(slice, filter_ && filter_->reads_neighbours());
+  auto columns = read_column_slice(read, box_, chunk_edge_, chunks_);
   const auto edge = static_cast<std::uint64_t>(chunk_edge_);
   work -= std::min(work, chunks_in(read, chunk_edge_) * edge * edge);
   if (!columns) return failure(columns.error());
@@ -155,6 +139,7 @@ Result<void> Replacing::put_column(std::uint64_t& work) {
   const std::uint64_t decided_before = decided();
   HeightRanges ranges = {{box_.min.y, box_.max.y}};
   if (filter_) ranges = filter_->passing(*columns_, x_, z_, ranges.front());
+  if (only_) ranges = chosen(ranges, work);
   section_ = 0;
   const auto single = mix_.single();
   auto run = runs.begin();
@@ -174,6 +159,17 @@ Result<void> Replacing::put_column(std::uint64_t& work) {
   if (is_full_) return fail(ErrorCode::limit_exceeded, "too many materials in a build");
   work -= std::min(work, 1 + runs.size() * run_units_ + decided() - decided_before);
   return {};
+}
+
+HeightRanges Replacing::chosen(const HeightRanges& ranges, std::uint64_t& work) const {
+  HeightRanges out;
+  for (const HeightRange& range : ranges) {
+    work -= std::min(work, static_cast<std::uint64_t>(range.high - range.low));
+    for (std::int32_t y = range.low; y < range.high; ++y) {
+      if (only_->contains({x_, y, z_})) append_range(out, y, y + 1);
+    }
+  }
+  return out;
 }
 
 /// Sets the voxels of a part of a run whose materials change.

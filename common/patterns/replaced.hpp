@@ -13,6 +13,7 @@
 #include "common/runs/run_builder.hpp"
 #include "common/sculpt/column_changes.hpp"
 #include "common/sculpt/ground_columns.hpp"
+#include "common/sculpt/voxel_rows.hpp"
 
 namespace runstone {
 
@@ -21,16 +22,18 @@ namespace runstone {
 /// beyond the box as well; where they are not known, they match nothing. One thread.
 class Replacing {
  public:
-  /// Without a filter all voxels pass. Fails with limit_exceeded if a side of the box is longer than
-  /// kBuildSideMax. Requires a box that is not empty and lies in the world, and a valid chunk edge.
+  /// Without a filter all voxels pass, and without `only` they need not be in a set. Fails with
+  /// limit_exceeded if a side of the box is longer than kBuildSideMax. Requires a box that is not empty
+  /// and lies in the world, and a valid chunk edge.
   static Result<Replacing> of(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
-                              std::int32_t chunk_edge, ChunkLookup chunks);
+                              std::int32_t chunk_edge, ChunkLookup chunks,
+                              VoxelRowsPtr only = nullptr);
 
   /// Goes on until all voxels are done or `work` is used up, and takes what it used from `work`. The
   /// units are
   ///   - the square of the chunk edge for each chunk whose columns are read;
-  ///   - 1 for each column, for each run, for each condition of the filter in each run, and for each
-  ///     voxel that is decided by itself.
+  ///   - 1 for each column, for each run, for each condition of the filter in each run, for each voxel
+  ///     that is decided by itself, and for each one that is searched in `only`.
   /// Columns are read in slices of up to 128 x 128 columns; a slice may exceed `work` once. Returns
   /// true when all voxels are done. Fails with
   ///   - not_found if a chunk of the box is not known;
@@ -52,13 +55,15 @@ class Replacing {
   };
 
   Replacing(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
-            std::int32_t chunk_edge, ChunkLookup chunks, BuildBuilder builder);
+            std::int32_t chunk_edge, ChunkLookup chunks, VoxelRowsPtr only, BuildBuilder builder);
   Result<void> read_slice(std::uint64_t& work);
   void begin_stack();
   Result<void> put_stack();
   /// Moves to the next stack, in the next slice if this one is done.
   void next_stack();
   Result<void> put_column(std::uint64_t& work);
+  /// Returns the voxels of the present column that are in only_.
+  HeightRanges chosen(const HeightRanges& ranges, std::uint64_t& work) const;
   void mix_run(HeightRange range, Material old);
   void set(std::int32_t low, std::int32_t high, Material material);
   Extent extent_of(const Section& section) const;
@@ -68,6 +73,7 @@ class Replacing {
   std::optional<BoundFilter> filter_;
   std::int32_t chunk_edge_;
   ChunkLookup chunks_;
+  VoxelRowsPtr only_;  // null: all voxels
   BuildBuilder builder_;
   // The slice: sections [slice_low_, slice_high_) along x and z.
   SectionPos slice_low_, slice_high_;

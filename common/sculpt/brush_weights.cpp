@@ -43,6 +43,8 @@ std::vector<std::int32_t> brush_weights(const VoxelBox& box, std::span<const Vox
   std::vector<std::int32_t> out(static_cast<std::size_t>(width) *
                                 static_cast<std::size_t>(box.max.z - box.min.z));
   const double reach = radius + 0.5;
+  // A column has the weight of its nearest segment, so the weight is worked out once.
+  std::vector<double> nearest(out.size(), reach * reach);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const VoxelPos &a = places[i], &b = places[i + 1 < places.size() ? i + 1 : i];
     if (i > 0 && i + 1 == places.size()) break;  // the end of the last segment
@@ -51,17 +53,18 @@ std::vector<std::int32_t> brush_weights(const VoxelBox& box, std::span<const Vox
     const std::int32_t low_z = std::max(box.min.z, std::min(a.z, b.z) - radius);
     const std::int32_t high_z = std::min(box.max.z, std::max(a.z, b.z) + radius + 1);
     for (std::int32_t z = low_z; z < high_z; ++z) {
+      double* const row = nearest.data() +
+                          static_cast<std::size_t>(width) * static_cast<std::size_t>(z - box.min.z);
       for (std::int32_t x = low_x; x < high_x; ++x) {
-        const double square = square_distance(x, z, a, b);
-        if (square >= reach * reach) continue;
-        const auto weight = static_cast<std::int32_t>(
-            std::lround(share(std::sqrt(square) / reach, falloff) * kFullWeight));
-        auto& present =
-            out[static_cast<std::size_t>(x - box.min.x) +
-                static_cast<std::size_t>(width) * static_cast<std::size_t>(z - box.min.z)];
-        present = std::max(present, weight);
+        double& present = row[x - box.min.x];
+        present = std::min(present, square_distance(x, z, a, b));
       }
     }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (nearest[i] >= reach * reach) continue;
+    out[i] = static_cast<std::int32_t>(
+        std::lround(share(std::sqrt(nearest[i]) / reach, falloff) * kFullWeight));
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #include "common/sculpt/voxel_rows.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -103,6 +104,12 @@ std::uint64_t VoxelRows::count() const {
   return out;
 }
 
+std::uint64_t VoxelRows::stretches() const {
+  std::uint64_t out = 0;
+  for (const auto& [key, row] : rows_) out += row.size();
+  return out;
+}
+
 const std::vector<RowStretch>* VoxelRows::row(std::int32_t y, std::int32_t z) const {
   const auto found = rows_.find(key_of(y, z));
   return found == rows_.end() ? nullptr : &found->second;
@@ -117,6 +124,97 @@ std::vector<VoxelRows::Place> VoxelRows::places() const {
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+bool VoxelRows::contains(VoxelPos voxel) const {
+  const std::vector<RowStretch>* const found = row(voxel.y, voxel.z);
+  if (found == nullptr) return false;
+  const auto behind =
+      std::upper_bound(found->begin(), found->end(), voxel.x,
+                       [](std::int32_t x, const RowStretch& part) { return x < part.low; });
+  return behind != found->begin() && voxel.x < std::prev(behind)->high;
+}
+
+VoxelRows rows_of_boxes(std::span<const VoxelBox> boxes) {
+  VoxelRows out;
+  for (const VoxelBox& box : boxes) {
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) out.add(y, z, {box.min.x, box.max.x});
+    }
+  }
+  out.join();
+  return out;
+}
+
+VoxelRows united(const VoxelRows& a, const VoxelRows& b) {
+  VoxelRows out;
+  for (const VoxelRows* const rows : {&a, &b}) {
+    for (const auto& [z, y] : rows->places()) {
+      for (const RowStretch& part : *rows->row(y, z)) out.add(y, z, part);
+    }
+  }
+  out.join();
+  return out;
+}
+
+VoxelRows without(const VoxelRows& a, const VoxelRows& b) {
+  VoxelRows out;
+  std::vector<RowStretch> row, scratch;
+  for (const auto& [z, y] : a.places()) {
+    row = *a.row(y, z);
+    if (const auto* const taken = b.row(y, z)) subtract_stretches(*taken, row, scratch);
+    for (const RowStretch& part : row) out.add(y, z, part);
+  }
+  return out;
+}
+
+VoxelRows common(const VoxelRows& a, const VoxelRows& b) {
+  VoxelRows out;
+  for (const auto& [z, y] : a.places()) {
+    const auto* const other = b.row(y, z);
+    if (other == nullptr) continue;
+    for (const RowStretch& part : common_stretches(*a.row(y, z), *other)) out.add(y, z, part);
+  }
+  return out;
+}
+
+VoxelRows moved(const VoxelRows& rows, VoxelPos by) {
+  VoxelRows out;
+  for (const auto& [z, y] : rows.places()) {
+    for (const RowStretch& part : *rows.row(y, z))
+      out.add(y + by.y, z + by.z, {part.low + by.x, part.high + by.x});
+  }
+  return out;
+}
+
+namespace {
+
+/// Combines a set with itself moved by steps, until it was moved by `steps`. The result of `done`
+/// steps, moved by at most as many, gives that of up to twice as many.
+VoxelRows combined_along(const VoxelRows& rows, Direction direction, std::int32_t steps,
+                         VoxelRows (*combine)(const VoxelRows&, const VoxelRows&)) {
+  VoxelRows out = rows;
+  const std::int32_t sign = is_positive(direction) ? 1 : -1;
+  for (std::int32_t done = 0; done < steps && !out.empty();) {
+    const std::int32_t more = std::min(std::max(done, 1), steps - done);
+    VoxelPos by;
+    (axis_of(direction) == Axis::x   ? by.x
+     : axis_of(direction) == Axis::y ? by.y
+                                     : by.z) = sign * more;
+    out = combine(out, moved(out, by));
+    done += more;
+  }
+  return out;
+}
+
+}  // namespace
+
+VoxelRows grown_to(const VoxelRows& rows, Direction direction, std::int32_t steps) {
+  return combined_along(rows, direction, steps, united);
+}
+
+VoxelRows shrunk_from(const VoxelRows& rows, Direction direction, std::int32_t steps) {
+  return combined_along(rows, opposite(direction), steps, common);
 }
 
 VoxelRows grown(const VoxelRows& rows, std::int32_t steps) {

@@ -1,6 +1,8 @@
 // VoxelRows: a set of voxels anywhere in the world, as stretches of rows along x.
 #pragma once
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -29,10 +31,14 @@ class VoxelRows {
   const VoxelBox& box() const { return box_; }
   /// Returns the number of voxels. Cost: O(stretches).
   std::uint64_t count() const;
+  /// Returns the number of stretches. Cost: O(rows).
+  std::uint64_t stretches() const;
   /// Returns the stretches of a row, ascending and apart, or null if it has none.
   const std::vector<RowStretch>* row(std::int32_t y, std::int32_t z) const;
   /// Returns the places of the rows, ascending. Cost: O(rows log rows).
   std::vector<Place> places() const;
+  bool contains(VoxelPos voxel) const;
+  friend bool operator==(const VoxelRows& a, const VoxelRows& b) { return a.rows_ == b.rows_; }
 
  private:
   static std::uint64_t key_of(std::int32_t y, std::int32_t z) {
@@ -41,6 +47,23 @@ class VoxelRows {
   std::unordered_map<std::uint64_t, std::vector<RowStretch>> rows_;
   VoxelBox box_;
 };
+
+using VoxelRowsPtr = std::shared_ptr<const VoxelRows>;
+
+/// Returns the voxels of boxes. Cost: O(rows of the boxes log rows).
+VoxelRows rows_of_boxes(std::span<const VoxelBox> boxes);
+/// Returns the voxels that are in one of the sets, in the first but not in the second, and in both.
+/// Cost: O(stretches of both sets).
+VoxelRows united(const VoxelRows& a, const VoxelRows& b);
+VoxelRows without(const VoxelRows& a, const VoxelRows& b);
+VoxelRows common(const VoxelRows& a, const VoxelRows& b);
+/// Returns the set moved by an offset. Cost: O(stretches).
+VoxelRows moved(const VoxelRows& rows, VoxelPos by);
+/// Returns the set and the voxels up to `steps` behind it in a direction, and the voxels behind which
+/// all voxels up to `steps` in a direction are in the set. Requires 0 <= steps. Cost: O(stretches of
+/// the result * log steps).
+VoxelRows grown_to(const VoxelRows& rows, Direction direction, std::int32_t steps);
+VoxelRows shrunk_from(const VoxelRows& rows, Direction direction, std::int32_t steps);
 
 /// Returns the voxels at most `steps` away along each axis from a voxel of the set. Cost:
 /// O(stretches * steps).

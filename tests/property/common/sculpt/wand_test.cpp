@@ -169,6 +169,55 @@ TEST_CASE("voxels of boxes by material, and their build, equal the world", "[scu
   }
 }
 
+TEST_CASE("sets of voxels are united, cut, moved and grown as each voxel says",
+          "[sculpt][property]") {
+  SplitMix64 rng{Catch::rngSeed() + 5};
+  const auto random_rows = [&] {
+    VoxelRows out;
+    for (int i = rng.between(1, 60); i > 0; --i) {
+      const VoxelPos low = random_voxel(rng, -5, 5);
+      out.add(low.y, low.z, {low.x, low.x + rng.between(1, 6)});
+    }
+    out.join();
+    return out;
+  };
+  for (int round = 0; round < 30; ++round) {
+    CAPTURE(Catch::rngSeed(), round);
+    const VoxelRows a = random_rows(), b = random_rows();
+    const VoxelSet in_a = voxels_of(a), in_b = voxels_of(b);
+    const VoxelPos by = random_voxel(rng, -3, 3);
+    const auto direction = static_cast<Direction>(rng.below(kDirectionCount));
+    const std::int32_t steps = rng.between(0, 5);
+    VoxelSet any = in_a, first, both, there, longer, shorter;
+    any.insert(in_b.begin(), in_b.end());
+    const auto step_from = [&](VoxelPos v, std::int32_t i) {
+      const std::int32_t way = is_positive(direction) ? i : -i;
+      const Axis axis = axis_of(direction);
+      return VoxelPos{v.x + (axis == Axis::x ? way : 0), v.y + (axis == Axis::y ? way : 0),
+                      v.z + (axis == Axis::z ? way : 0)};
+    };
+    for (const VoxelPos v : in_a) {
+      (in_b.contains(v) ? both : first).insert(v);
+      there.insert({v.x + by.x, v.y + by.y, v.z + by.z});
+      bool all = true;
+      for (std::int32_t i = 0; i <= steps; ++i) {
+        longer.insert(step_from(v, i));
+        all = all && in_a.contains(step_from(v, i));
+      }
+      if (all) shorter.insert(v);
+      CHECK(a.contains(v));
+    }
+    for (const VoxelPos v : in_b) CHECK(a.contains(v) == in_a.contains(v));
+    CHECK(voxels_of(united(a, b)) == any);
+    CHECK(voxels_of(without(a, b)) == first);
+    CHECK(voxels_of(common(a, b)) == both);
+    CHECK(voxels_of(moved(a, by)) == there);
+    CHECK(voxels_of(grown_to(a, direction, steps)) == longer);
+    CHECK(voxels_of(shrunk_from(a, direction, steps)) == shorter);
+    CHECK(a.count() == in_a.size());
+  }
+}
+
 TEST_CASE("a set grows and shrinks as each voxel says", "[sculpt][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (int round = 0; round < 8; ++round) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/patterns/column_patterns.hpp"
+#include "common/patterns/passing_voxels.hpp"
 #include "common/patterns/pattern_parser.hpp"
 #include "common/runs/run_builder.hpp"
 #include "tests/support/runs/random_chunk.hpp"
@@ -167,15 +168,19 @@ TEST_CASE("a pattern changes the voxels that it changes in a dense grid, and no 
     REQUIRE((mix && filter));
     const auto placed = replaced(box, *mix, &*filter, kEdge, world);
     REQUIRE(placed);
+    const auto found = passing_voxels({&box, 1}, *filter, UINT64_MAX, kEdge, world);
+    REQUIRE(found);
     FilterOracle oracle(world, table, frame.seed);
-    std::size_t touched = 0;
+    std::size_t touched = 0, held = 0;
     for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
       for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
         for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
           const VoxelPos at{x, y, z};
           std::optional<Material> wanted;
-          if (oracle.holds(*pattern->filter, at)) {
-            ++passed;
+          const bool is_held = oracle.holds(*pattern->filter, at);
+          if (found->contains(at) != is_held) FAIL_CHECK("found " << x << " " << y << " " << z);
+          if (is_held) {
+            ++held;
             const Material material = mix->at(at);
             if (material != world.at(at)) wanted = material;
           }
@@ -185,10 +190,61 @@ TEST_CASE("a pattern changes the voxels that it changes in a dense grid, and no 
       }
     }
     CHECK((placed->build ? placed->build->touched() : 0) == touched);
+    CHECK(found->count() == held);
     changed += touched;
+    passed += held;
   }
   CHECK(changed > 10'000);
   CHECK(passed > changed);
+}
+
+TEST_CASE("voxels are searched up to a bound, and only where chunks are known", "[patterns]") {
+  const MixedWorld world(8);
+  const auto filter = BoundFilter::of(*parse_filter("solid"), patterns_table(), 1);
+  REQUIRE(filter);
+  const auto fault = [&](const VoxelBox& box, std::uint64_t voxels_max) {
+    const auto found = passing_voxels({&box, 1}, *filter, voxels_max, kEdge, world);
+    return found ? std::nullopt : std::optional(found.error());
+  };
+  const VoxelBox all{{-32, -32, -32}, {32, 32, 32}};
+  const auto found = passing_voxels({&all, 1}, *filter, UINT64_MAX, kEdge, world);
+  REQUIRE(found);
+  CHECK_FALSE(fault(all, found->count()));
+  CHECK(fault(all, found->count() - 1) == FloodFault::too_many_voxels);
+  CHECK(fault({{0, 0, 0}, {33, 1, 1}}, UINT64_MAX) == FloodFault::missing_chunk);
+  // A box of the whole world ends at its first chunk.
+  CHECK(fault({{-kWorldLimit, 0, 0}, {kWorldLimit, 1, kWorldLimit}}, 9) ==
+        FloodFault::missing_chunk);
+}
+
+TEST_CASE("only voxels of a set are replaced", "[patterns]") {
+  const MixedWorld world(9);
+  const VoxelBox box{{-20, -20, -20}, {20, 20, 20}};
+  SplitMix64 rng(4);
+  auto only = std::make_shared<VoxelRows>();
+  for (int i = 0; i < 300; ++i) {
+    const std::int32_t x = rng.between(-25, 20);
+    only->add(rng.between(-25, 25), rng.between(-25, 25), {x, x + rng.between(1, 9)});
+  }
+  only->join();
+  auto replacing = Replacing::of(box, BoundMix::of(5), std::nullopt, kEdge, world, only);
+  REQUIRE(replacing);
+  std::uint64_t work = UINT64_MAX;
+  REQUIRE(replacing->step(work));
+  const auto placed = replacing->finish();
+  REQUIRE(placed);
+  std::size_t touched = 0, wrong = 0;
+  for (VoxelPos v = box.min; v.z < box.max.z; ++v.z) {
+    for (v.y = box.min.y; v.y < box.max.y; ++v.y) {
+      for (v.x = box.min.x; v.x < box.max.x; ++v.x) {
+        const bool is_changed = only->contains(v) && world.at(v) != Material{5};
+        touched += is_changed ? 1 : 0;
+        wrong += change_at(*placed, v) != (is_changed ? std::optional<Material>(5) : std::nullopt);
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(placed->build->touched() == touched);
 }
 
 TEST_CASE("a box of several slices is replaced without seams", "[patterns]") {

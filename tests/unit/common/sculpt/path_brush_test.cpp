@@ -76,6 +76,43 @@ TEST_CASE("a way on the ground replaces the upper voxel of each column", "[sculp
   for (const auto& [at, material] : changed) CHECK(at.y == slope_height(at.x));
 }
 
+TEST_CASE("a way changes what the rule for each voxel says", "[sculpt]") {
+  const PathBrush brush{GENERATE(1, 2, 5, 8), GENERATE(PathHeight::ground, PathHeight::even),
+                        kRoad};
+  CAPTURE(brush.width, static_cast<int>(brush.height));
+  const std::vector<VoxelPos> places = {{2, 3, 4}, {19, 1, 9}, {36, 6, 2}, {44, 5, 15}};
+  const auto changed = way(brush, places);
+  const auto curve = curve_through(places);
+  const double shift = brush.width % 2 == 0 ? 0.5 : 0;
+  std::map<VoxelPos, Material> wanted;
+  for (std::int32_t z = -12; z < 30; ++z) {
+    for (std::int32_t x = -12; x < 60; ++x) {
+      double nearest = brush.width * brush.width / 4.0;
+      const CurvePoint* found = nullptr;
+      for (const CurvePoint& point : curve) {
+        const double off_x = x + 0.5 - point.x - shift, off_z = z + 0.5 - point.z - shift;
+        const double square = off_x * off_x + off_z * off_z;
+        if (square > nearest || (found != nullptr && square == nearest)) continue;
+        nearest = square;
+        found = &point;
+      }
+      if (found == nullptr) continue;
+      const std::int32_t top = slope_height(x), road = static_cast<std::int32_t>(found->y);
+      if (brush.height == PathHeight::ground) {
+        wanted[{x, top, z}] = kRoad;
+        continue;
+      }
+      for (std::int32_t y = top + 1; top >= road - kPathFillMax && y < road; ++y)
+        wanted[{x, y, z}] = kStone;
+      wanted[{x, road, z}] = kRoad;
+      for (std::int32_t y = road + 1; y <= std::min(top, road + kPathHeadroom); ++y)
+        wanted[{x, y, z}] = kEmpty;
+    }
+  }
+  CHECK(wanted.size() > 20);
+  CHECK(changed == wanted);
+}
+
 TEST_CASE("an even way cuts, fills and bridges", "[sculpt]") {
   const auto changed = way({3, PathHeight::even, kRoad}, {{4, 3, 4}, {40, 3, 4}});
   const auto at = [&](VoxelPos p) {

@@ -4,11 +4,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "common/generate/value_noise.hpp"
 #include "common/sculpt/brush_weights.hpp"
 #include "common/sculpt/height_field.hpp"
 #include "tests/unit/common/sculpt/hills.hpp"
@@ -210,6 +213,98 @@ TEST_CASE("noise depends on the seed, and stays within the strength", "[sculpt]"
     }
   }
   CHECK(most > 1);
+}
+
+TEST_CASE("erosion moves each column to the height that the plain rule gives", "[sculpt]") {
+  const Hills& hills = Hills::shared();
+  TerrainBrush brush;
+  brush.mode = BrushMode::erode;
+  brush.radius = 9;
+  brush.strength = GENERATE(1, 12);
+  brush.falloff = GENERATE(BrushFalloff::smooth, BrushFalloff::none);
+  const auto made = stroke(hills, brush, kLine);
+  using Place = std::pair<std::int32_t, std::int32_t>;
+  std::map<Place, std::int64_t> heights;  // of the columns of the stroke, in parts of a voxel
+  const VoxelBox& box = made.columns.box();
+  for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+      if (weight(brush, kLine, x, z) > 0) heights[{x, z}] = hills.height(x, z) * 256;
+    }
+  }
+  for (std::int32_t step = 0; step < brush.strength; ++step) {
+    std::map<Place, std::int64_t> next = heights;
+    for (const auto& [at, height] : heights) {
+      std::map<Place, std::int64_t> lower;
+      for (const Place& beside : {Place{at.first - 1, at.second}, Place{at.first + 1, at.second},
+                                  Place{at.first, at.second - 1}, Place{at.first, at.second + 1}}) {
+        const auto found = heights.find(beside);
+        if (found != heights.end() && height - found->second > 256)
+          lower[beside] = height - found->second - 256;
+      }
+      std::int64_t sum = 0, most = 0;
+      for (const auto& [place, excess] : lower) {
+        sum += excess;
+        most = std::max(most, excess);
+      }
+      for (const auto& [place, excess] : lower) {
+        const std::int64_t given = most / 2 * weight(brush, kLine, at.first, at.second) / 256;
+        next[at] -= given * excess / sum;
+        next[place] += given * excess / sum;
+      }
+    }
+    heights = std::move(next);
+  }
+  check_heights(hills, made, [&](std::int32_t x, std::int32_t z) {
+    const auto found = heights.find({x, z});
+    return found == heights.end() ? hills.height(x, z) : rounded(found->second);
+  });
+}
+
+TEST_CASE("noise moves each column by its noise and its weight", "[sculpt]") {
+  const Hills& hills = Hills::shared();
+  TerrainBrush brush;
+  brush.mode = BrushMode::noise;
+  brush.radius = GENERATE(2, 14);
+  brush.strength = 9;
+  brush.seed = 5;
+  brush.lowers = GENERATE(false, true);
+  const ValueNoise noise(5, 1.0 / std::max(4, brush.radius));
+  check_heights(hills, stroke(hills, brush, kLine), [&](std::int32_t x, std::int32_t z) {
+    const double part = (brush.lowers ? -9 : 9) * noise.at(x, z) * weight(brush, kLine, x, z);
+    return rounded(hills.height(x, z) * 256 + static_cast<std::int64_t>(part));
+  });
+}
+
+TEST_CASE("overlay changes the upper voxels of each column of the stroke, and no others",
+          "[sculpt]") {
+  const Hills& hills = Hills::shared();
+  TerrainBrush brush;
+  brush.mode = BrushMode::overlay;
+  brush.falloff = GENERATE(BrushFalloff::none, BrushFalloff::linear);
+  brush.radius = 7;
+  brush.strength = GENERATE(1, 6);
+  brush.material = hills.stone;
+  const auto made = stroke(hills, brush, kLine);
+  REQUIRE(made.placed.build);
+  std::size_t wrong = 0, changed = 0;
+  const VoxelBox& box = made.columns.box();
+  for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+      const std::int32_t top = hills.height(x, z);
+      const bool is_in = weight(brush, kLine, x, z) >= 128;
+      for (std::int32_t y = top - 7; y < top + 3; ++y) {
+        const bool is_set =
+            is_in && y <= top && y > top - brush.strength && hills.at({x, y, z}) != hills.stone;
+        changed += is_set ? 1 : 0;
+        const VoxelPos cell{x - made.placed.at.x, y - made.placed.at.y, z - made.placed.at.z};
+        const auto is =
+            made.placed.build->box().contains(cell) ? made.placed.build->at(cell) : std::nullopt;
+        wrong += is != (is_set ? std::optional(hills.stone) : std::nullopt) ? 1 : 0;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(made.placed.build->touched() == changed);
 }
 
 TEST_CASE("overlay and naturalise set the upper voxels of the ground", "[sculpt]") {
