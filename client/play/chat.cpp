@@ -37,8 +37,10 @@ void Chat::send(const std::string& typed) {
 
 std::vector<ShownLine> Chat::take_lines() {
   take_answer();
-  for (const ChatLine& line : session_.drain_chat())
+  for (const ChatLine& line : session_.drain_chat()) {
     lines_.push_back({printed_line(line), tone_of(line.kind)});
+    if (line.kind == ChatLineKind::player) lines_.back().id = id_of(line);
+  }
   return std::exchange(lines_, {});
 }
 

@@ -22,6 +22,9 @@ class Chat {
   ///   - why lines could not be sent;
   ///   - what others and the server wrote.
   std::vector<ShownLine> take_lines();
+  /// Returns the lines that the server withdrew since the last call. Hide them after the lines of
+  /// take_lines() are shown.
+  std::vector<ChatLineId> take_withdrawn() { return session_.take_withdrawn_chat(); }
 
  private:
   void take_answer();

@@ -173,7 +173,8 @@ bool CommandCall::refuse_unless_confirmed(const std::optional<std::string>& haza
   return true;
 }
 
-void CommandCall::change_rights(const RightsChange& change, const std::string& text) const {
+void CommandCall::change_rights(const RightsChange& change, const std::string& text,
+                                const std::function<std::string()>& in_force) const {
   if (const auto valid = validate(change); !valid) return refuse(valid.error().what);
   if (auto why = world().rights().change_refusal(change, caller.actor))
     return refuse(*std::move(why));
@@ -184,6 +185,7 @@ void CommandCall::change_rights(const RightsChange& change, const std::string& t
   std::string answer_text = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world().session_count();
   if (left < sessions) answer_text += "; sessions ended: " + std::to_string(sessions - left);
+  if (in_force) answer_text += in_force();
   answer_when_durable(*seq, answer_text);
 }
 

@@ -132,8 +132,10 @@ struct CommandCall {
   void answer_when_names_durable(const std::string& text) const;
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
   /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
-  /// which hazard_of() warns must be confirmed.
-  void change_rights(const RightsChange& change, const std::string& text) const;
+  /// which hazard_of() warns must be confirmed. `in_force` is called when the change is in force, and
+  /// returns what is appended to the answer; null: nothing is.
+  void change_rights(const RightsChange& change, const std::string& text,
+                     const std::function<std::string()>& in_force = nullptr) const;
 
  private:
   void answer_when_durable(Sequence record, std::uint64_t name_change,
