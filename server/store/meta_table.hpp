@@ -60,6 +60,8 @@ inline constexpr const char* kShapesKey = "shapes";
 inline constexpr const char* kTexturesKey = "textures";
 /// The key of a row, always 1, that only a world has whose log has or had a gap.
 inline constexpr const char* kGapsKey = "gaps";
+/// The key of a row, always 1, that only a world has in which a role was given for some time.
+inline constexpr const char* kTimedGrantsKey = "timed_grants";
 
 /// The keys of the rows that clock() and places() read. Only a world whose clock was set has the
 /// first one.

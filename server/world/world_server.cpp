@@ -137,7 +137,7 @@ const Cluster& WorldServer::cluster() const { return rooms_->cluster; }
 BuildReads& WorldServer::build_reads() { return rooms_->build_reads; }
 BuildUploads& WorldServer::build_uploads() { return rooms_->build_uploads; }
 const WorldCounters& WorldServer::counters() const { return rooms_->counters; }
-const std::optional<VoxelBox>& WorldServer::border() const { return rooms_->config.border; }
+const std::optional<WorldBorder>& WorldServer::border() const { return rooms_->config.border; }
 std::size_t WorldServer::session_count() const { return rooms_->sessions.count(); }
 
 void WorldServer::replay_onto_stack(const EditRecord& record) {
@@ -305,6 +305,11 @@ void WorldServer::tick(const Clocks& now) {
   }
   if (const auto warning = rooms_->order.authority().log_clock().take_warning())
     rooms_->environment.report(OperatorLogLevel::warn, *warning);
+  if (const auto ended = rooms_->rights.end_grants(); !ended.empty()) {
+    rooms_->rights.close_refused();
+    ground.rights_changed({});
+    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
+  }
   people.forget_gone_authors();
   people.close_silent(now);
   cluster.check_connections(now);
