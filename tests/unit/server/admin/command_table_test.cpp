@@ -139,7 +139,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "rollback apply: one id comes after it (rollback list names them)");
   CHECK(mistake("rollback list now") == "rollback list \"now\": nothing comes after list");
   const std::string filters =
-      "author, not author, address-of, joined-after, since, until, box, cause";
+      "author, not author, address-of, joined-after, since, until, box, in, cause";
   CHECK(mistake("rollback preview") ==
         "rollback preview: say whose edits, when, where or why: " + filters);
   CHECK(mistake("rollback preview by ana") ==
