@@ -328,8 +328,8 @@ const SettingsTable<ServerConfig>& settings() {
                  "voxels below y = 0 where edits may be"),
           form(
               "border",
-              "x z x z of two opposite columns, or x y z x y z of two opposite corners, all inside: "
-              "players edit within them; empty: everywhere",
+              "x z x z of two opposite columns, or x y z x y z of two opposite corners, all inside, "
+              "or circle x z radius: players edit within it; empty: everywhere",
               border_field()),
           number("reach_max", &C::reach_max, 0, 1ULL << 30,
                  "voxels from a player to the farthest voxel of an edit, 0: no limit"),

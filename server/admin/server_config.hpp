@@ -20,6 +20,7 @@
 #include "server/admin/log_level.hpp"
 #include "server/limits/address_form.hpp"
 #include "server/settings/setting_names.hpp"
+#include "server/world/environment/world_border.hpp"
 
 namespace runstone {
 
@@ -99,7 +100,7 @@ struct ServerConfig {
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
   std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
-  std::optional<VoxelBox> border;             // edits lie within it; nullopt: there is none
+  std::optional<WorldBorder> border;          // edits lie within it; nullopt: there is none
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
   /// Voxels a second at which `reach_max` follows a player who jumps, 0: at once .. 2^30.
   std::uint64_t speed_max = 0;

@@ -51,8 +51,8 @@ class WorldServer {
   const WorldCounters& counters() const;
   /// Returns the number of sessions in any stage.
   std::size_t session_count() const;
-  /// Returns the box within which players may edit, or nullopt if there is none.
-  const std::optional<VoxelBox>& border() const;
+  /// Returns the border within which players may edit, or nullopt if there is none.
+  const std::optional<WorldBorder>& border() const;
 
   /// Replays a record of the log above the checkpoint. Call it for each, in order, before the first
   /// session.
