@@ -99,6 +99,10 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
 void CommandServices::tick(const Clocks& now) {
   if (folder_import) folder_import->tick(now);
   if (folder_import && folder_import->is_over()) folder_import = nullptr;
+  announcements.tick(now.steady_us, now.utc_us, [&](const std::string& text) {
+    if (world.cluster().is_following() || world.people().online().empty()) return;
+    world.people().chat().say(text, {}, now);
+  });
   for (Waiting& each : std::exchange(waiting, {})) {
     const Order& order = world.order();
     if (order.durable() >= each.needed &&

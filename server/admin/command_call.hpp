@@ -14,6 +14,7 @@
 #include "common/rights/change_rules.hpp"
 #include "common/rights/rights_state.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/admin/announcements.hpp"
 #include "server/admin/command_row.hpp"
 #include "server/admin/known_players.hpp"
 #include "server/admin/operator_actions.hpp"
@@ -70,9 +71,10 @@ struct CommandServices {
   std::vector<Waiting> waiting = {};
   std::shared_ptr<FolderImport> folder_import = nullptr;  // the last one
   PlayerReports reports = {};
+  Announcements announcements = {};
 
-  /// Lets the commands go on that wait for the disk, and the import of a folder. Call it on every
-  /// tick, and when the log became durable or failed.
+  /// Lets the commands go on that wait for the disk, and the import of a folder, and writes
+  /// announcements that are due if somebody is here to read them. Call it on every tick, and when the log became durable or failed.
   void tick(const Clocks& now);
 };
 

@@ -16,6 +16,7 @@
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
+#include "server/admin/spawn_commands.hpp"
 #include "server/admin/texture_commands.hpp"
 #include "server/admin/time_commands.hpp"
 
@@ -121,10 +122,10 @@ const std::vector<CommandRow>& command_table() {
   static const std::vector<CommandRow> table = [] {
     std::vector<CommandRow> rows;
     for (const auto& part :
-         {player_commands(), ground_commands(), moderation_commands(), activity_commands(),
-          report_commands(), rollback_commands(), role_commands(), allow_commands(),
-          password_commands(), clock_commands(), library_commands(), shape_commands(),
-          texture_commands(), time_commands(), host_commands()})
+         {player_commands(), ground_commands(), spawn_commands(), moderation_commands(),
+          activity_commands(), report_commands(), rollback_commands(), role_commands(),
+          allow_commands(), password_commands(), clock_commands(), library_commands(),
+          shape_commands(), texture_commands(), time_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -237,7 +237,7 @@ RollbackService::Scope scope_of(const CommandCall& call) {
   return has_all ? RollbackService::Scope::all : RollbackService::Scope::own;
 }
 
-std::string names_of(const std::vector<const Decided<ProtectedBox>*>& boxes) {
+std::string box_names(const std::vector<const Decided<ProtectedBox>*>& boxes) {
   std::string text;
   for (const auto* box : boxes) text += (text.empty() ? "" : ", ") + box->value.name;
   return text;
@@ -269,10 +269,10 @@ Result<OwnGround, std::string> choose_own_ground(const CommandCall& call,
   }
   if (chosen == nullptr && filter.in.empty() && !filter.box)
     return failure("rollback preview: say in which of your boxes, with in NAME: " +
-                   names_of(boxes));
+                   box_names(boxes));
   if (chosen == nullptr)
     return failure("rollback preview: that is not wholly in ground of yours: your boxes are " +
-                   names_of(boxes));
+                   box_names(boxes));
   if (!filter.box) filter.box = chosen->value.box;
   return OwnGround{call.caller.author, chosen->value.name, *filter.box};
 }

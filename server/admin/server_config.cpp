@@ -167,6 +167,16 @@ FormField message_of_the_day_field() {
           [](const ServerConfig& config) { return config.message_of_the_day; }};
 }
 
+FormField announcements_field() {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+            auto announcements = parse_announcements(text);
+            if (!announcements) return failure(announcements.error());
+            config.announcements = *std::move(announcements);
+            return {};
+          },
+          [](const ServerConfig& config) { return text_of(config.announcements); }};
+}
+
 constexpr std::uint64_t kBackupEveryMin = 60, kBackupEveryMax = 366ULL * 86'400;
 
 FormField backup_every_field() {
@@ -356,6 +366,11 @@ const SettingsTable<ServerConfig>& settings() {
                  "days for which the log of the chat keeps lines, 0: nothing is written to disk"),
           form("message_of_the_day", "text for players who join, at most 512 bytes; empty: none",
                message_of_the_day_field()),
+          form(
+              "announcements",
+              "every 30m TEXT or at 20:00 TEXT (UTC), with | between several: lines that the server "
+              "writes to all players; empty: none",
+              announcements_field()),
           form("backup_every",
                "time between two backups that the server makes by itself, such as 6h; 0: none",
                backup_every_field()),

@@ -16,6 +16,7 @@
 #include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
+#include "server/admin/announcements.hpp"
 #include "server/admin/log_format.hpp"
 #include "server/admin/log_level.hpp"
 #include "server/limits/address_form.hpp"
@@ -116,6 +117,7 @@ struct ServerConfig {
   std::uint64_t chat_per_minute = 30;  // lines of a player, ten at once, 0: no limit .. 60000
   std::uint64_t chat_days = 30;        // for which lines stay on disk, 0: none is written .. 36500
   std::string message_of_the_day;      // for players who join; empty: none
+  std::vector<Announcement> announcements;  // lines that are written again and again
   // Backups that the server makes by itself.
   std::uint64_t backup_every_s = 0;       // seconds between two backups, 0: none, 60..31622400
   std::string backup_folder;              // that holds them; not in the world's folder

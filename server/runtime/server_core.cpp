@@ -183,6 +183,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
   // A task that on_space posts from the constructor runs later.
   log_ = std::make_unique<DurableLog>(strand_, store, world_place(config_), generator_, options,
                                       log_events());
+  commands_->set_announcements(running_.announcements);
   environment_.attach(*log_, *commands_);
 }
 
@@ -428,6 +429,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     start_logging(running_.log_level, running_.log_format);
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
+    if (commands_) commands_->set_announcements(running_.announcements);
     logger("app").info("reload: {}", reloaded.text());
     reply(CommandAnswer::last(reloaded.text()));
   });

@@ -19,6 +19,8 @@ namespace runstone {
 using MetaValue = std::variant<std::int64_t, std::string, Bytes>;
 using MetaRows = std::map<std::string, MetaValue, std::less<>>;
 
+/// Returns the value of the row `spawn`.
+Bytes spawn_bytes(const WorldPos& spawn);
 /// Returns the pinned rows of a world.
 MetaRows rows_of(const WorldMeta& meta);
 /// Returns the values in the pinned rows. The error names the first key that is missing or wrong.
@@ -105,6 +107,7 @@ class MetaTable {
   StoreResult<std::vector<LastPlace>> places();
   StoreResult<void> put_clock(const SavedClock& clock);
   StoreResult<void> put_places(const std::vector<LastPlace>& places);
+  StoreResult<void> put_spawn(const WorldPos& spawn);
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)

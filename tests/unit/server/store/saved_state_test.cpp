@@ -65,6 +65,20 @@ TEST_CASE("the newest record sets the clock, and its time is saved over and over
   CHECK(store->check().has_value());
 }
 
+TEST_CASE("a spawn that is saved is that of the world from the next start on",
+          "[store][saved_state]") {
+  TempPlace place;
+  {
+    auto store = *create_world(place / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->save_state({{}, std::nullopt, WorldPos{1.5, -2, 3}}).has_value());
+    REQUIRE(store->save_state({{place_of(1, 7.5)}, std::nullopt}).has_value());
+  }
+  const auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(store->meta().spawn == WorldPos{1.5, -2, 3});
+  CHECK(store->check().has_value());
+}
+
 TEST_CASE("the clock stays when its record is compacted away", "[store][saved_state]") {
   TempPlace place;
   auto store = *create_world(place / "w", sample_meta());
