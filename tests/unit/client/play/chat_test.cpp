@@ -68,4 +68,17 @@ TEST_CASE_METHOD(SessionBench, "the window forgets the lines that the server wit
   CHECK(window.line_count() == 2);
 }
 
+TEST_CASE_METHOD(SessionBench, "the command undo is reported before it is sent, and no other one",
+                 "[client][chat]") {
+  server.features = kFeatureChat | kFeatureCommands;
+  static_cast<void>(open());
+  int undos = 0;
+  Chat chat(session, [&] { ++undos; });
+  for (const char* line : {"/undone", "undo", "/redo", "/help undo", "/"}) chat.send(line);
+  CHECK(undos == 0);
+  chat.send("/undo");
+  chat.send("/ undo ");
+  CHECK(undos == 2);
+}
+
 }  // namespace runstone::test::chat_test
