@@ -13,6 +13,7 @@
 #include "server/admin/password_commands.hpp"
 #include "server/admin/player_commands.hpp"
 #include "server/admin/report_commands.hpp"
+#include "server/admin/restore_box_commands.hpp"
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
@@ -123,9 +124,10 @@ const std::vector<CommandRow>& command_table() {
     std::vector<CommandRow> rows;
     for (const auto& part :
          {player_commands(), ground_commands(), spawn_commands(), moderation_commands(),
-          activity_commands(), report_commands(), rollback_commands(), role_commands(),
-          allow_commands(), password_commands(), clock_commands(), library_commands(),
-          shape_commands(), texture_commands(), time_commands(), host_commands()})
+          activity_commands(), report_commands(), rollback_commands(), restore_box_commands(),
+          role_commands(), allow_commands(), password_commands(), clock_commands(),
+          library_commands(), shape_commands(), texture_commands(), time_commands(),
+          host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();
