@@ -57,8 +57,10 @@ TEST_CASE("chat log selects lines by player, age and number", "[admin][command]"
   CHECK(parsed<ChatQuery>("chat log") == ChatQuery{});
   const auto query = parsed<ChatQuery>("chat log by \"the mole\" since 1h limit 1000");
   CHECK(query == ChatQuery{"the mole", kTypedUs - 3'600'000'000, 1'000});
-  CHECK(mistake("chat") == "chat: log comes after it, and then by, since or limit");
-  CHECK(mistake("chat hello") == "chat: log comes after it, and then by, since or limit");
+  constexpr const char* kChatRule =
+      "chat: log comes after it, and then by, since or limit; or withdraw PLAYER";
+  CHECK(mistake("chat") == kChatRule);
+  CHECK(mistake("chat hello") == kChatRule);
   CHECK(mistake("chat log of ana") == "chat log \"of\": by, since or limit");
   CHECK(mistake("chat log limit 1001") == "chat log limit \"1001\": a number from 1 to 1000");
   CHECK(mistake("chat log by") == "chat log by: a name, a fingerprint, a key or server is missing");
