@@ -30,9 +30,12 @@ std::string backup_state_text(const BackupState& state) {
   text += state.is_under_way ? ", one is under way" : ", next in " + duration_text(state.next_s);
   if (state.last && state.last->ahead_s > 0) {
     text +=
-        "\nBACKUPS: the time of the last one is ahead of the clock of this computer: if the clock is "
-        "wrong, set it right; if it was wrong then, remove that backup, or the next ones count as "
-        "older";
+        "\nBACKUPS: the last one is dated in the future: the clock of this computer was wrong, or "
+        "is. It stays, and takes no place of another backup";
+    if it
+      was wrong then, remove that backup, or the next ones count as
+                                              "
+                                              "older";
   }
   if (state.failures > 0) {
     text += "\nBACKUPS FAIL, " + std::to_string(state.failures) +
