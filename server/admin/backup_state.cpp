@@ -32,10 +32,6 @@ std::string backup_state_text(const BackupState& state) {
     text +=
         "\nBACKUPS: the last one is dated in the future: the clock of this computer was wrong, or "
         "is. It stays, and takes no place of another backup";
-    if it
-      was wrong then, remove that backup, or the next ones count as
-                                              "
-                                              "older";
   }
   if (state.failures > 0) {
     text += "\nBACKUPS FAIL, " + std::to_string(state.failures) +
