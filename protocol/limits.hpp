@@ -40,7 +40,8 @@ inline constexpr std::uint64_t kFeatureTextures = 1 << 20;   // TexturesGiven to
 inline constexpr std::uint64_t kFeatureWorldTime = 1 << 22;  // WorldTime
 // SessionAccepted.place, and lines of the chat of the kind visit.
 inline constexpr std::uint64_t kFeatureVisits = 1 << 24;
-inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;  // LogMarksRequest.at
+inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;    // LogMarksRequest.at
+inline constexpr std::uint64_t kFeatureChatWithdrawal = 1 << 27;  // ChatWithdrawn
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
@@ -48,16 +49,18 @@ inline constexpr std::uint64_t kFeatureLibrary = 65536;          // LogPart may 
 inline constexpr std::uint64_t kFeatureShapeRecords = 524288;    // LogPart may have GivenShapes
 inline constexpr std::uint64_t kFeatureTextureRecords = 1 << 21;  // LogPart may have a GivenTexture
 inline constexpr std::uint64_t kFeatureClockRecords = 1 << 23;    // LogPart may have a ClockEdit
-inline constexpr std::uint64_t kFeaturesOfServers = kFeatureServers | kFeatureTimeCorrections |
-                                                    kFeatureLibrary | kFeatureShapeRecords |
-                                                    kFeatureTextureRecords | kFeatureClockRecords;
+inline constexpr std::uint64_t kFeatureTimedGrants =
+    1 << 28;  // LogPart may grant a role until a time
+inline constexpr std::uint64_t kFeaturesOfServers =
+    kFeatureServers | kFeatureTimeCorrections | kFeatureLibrary | kFeatureShapeRecords |
+    kFeatureTextureRecords | kFeatureClockRecords | kFeatureTimedGrants;
 // Those that a server offers to players.
 inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureCommands | kFeatureReceiveAck | kFeatureNames | kFeatureRights | kFeatureChat |
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
     kFeatureBuilds | kFeatureShapes | kFeatureTextures | kFeatureWorldTime | kFeatureVisits |
-    kFeatureVoxelAuthors;
+    kFeatureVoxelAuthors | kFeatureChatWithdrawal;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -142,8 +145,9 @@ inline constexpr std::uint64_t kPreviewChunksMax = 64;     // that an edit's bou
 inline constexpr std::uint32_t kPreviewTurnedVoxelsMax = 64 * 1024;  // of a paste that is turned
 
 // Chat.
-inline constexpr std::size_t kChatBytesMax = 512;  // one line
-inline constexpr std::size_t kChatLinesMax = 64;   // per message
+inline constexpr std::size_t kChatBytesMax = 512;      // one line
+inline constexpr std::size_t kChatLinesMax = 64;       // per message
+inline constexpr std::size_t kChatWithdrawnMax = 128;  // per message
 
 // Keys for another device.
 inline constexpr std::size_t kKeySlotBytes = 16;

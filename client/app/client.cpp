@@ -180,6 +180,10 @@ void Client::show_news() {
     hud_.hear(std::move(line));
     pipeline_.moved();
   }
+  if (const auto withdrawn = play_.chat().take_withdrawn(); !withdrawn.empty()) {
+    hud_.withdraw(withdrawn);
+    pipeline_.moved();
+  }
   for (PlayerNotice& notice : play_.take_notices())
     hud_.notify(std::move(notice.text), notice.kind);
   if (clipboard_ == nullptr) return;

@@ -31,6 +31,8 @@ class ClientHud {
 
   /// Adds a line to the chat.
   void hear(ShownLine line) { hud_.hear(std::move(line)); }
+  /// Removes lines from the chat.
+  void withdraw(const std::vector<ChatLineId>& lines) { hud_.withdraw(lines); }
   /// Carries out an action of a key. Returns false if it is no action of the display.
   bool act(Action action);
   void notify(std::string text, NoticeKind kind = NoticeKind::information) {

@@ -13,8 +13,8 @@ namespace {
 
 /// Returns the configuration without what only a player needs.
 SessionConfig for_bot(SessionConfig config) {
-  config.features &= ~(kFeatureRights | kFeatureChat | kFeaturePreviews | kFeatureTextures |
-                       kFeatureWorldTime | kFeatureVisits);
+  config.features &= ~(kFeatureRights | kFeatureChat | kFeatureChatWithdrawal | kFeaturePreviews |
+                       kFeatureTextures | kFeatureWorldTime | kFeatureVisits);
   return config;
 }
 

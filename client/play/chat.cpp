@@ -1,6 +1,7 @@
 #include "client/play/chat.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "common/core/text.hpp"
@@ -19,6 +20,13 @@ ChatTone tone_of(ChatLineKind kind) {
   }
 }
 
+/// Returns true if the line gives the command undo.
+bool is_undo(std::string_view typed) {
+  typed.remove_prefix(1);
+  typed.remove_prefix(std::min(typed.find_first_not_of(' '), typed.size()));
+  return typed.substr(0, typed.find(' ')) == "undo";
+}
+
 }  // namespace
 
 void Chat::send(const std::string& typed) {
@@ -26,6 +34,7 @@ void Chat::send(const std::string& typed) {
   std::string why;
   if (typed.starts_with('/')) {
     take_answer();  // before the next command takes its place
+    if (is_undo(typed) && before_undo_) before_undo_();
     const auto given = session_.command(typed.substr(1));
     is_answer_due_ = is_answer_due_ || given.has_value();
     if (!given) why = given.error().what;
@@ -37,8 +46,10 @@ void Chat::send(const std::string& typed) {
 
 std::vector<ShownLine> Chat::take_lines() {
   take_answer();
-  for (const ChatLine& line : session_.drain_chat())
+  for (const ChatLine& line : session_.drain_chat()) {
     lines_.push_back({printed_line(line), tone_of(line.kind)});
+    if (line.kind == ChatLineKind::player) lines_.back().id = id_of(line);
+  }
   return std::exchange(lines_, {});
 }
 

@@ -39,7 +39,7 @@ Play::Play(ClientSession& session, ToolBox& tools, DrawQueue* draw_queue, PlayLo
       clicks_(tool_),
       hotbar_(player_),
       hotbars_(config.hotbars),
-      chat_(session),
+      chat_(session, [this] { tool_.box().forget_pasted(); }),  // an undo may take it back
       view_(session, player_, config.wishes.radii, config.wishes.far_levels),
       limits_(config.wishes, session.replica(), pipeline_, view_),
       panels_(session, tools, config.workers != 0),
@@ -264,10 +264,7 @@ bool Play::act(Action action, TimeUs now_us) {
 }
 
 void Play::carry_out(const UiAction& action, TimeUs now_us) {
-  if (const auto* line = std::get_if<SendLine>(&action)) {
-    if (line->text.starts_with("/undo")) tool_.box().forget_pasted();  // it may be taken back
-    chat_.send(line->text);
-  }
+  if (const auto* line = std::get_if<SendLine>(&action)) chat_.send(line->text);
   if (const auto* held = std::get_if<HoldMaterial>(&action)) hold(held->material, false, now_us);
   if (const auto* order = std::get_if<HotbarOrder>(&action)) {
     const auto done = carry_out(*order);

@@ -26,6 +26,20 @@ class ChatInbox {
       add(waiting_, std::move(line), kLinesMax);
     }
   }
+  /// Drops the lines that were not drained yet, and keeps the rest for take_withdrawn().
+  void receive(const ChatWithdrawn& message) {
+    for (const ChatLineId& id : message.lines) {
+      std::erase_if(waiting_, [&](const ChatLine& line) { return is_meant(line, id); });
+      withdrawn_.push_back(id);
+      if (withdrawn_.size() > kLinesMax) withdrawn_.pop_front();
+    }
+  }
+  /// Returns the lines that were withdrawn since the last call, kLinesMax at most.
+  std::vector<ChatLineId> take_withdrawn() {
+    std::vector<ChatLineId> lines(withdrawn_.begin(), withdrawn_.end());
+    withdrawn_.clear();
+    return lines;
+  }
   void disconnected() { is_new_connection_ = true; }
   /// Forgets which lines arrived. Call it when another world opens, because its lines are others.
   void clear() { seen_.clear(); }
@@ -50,8 +64,13 @@ class ChatInbox {
     });
   }
 
-  std::deque<ChatLine> waiting_;  // kLinesMax at most
-  std::deque<ChatLine> seen_;     // the newest lines that arrived, kChatLinesMax at most
+  static bool is_meant(const ChatLine& line, const ChatLineId& id) {
+    return line.kind == ChatLineKind::player && id_of(line) == id;
+  }
+
+  std::deque<ChatLine> waiting_;      // kLinesMax at most
+  std::deque<ChatLineId> withdrawn_;  // kLinesMax at most
+  std::deque<ChatLine> seen_;         // the newest lines that arrived, kChatLinesMax at most
   bool is_new_connection_ = true;
 };
 

@@ -136,6 +136,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_restore_preview(std::move(m));
         } else if constexpr (std::is_same_v<T, ChatLines>) {
           chat_.receive(std::move(m));
+        } else if constexpr (std::is_same_v<T, ChatWithdrawn>) {
+          chat_.receive(m);
         } else if constexpr (std::is_same_v<T, PlayerPreview>) {
           if (m.author != author())
             previews_.receive(std::move(m), welcome()->chunk_edge, arrival.now_us);

@@ -167,6 +167,8 @@ class ClientSession {
   Result<void, std::string> chat(std::string_view line);
   /// Returns the lines that arrived since the last call, ChatInbox::kLinesMax at most.
   std::vector<ChatLine> drain_chat() { return chat_.drain(); }
+  /// Returns the lines that the server withdrew since the last call.
+  std::vector<ChatLineId> take_withdrawn_chat() { return chat_.take_withdrawn(); }
 
   /// Shares what this player's next click would do; an empty list shares nothing any more. Sends a
   /// message only if it is due and the server has the feature. Call it every turn.

@@ -74,6 +74,13 @@ void ChatWindow::hear(ShownLine entry) {
   has_new_line_ = true;
 }
 
+std::size_t ChatWindow::withdraw(const std::vector<ChatLineId>& lines) {
+  return std::erase_if(lines_, [&](const Line& line) {
+    const ChatLineId& id = line.entry.id;
+    return !id.name.empty() && std::ranges::find(lines, id) != lines.end();
+  });
+}
+
 void ChatWindow::open(std::string text) {
   if (std::exchange(is_open_, true)) return;
   field_ = std::move(text);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/ui/chat_completion.hpp"
+#include "protocol/codec/chat_messages.hpp"
 
 namespace runstone {
 
@@ -22,6 +23,7 @@ enum class ChatTone : std::uint8_t {
 struct ShownLine {
   std::string text;
   ChatTone tone = ChatTone::player;
+  ChatLineId id{};  // of a line of a player; otherwise without a name
 };
 
 class ChatWindow {
@@ -32,6 +34,9 @@ class ChatWindow {
   static constexpr double kShownSeconds = 10, kFadeSeconds = 1.5;
 
   void hear(ShownLine entry);
+  /// Removes these lines. Returns their number.
+  std::size_t withdraw(const std::vector<ChatLineId>& lines);
+  std::size_t line_count() const { return lines_.size(); }
   /// Sets the names that the tab key completes.
   void set_names(std::vector<std::string> names) { completion_.set_names(std::move(names)); }
   /// Opens the field with a text in it, such as "/".

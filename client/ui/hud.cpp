@@ -83,6 +83,10 @@ void Hud::hear(ShownLine line) {
   has_news_ = true;
 }
 
+void Hud::withdraw(const std::vector<ChatLineId>& lines) {
+  if (chat_.withdraw(lines) != 0) has_news_ = true;
+}
+
 std::shared_ptr<const OverlayFrame> Hud::make_frame(const HudState& state, std::array<int, 2> size,
                                                     double seconds) {
   has_news_ = false;

@@ -34,6 +34,8 @@ class Hud {
   void notify(std::string text, NoticeKind kind = NoticeKind::information);
   /// Adds a line to the chat.
   void hear(ShownLine line);
+  /// Removes lines from the chat.
+  void withdraw(const std::vector<ChatLineId>& lines);
 
   /// Makes the next frame of `size` pixels, `seconds` after the last one.
   std::shared_ptr<const OverlayFrame> make_frame(const HudState& state, std::array<int, 2> size,

@@ -16,8 +16,10 @@ void page_state(const char* text);
 void page_failed(const char* headline, const char* detail);
 /// Shows a text for some seconds.
 void page_notice(const char* text, int is_warning);
-/// Adds a line to the chat.
-void page_chat(const char* text);
+/// Adds a line to the chat. `id`: of a line of a player; otherwise empty.
+void page_chat(const char* text, const char* id);
+/// Removes the lines of the chat with this id.
+void page_withdraw_chat(const char* id);
 /// Opens the line in which the player types.
 void page_open_chat(void);
 /// Empties the list of materials.

@@ -7,6 +7,14 @@
 #include "common/materials/readable_name.hpp"
 
 namespace runstone {
+namespace {
+
+/// Returns a text that is the same for equal names of lines. It is empty for a line of no player.
+std::string text_of(const ChatLineId& id) {
+  return id.name.empty() ? "" : std::to_string(id.utc_us) + " " + id.name;
+}
+
+}  // namespace
 
 void WebHud::show_materials() {
   if (!play_.was_opened()) return;
@@ -49,7 +57,10 @@ void WebHud::step() {
   show_slots();
   show_walking();
   for (const PlayerNotice& notice : play_.take_notices()) notify(notice.text, notice.kind);
-  for (const ShownLine& line : play_.chat().take_lines()) page_chat(line.text.c_str());
+  for (const ShownLine& line : play_.chat().take_lines())
+    page_chat(line.text.c_str(), text_of(line.id).c_str());
+  for (const ChatLineId& id : play_.chat().take_withdrawn())
+    page_withdraw_chat(text_of(id).c_str());
   show_players();
   show_time();
 }

@@ -89,7 +89,7 @@ class ChangeCheck {
   ChangeCheck(const RightsState& state, const RightsActor& actor, TimeUs now_us)
       : state_(state), actor_(actor), now_us_(now_us) {
     has_all_ = !actor.key || actor.is_operator;
-    rights_ = has_all_ ? RightSet::all() : state.role_of(*actor.key).rights;
+    rights_ = has_all_ ? RightSet::all() : state.role_of(*actor.key, now_us).rights;
   }
 
   Refusal refused(const RightsChange& change) const {
@@ -128,6 +128,11 @@ class ChangeCheck {
         return "A player has the role " + quoted(change.role) +
                ": give the players with it another one first (grants lists them).";
     }
+    for (const auto& [key, grant] : state_.timed_grants()) {
+      if (grant.value.role == change.role && state_.timed_grant(key, now_us_) != nullptr)
+        return "A player has the role " + quoted(change.role) +
+               " for some time: wait, or give the player another one first (grants lists them).";
+    }
     return std::nullopt;
   }
 
@@ -140,9 +145,23 @@ class ChangeCheck {
     if (role == nullptr) return no_role(name);
     if (auto reason = refused_target(change.key)) return reason;
     if (auto reason = refused_gift(role->value.rights, {})) return reason;
+    if (change.until_us != 0) return refused_end(change);
     if (!change.role.empty() && !state_.grants().contains(change.key) &&
         state_.grants().size() >= kGrantsMax) {
       return kGrantsFull;
+    }
+    return std::nullopt;
+  }
+
+  Refusal refused_end(const GrantRole& change) const {
+    if (change.until_us <= now_us_) return "The grant would have ended already.";
+    const auto& timed = state_.timed_grants();
+    const auto in_force = std::count_if(timed.begin(), timed.end(), [this](const auto& grant) {
+      return state_.timed_grant(grant.first, now_us_) != nullptr;
+    });
+    if (!timed.contains(change.key) && static_cast<std::size_t>(in_force) >= kTimedGrantsMax) {
+      return "As many players have a role for some time as the world can hold: revoke one first "
+             "(grants lists them).";
     }
     return std::nullopt;
   }
@@ -301,7 +320,7 @@ class ChangeCheck {
 
   /// Requires an actor with a key. `old` is the box that this one replaces, or null.
   Refusal refused_place(const ProtectedBox* old, const ProtectedBox& box) const {
-    const Role& role = state_.role_of(*actor_.key);
+    const Role& role = state_.role_of(*actor_.key, now_us_);
     const RightsState::Holding others = state_.holding_of(*actor_.key, old);
     if (others.boxes >= role.claims_max) {
       return "Your role allows " + std::to_string(role.claims_max) +
@@ -355,7 +374,7 @@ class ChangeCheck {
     if (actor_.key == target)
       return "You cannot do this to yourself: another administrator can, or the host at the console.";
     if (has_all_ || rights_.has(Right::administer)) return std::nullopt;
-    const RightSet theirs = state_.role_of(target).rights;
+    const RightSet theirs = state_.role_of(target, now_us_).rights;
     if (rights_.includes(theirs) && theirs != rights_) return std::nullopt;
     return "You can do this only to players who have fewer rights than you: ask an administrator, or "
            "the host.";
@@ -375,9 +394,9 @@ class ChangeCheck {
 };
 
 /// Returns true if the change may take the right `administer` from a key.
-bool may_take_administer(const RightsState& state, const RightsChange& change) {
+bool may_take_administer(const RightsState& state, const RightsChange& change, TimeUs now_us) {
   const auto administers = [&](const PublicKey& key) {
-    return state.role_of(key).rights.has(Right::administer);
+    return state.role_of(key, now_us).rights.has(Right::administer);
   };
   if (const auto* grant = std::get_if<GrantRole>(&change)) return administers(grant->key);
   if (const auto* restricted = std::get_if<Restrict>(&change)) {
@@ -393,7 +412,8 @@ bool may_take_administer(const RightsState& state, const RightsChange& change) {
 Refusal why_refused(const RightsState& state, const RightsActor& actor, const RightsChange& change,
                     TimeUs now_us) {
   if (auto reason = ChangeCheck(state, actor, now_us).refused(change)) return reason;
-  if (may_take_administer(state, change) && Outlook(state, nullptr, now_us).has_administrator() &&
+  if (may_take_administer(state, change, now_us) &&
+      Outlook(state, nullptr, now_us).has_administrator() &&
       !Outlook(state, &change, now_us).has_administrator()) {
     return "The world would have no administrator any more: give another player a role with the "
            "rights see and administer first (grant PLAYER administrator).";

@@ -34,6 +34,7 @@ struct RightsActor {
 
 inline constexpr std::size_t kRolesMax = 256;
 inline constexpr std::size_t kGrantsMax = 100'000;
+inline constexpr std::size_t kTimedGrantsMax = 1'000;     // in force
 inline constexpr std::size_t kRestrictionsMax = 100'000;  // also those that have ended
 inline constexpr std::size_t kBoxesMax = 100'000;
 inline constexpr std::size_t kClaimedBoxesMax = 90'000;  // the rest is for the right `protect`
@@ -55,7 +56,8 @@ struct RightsRecord {
 /// say of the same role, grant, default role, password, restriction or box. `records` are given in
 /// log order from the first to the newest. Returns nullopt if there is no record `seq`, if it
 /// corrects the time, or if it no longer decides anything, because a later one has replaced it. Ends
-/// are those that corrections of the time have moved. Cost: O(records log n).
+/// are those that corrections of the time have moved. Of a grant only the role without an end is
+/// restored. Cost: O(records log n).
 std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records, Sequence seq);
 
 }  // namespace runstone

@@ -31,7 +31,8 @@ enum class ChangeTag : std::uint8_t {
   set_password = 12,
   accept_password = 13,
   define_role_with_quotas = 14,
-  correct_time = 15
+  correct_time = 15,
+  grant_role_until = 16  // a GrantRole with an end
 };
 static_assert(std::variant_size_v<RightsChange> + 1 ==
               static_cast<std::uint8_t>(ChangeTag::correct_time));
@@ -40,6 +41,7 @@ ChangeTag tag_of(const RightsChange& change) {
   const auto* define = std::get_if<DefineRole>(&change);
   if (define != nullptr && define->role.has_quotas()) return ChangeTag::define_role_with_quotas;
   if (std::holds_alternative<CorrectTime>(change)) return ChangeTag::correct_time;
+  if (is_timed_grant(change)) return ChangeTag::grant_role_until;
   return static_cast<ChangeTag>(change.index() + 1);
 }
 
@@ -111,6 +113,9 @@ Result<void> check_change(const RemoveRole& change) {
 }
 
 Result<void> check_change(const GrantRole& change) {
+  if (change.until_us < 0) return fail(ErrorCode::bad_value, "grant ends before 1970");
+  if (change.role.empty() && change.until_us != 0)
+    return fail(ErrorCode::bad_value, "grant of the default role with an end");
   if (change.role.empty()) return {};
   return check_name(change.role, "bad name of a role");
 }
@@ -219,6 +224,7 @@ void write_change(ByteWriter& w, const RemoveRole& change) { write_text(w, chang
 void write_change(ByteWriter& w, const GrantRole& change) {
   w.bytes(change.key);
   write_text(w, change.role);
+  if (change.until_us != 0) w.varint(static_cast<std::uint64_t>(change.until_us));
 }
 
 void write_change(ByteWriter& w, const SetDefaultRole& change) { write_text(w, change.role); }
@@ -408,9 +414,13 @@ RightsChange read_change_fields(ByteReader& r, ChangeTag tag) {
       return DefineRole{read_role(r)};
     case ChangeTag::remove_role:
       return RemoveRole{read_name(r)};
-    case ChangeTag::grant_role: {
-      GrantRole change{read_key(r), {}};
+    case ChangeTag::grant_role:
+    case ChangeTag::grant_role_until: {
+      GrantRole change{read_key(r), {}, 0};
       change.role = read_name(r);
+      if (tag == ChangeTag::grant_role) return change;
+      change.until_us = read_end_time(r);
+      if (change.until_us == 0) r.reject(ErrorCode::not_canonical, "end of a grant that has none");
       return change;
     }
     case ChangeTag::set_default_role:
@@ -473,6 +483,11 @@ RightsChange read_rights_change(ByteReader& in) {
     in.reject(valid.error().code, valid.error().what);
   }
   return change;
+}
+
+bool is_timed_grant(const RightsChange& change) {
+  const auto* grant = std::get_if<GrantRole>(&change);
+  return grant != nullptr && grant->until_us != 0;
 }
 
 std::optional<VoxelBox> place_of(const RightsChange& change) {

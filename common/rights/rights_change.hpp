@@ -29,10 +29,12 @@ struct RemoveRole {
   std::string role;
   friend bool operator==(const RemoveRole&, const RemoveRole&) = default;
 };
-/// Gives a player a role.
+/// Gives a player a role. With an end, the role counts until then, in place of the one that the player
+/// has without it, which counts again afterwards. A grant without an end replaces both.
 struct GrantRole {
   PublicKey key{};
-  std::string role;  // empty: the default role of the world
+  std::string role;     // empty: the default role of the world; only without an end
+  TimeUs until_us = 0;  // UTC; 0: without an end
   friend bool operator==(const GrantRole&, const GrantRole&) = default;
 };
 /// Sets the role of players without a grant.
@@ -113,7 +115,7 @@ struct CorrectTime {
 };
 
 // The order is that of the stored tags, from 1. A DefineRole with quotas is stored with a tag of
-// its own, which comes before that of CorrectTime.
+// its own, which comes before that of CorrectTime, and a GrantRole with an end with one behind it.
 using RightsChange = std::variant<DefineRole, RemoveRole, GrantRole, SetDefaultRole, Restrict, Lift,
                                   Protect, Unprotect, CreateInvite, AcceptInvite, CancelInvite,
                                   SetPassword, AcceptPassword, CorrectTime>;
@@ -128,6 +130,9 @@ void encode(const RightsChange& change, Bytes& out);
 
 /// Reads one change, up to the end of the input. The result is valid if the reader is ok.
 RightsChange read_rights_change(ByteReader& in);
+
+/// Returns true for a grant with an end, which programs of world format 12 and earlier cannot read.
+bool is_timed_grant(const RightsChange& change);
 
 /// Returns the ground that the change is about; nullopt for a change that has no place, which
 /// includes Unprotect.

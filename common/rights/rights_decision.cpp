@@ -33,7 +33,7 @@ std::optional<RightsDecision> RightsState::forbidden(const PublicKey& key, Right
   const auto answer = [&](RestrictionKind kind, Reason reason) -> std::optional<RightsDecision> {
     const Decided<Restrict>* found = restriction(kind, key, now_us);
     if (found == nullptr) return std::nullopt;
-    return RightsDecision{false, reason, found->by, role_of(key).name, nullptr};
+    return RightsDecision{false, reason, found->by, role_of(key, now_us).name, nullptr};
   };
   if (auto ban = answer(RestrictionKind::ban, Reason::ban)) return ban;
   if (taken_by(RestrictionKind::mute).has(right))
@@ -44,7 +44,7 @@ std::optional<RightsDecision> RightsState::forbidden(const PublicKey& key, Right
 }
 
 RightSet RightsState::rights_in_force(const PublicKey& key, TimeUs now_us) const {
-  RightSet rights = role_of(key).rights;
+  RightSet rights = role_of(key, now_us).rights;
   for (const RestrictionKind kind :
        {RestrictionKind::ban, RestrictionKind::mute, RestrictionKind::freeze}) {
     if (restriction(kind, key, now_us) != nullptr)
@@ -59,27 +59,28 @@ bool admits(const ProtectedBox& box, const PublicKey& key, const Role& role) {
          std::binary_search(box.roles.begin(), box.roles.end(), role.name);
 }
 
-RightsDecision RightsState::decide_by_role(const PublicKey& key, Right right) const {
-  const Role& role = role_of(key);
-  const Decided<std::string>* grant = grant_of(key);
+RightsDecision RightsState::decide_by_role(const PublicKey& key, Right right, TimeUs now_us) const {
+  const Role& role = role_of(key, now_us);
+  const Granted grant = granted_at(key, now_us);
+  const bool is_granted = grant.role != nullptr;
   RightsDecision decision;
   decision.is_allowed = role.rights.has(right);
-  decision.reason = grant == nullptr ? Reason::default_role : Reason::role;
-  decision.by = newer_of(grant == nullptr ? default_role_.by : grant->by, find_role(role.name)->by);
+  decision.reason = is_granted ? Reason::role : Reason::default_role;
+  decision.by = newer_of(is_granted ? grant.by : default_role_.by, find_role(role.name)->by);
   decision.role = role.name;
   return decision;
 }
 
 RightsDecision RightsState::decide(const PublicKey& key, Right right, TimeUs now_us) const {
   if (auto answer = forbidden(key, right, now_us)) return *std::move(answer);
-  return decide_by_role(key, right);
+  return decide_by_role(key, right, now_us);
 }
 
 RightsDecision RightsState::decide_edit(const PublicKey& key, const VoxelBox& bounds,
                                         const TouchesBox& touches, TimeUs now_us) const {
   if (auto answer = forbidden(key, Right::build, now_us)) return *std::move(answer);
-  const RightsDecision free_ground = decide_by_role(key, Right::build);
-  const Role& role = role_of(key);
+  const RightsDecision free_ground = decide_by_role(key, Right::build, now_us);
+  const Role& role = role_of(key, now_us);
   const std::vector<DecidingBox> boxes = boxes_in(bounds);
   std::vector<GroundRule> rules;
   rules.reserve(boxes.size());

@@ -41,6 +41,7 @@ RightsState::RightsState() : default_role_{kBuilderRole, {}} {
 }
 
 void RightsState::apply(const RightsChange& change, const ChangeOrigin& origin) {
+  time_us_ = origin.time_us;
   std::visit([&](const auto& kind) { apply_kind(kind, origin); }, change);
 }
 
@@ -58,6 +59,14 @@ void RightsState::apply_kind(const RemoveRole& change, const ChangeOrigin& origi
 }
 
 void RightsState::apply_kind(const GrantRole& change, const ChangeOrigin& origin) {
+  if (change.until_us != 0) {
+    std::erase_if(timed_grants_,
+                  [&](const auto& entry) { return entry.second.value.until_us <= origin.time_us; });
+    timed_grants_[change.key] = {change, origin};
+    has_ever_granted_ = has_timed_grants_ever_ = true;
+    return;
+  }
+  timed_grants_.erase(change.key);
   if (change.role.empty()) {
     grants_.erase(change.key);
   } else {
@@ -163,6 +172,7 @@ void RightsState::apply_kind(const CorrectTime& change, const ChangeOrigin& orig
   for (auto& [subject, restriction] : by_key_) correct_restriction(restriction);
   for (auto& [range, ban] : address_bans_) correct_restriction(ban);
   for (auto& [id, invite] : invites_) correct(invite.by, invite.value.invite.until_us);
+  for (auto& [key, grant] : timed_grants_) correct(grant.by, grant.value.until_us);
   moved_ends_ = std::move(moved_ends);
   is_time_corrected_ = true;
 }
@@ -177,8 +187,12 @@ bool RightsState::has_ends_given_since(Sequence since, TimeUs now_us) const {
   };
   return std::any_of(by_key_.begin(), by_key_.end(), is_meant_restriction) ||
          std::any_of(address_bans_.begin(), address_bans_.end(), is_meant_restriction) ||
-         std::any_of(invites_.begin(), invites_.end(), [&](const auto& entry) {
-           return is_meant(entry.second.by, entry.second.value.invite.until_us);
+         std::any_of(invites_.begin(), invites_.end(),
+                     [&](const auto& entry) {
+                       return is_meant(entry.second.by, entry.second.value.invite.until_us);
+                     }) ||
+         std::any_of(timed_grants_.begin(), timed_grants_.end(), [&](const auto& entry) {
+           return is_meant(entry.second.by, entry.second.value.until_us);
          });
 }
 
@@ -208,15 +222,35 @@ const Decided<Role>* RightsState::find_role(const std::string& name) const {
   return found == roles_.end() ? nullptr : &found->second;
 }
 
-const Decided<std::string>* RightsState::grant_of(const PublicKey& key) const {
-  const auto found = grants_.find(key);
-  const bool counts = found != grants_.end() && find_role(found->second.value) != nullptr;
+const Decided<GrantRole>* RightsState::timed_grant(const PublicKey& key, TimeUs now_us) const {
+  const auto found = timed_grants_.find(key);
+  const bool counts = found != timed_grants_.end() && now_us < found->second.value.until_us &&
+                      find_role(found->second.value.role) != nullptr;
   return counts ? &found->second : nullptr;
 }
 
-const Role& RightsState::role_of(const PublicKey& key) const {
-  const Decided<std::string>* grant = grant_of(key);
-  const Decided<Role>* role = find_role(grant == nullptr ? default_role_.value : grant->value);
+std::vector<GrantRole> RightsState::grants_ended(TimeUs since_us, TimeUs now_us) const {
+  std::vector<GrantRole> ended;
+  for (const auto& [key, grant] : timed_grants_) {
+    const TimeUs until_us = grant.value.until_us;
+    if (since_us < until_us && until_us <= now_us) ended.push_back(grant.value);
+  }
+  return ended;
+}
+
+RightsState::Granted RightsState::granted_at(const PublicKey& key, TimeUs now_us) const {
+  if (const auto* timed = timed_grant(key, now_us))
+    return {&find_role(timed->value.role)->value, timed->by};
+  const auto found = grants_.find(key);
+  if (found == grants_.end()) return {};
+  const Decided<Role>* role = find_role(found->second.value);
+  return role == nullptr ? Granted{} : Granted{&role->value, found->second.by};
+}
+
+const Role& RightsState::role_of(const PublicKey& key, TimeUs now_us) const {
+  if (const Granted granted = granted_at(key, now_us); granted.role != nullptr)
+    return *granted.role;
+  const Decided<Role>* role = find_role(default_role_.value);
   if (role == nullptr) role = find_role(kVisitorRole);
   RUNSTONE_ASSERT(role != nullptr);
   return role->value;
@@ -225,7 +259,7 @@ const Role& RightsState::role_of(const PublicKey& key) const {
 std::vector<PublicKey> RightsState::administrators(TimeUs now_us) const {
   std::vector<PublicKey> keys;
   for (const auto& [key, grant] : grants_) {
-    if (!role_of(key).rights.has(Right::administer)) continue;
+    if (!role_of(key, now_us).rights.has(Right::administer)) continue;
     if (restriction(RestrictionKind::ban, key, now_us) == nullptr) keys.push_back(key);
   }
   return keys;
@@ -300,6 +334,13 @@ const Decided<ProtectedBox>* RightsState::box_at(VoxelPos at) const {
     return true;
   });
   return first;
+}
+
+std::vector<const Decided<ProtectedBox>*> RightsState::boxes_of(const PublicKey& owner) const {
+  std::vector<const Decided<ProtectedBox>*> found;
+  for (auto at = owned_.lower_bound({owner, 0}); at != owned_.end() && at->first == owner; ++at)
+    found.push_back(indexed_[at->second]);
+  return found;
 }
 
 RightsState::Holding RightsState::holding_of(const PublicKey& owner,

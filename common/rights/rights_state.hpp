@@ -78,17 +78,31 @@ class RightsState {
   /// many records for a role, a grant or a restriction, and that of BoxIndex for a box.
   void apply(const RightsChange& change, const ChangeOrigin& origin);
 
+  /// Sets the time (UTC) at which role_of() answers. apply() sets it to that of the record.
+  void set_time(TimeUs now_us) { time_us_ = now_us; }
+
   // Roles.
-  /// Returns the role of a player: the granted one, or else the default role. A grant of a role
-  /// that does not exist counts as no grant, and a default role that does not exist as the role
-  /// visitor. Cost: O(log grants).
-  const Role& role_of(const PublicKey& key) const;
+  /// Returns the role of a player: the granted one, or else the default role. A grant with an end
+  /// that is in force counts before the other. A grant of a role that does not exist counts as no
+  /// grant, and a default role that does not exist as the role visitor. Cost: O(log grants).
+  const Role& role_of(const PublicKey& key) const { return role_of(key, time_us_); }
+  const Role& role_of(const PublicKey& key, TimeUs now_us) const;
   /// Returns null if there is none. The built-in roles always exist.
   const Decided<Role>* find_role(const std::string& name) const;
   const Decided<std::string>& default_role() const { return default_role_; }
   const std::map<std::string, Decided<Role>>& roles() const { return roles_; }
+  /// Returns the grants without an end.
   const std::map<PublicKey, Decided<std::string>>& grants() const { return grants_; }
-  /// Returns the keys with a grant whose role has the right `administer` and who are not banned.
+  /// Returns the grants with an end that the last one of their player decides, also those that have
+  /// ended: such a grant is removed when a later one with an end is made.
+  const std::map<PublicKey, Decided<GrantRole>>& timed_grants() const { return timed_grants_; }
+  /// Returns true if a record has given a role for some time.
+  bool has_timed_grants_ever() const { return has_timed_grants_ever_; }
+  /// Returns the grant with an end that gives the player a role at `now_us` (UTC), or null.
+  const Decided<GrantRole>* timed_grant(const PublicKey& key, TimeUs now_us) const;
+  /// Returns the grants that ended after `since_us`, up to `now_us` (UTC). Cost: O(timed grants).
+  std::vector<GrantRole> grants_ended(TimeUs since_us, TimeUs now_us) const;
+  /// Returns the keys with a grant without an end whose role has the right `administer` and who are not banned.
   /// Cost: O(grants log n).
   std::vector<PublicKey> administrators(TimeUs now_us) const;
 
@@ -125,8 +139,9 @@ class RightsState {
   // Corrections of the time.
   /// Returns true if the records have a correction of the time.
   bool is_time_corrected() const { return is_time_corrected_; }
-  /// Returns true if a restriction or an invite has an end behind `now_us` (UTC) that a record from
-  /// `since` on has given. Cost: O(log n) for each restriction and invite.
+  /// Returns true if a restriction, an invite or a grant has an end behind `now_us` (UTC) that a record from
+  /// `since` on has given. Cost: O(log n) for each restriction,
+  /// invite and grant with an end.
   bool has_ends_given_since(Sequence since, TimeUs now_us) const;
 
   // Protected ground.
@@ -141,6 +156,8 @@ class RightsState {
                                                           std::size_t count_max) const;
   /// Returns the box that decides for a voxel, or null. Cost: O(log boxes).
   const Decided<ProtectedBox>* box_at(VoxelPos at) const;
+  /// Returns the boxes of an owner, in no special order. Cost: O(log boxes + boxes of the owner).
+  std::vector<const Decided<ProtectedBox>*> boxes_of(const PublicKey& owner) const;
   struct Holding {
     std::size_t boxes = 0;
     std::uint64_t volume = 0;  // voxels of all of them together, at most 2^64 - 1
@@ -165,8 +182,13 @@ class RightsState {
                              const TouchesBox& touches, TimeUs now_us) const;
 
  private:
-  const Decided<std::string>* grant_of(const PublicKey& key) const;
-  RightsDecision decide_by_role(const PublicKey& key, Right right) const;
+  /// The role that a player was given, if one was.
+  struct Granted {
+    const Role* role = nullptr;
+    ChangeOrigin by;
+  };
+  Granted granted_at(const PublicKey& key, TimeUs now_us) const;
+  RightsDecision decide_by_role(const PublicKey& key, Right right, TimeUs now_us) const;
   /// Returns the answer if a restriction of the player forbids the right.
   std::optional<RightsDecision> forbidden(const PublicKey& key, Right right, TimeUs now_us) const;
 
@@ -192,6 +214,9 @@ class RightsState {
   std::map<std::string, Decided<Role>> roles_;
   Decided<std::string> default_role_;
   std::map<PublicKey, Decided<std::string>> grants_;
+  std::map<PublicKey, Decided<GrantRole>> timed_grants_;
+  bool has_timed_grants_ever_ = false;
+  TimeUs time_us_ = 0;  // UTC
   bool has_ever_granted_ = false;
   std::map<InviteId, Decided<OpenInvite>> invites_;
   Decided<std::optional<JoinPassword>> password_;

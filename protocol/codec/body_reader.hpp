@@ -79,6 +79,7 @@ struct BodyReader {
   // ---- chat_bodies.cpp
   Result<Message> read(const wire::ChatRequest& t) const;
   Result<Message> read(const wire::ChatLines& t) const;
+  Result<Message> read(const wire::ChatWithdrawn& t) const;
 
   // ---- key_transfer_bodies.cpp
   Result<Message> read(const wire::KeyRequest& t) const;

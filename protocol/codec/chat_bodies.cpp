@@ -42,4 +42,21 @@ Result<Message> BodyReader::read(const wire::ChatLines& t) const {
   return m;
 }
 
+Result<Message> BodyReader::read(const wire::ChatWithdrawn& t) const {
+  const auto count = count_of(t.lines(), kChatWithdrawnMax);
+  if (!count || *count == 0) return bad("withdrawn chat lines are not 1 .. 128");
+  ChatWithdrawn m;
+  m.lines.resize(*count);
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    const wire::ChatLineId& from = *t.lines()->Get(i);
+    ChatLineId& line = m.lines[i];
+    line.utc_us = from.utc_us();
+    if (!is_time(line.utc_us)) return bad("withdrawn chat line: time is out of range");
+    const bool is_named = take_text(from.name(), 1, kPlayerNameBytesMax, line.name);
+    if (!is_named || !is_plain_name(line.name))
+      return bad("withdrawn chat line: name is not that of a player");
+  }
+  return m;
+}
+
 }  // namespace runstone

@@ -25,7 +25,7 @@ using Bodies =
                wire::Resumed, wire::Servers, wire::BuildsRequest, wire::Builds,
                wire::BuildPieceRequest, wire::BuildPiece, wire::BuildOffer, wire::BuildUpload,
                wire::BuildAnswer, wire::ShapesGiven, wire::TexturesGiven, wire::TexturesWanted,
-               wire::TextureParts, wire::WorldTime>;
+               wire::TextureParts, wire::WorldTime, wire::ChatWithdrawn>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

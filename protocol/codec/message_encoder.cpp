@@ -223,6 +223,14 @@ struct BodyBuilder {
     }
     return wire::CreateChatLines(b, b.CreateVector(lines));
   }
+  Offset<wire::ChatWithdrawn> operator()(const ChatWithdrawn& m) {
+    RUNSTONE_ASSERT(!m.lines.empty() && m.lines.size() <= kChatWithdrawnMax);
+    std::vector<Offset<wire::ChatLineId>> lines;
+    lines.reserve(m.lines.size());
+    for (const ChatLineId& line : m.lines)
+      lines.push_back(wire::CreateChatLineId(b, line.utc_us, b.CreateString(line.name)));
+    return wire::CreateChatWithdrawn(b, b.CreateVector(lines));
+  }
 
   Offset<wire::KeyRequest> operator()(const KeyRequest& m) {
     return wire::CreateKeyRequest(b, bytes_of(b, m.slot));

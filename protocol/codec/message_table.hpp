@@ -106,6 +106,7 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"TexturesWanted", client, kControl, open, kFeatureTextures},
       {"TextureParts", server, kChunks, open, kFeatureTextures},
       {"WorldTime", server, kEdits, open, kFeatureWorldTime},
+      {"ChatWithdrawn", server, kControl, open, kFeatureChatWithdrawal},
   }};
 }();
 

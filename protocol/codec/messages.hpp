@@ -469,17 +469,16 @@ struct Resumed {
 
 /// The order is that of the enum Kind in the schema. WorldTime is that of common/core: the clock of
 /// the world, when the message was sent.
-using Message =
-    std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
-                 EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
-                 Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
-                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified,
-                 Permissions, ProtectedGround, ChatRequest, ChatLines, KeyRequest, SealedKey,
-                 KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest, LogMarks,
-                 RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
-                 RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest,
-                 Builds, BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer,
-                 ShapesGiven, TexturesGiven, TexturesWanted, TextureParts, WorldTime>;
+using Message = std::variant<
+    Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks, EditRequest, Commit,
+    Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList, Ping, Pong, Goodbye,
+    ChunkUnavailable, HistoryRequest, ViewState, CommandRequest, CommandOutput, ReceiveAck,
+    UniformChunks, CachedChunks, ChunksNotModified, Permissions, ProtectedGround, ChatRequest,
+    ChatLines, KeyRequest, SealedKey, KeyDeposit, KeyDeposited, MaterialsAdded, LogMarksRequest,
+    LogMarks, RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
+    RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest, Builds,
+    BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven, TexturesGiven,
+    TexturesWanted, TextureParts, WorldTime, ChatWithdrawn>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

@@ -18,13 +18,21 @@ std::string duration_text(std::uint64_t seconds) {
 std::string backup_state_text(const BackupState& state) {
   std::string text = "backups: ";
   if (state.last) {
-    text += "last " + state.last->name + ", " + duration_text(state.last->age_s) + " ago, " +
-            byte_count_text(state.last->bytes) + " (" + byte_count_text(state.last->new_bytes) +
-            " new)";
+    const bool is_ahead = state.last->ahead_s > 0;
+    text += "last " + state.last->name + ", " +
+            (is_ahead ? "dated " + duration_text(state.last->ahead_s) + " in the future"
+                      : duration_text(state.last->age_s) + " ago") +
+            ", " + byte_count_text(state.last->bytes) + " (" +
+            byte_count_text(state.last->new_bytes) + " new)";
   } else {
     text += "none yet";
   }
   text += state.is_under_way ? ", one is under way" : ", next in " + duration_text(state.next_s);
+  if (state.last && state.last->ahead_s > 0) {
+    text +=
+        "\nBACKUPS: the last one is dated in the future: the clock of this computer was wrong, or "
+        "is. It stays, and takes no place of another backup";
+  }
   if (state.failures > 0) {
     text += "\nBACKUPS FAIL, " + std::to_string(state.failures) +
             (state.failures == 1 ? " time: " : " times: ") + state.failure;

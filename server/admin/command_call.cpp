@@ -99,6 +99,10 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
 void CommandServices::tick(const Clocks& now) {
   if (folder_import) folder_import->tick(now);
   if (folder_import && folder_import->is_over()) folder_import = nullptr;
+  announcements.tick(now.steady_us, now.utc_us, [&](const std::string& text) {
+    if (world.cluster().is_following() || world.people().online().empty()) return;
+    world.people().chat().say(text, {}, now);
+  });
   for (Waiting& each : std::exchange(waiting, {})) {
     const Order& order = world.order();
     if (order.durable() >= each.needed &&
@@ -173,7 +177,8 @@ bool CommandCall::refuse_unless_confirmed(const std::optional<std::string>& haza
   return true;
 }
 
-void CommandCall::change_rights(const RightsChange& change, const std::string& text) const {
+void CommandCall::change_rights(const RightsChange& change, const std::string& text,
+                                const std::function<std::string()>& in_force) const {
   if (const auto valid = validate(change); !valid) return refuse(valid.error().what);
   if (auto why = world().rights().change_refusal(change, caller.actor))
     return refuse(*std::move(why));
@@ -184,6 +189,7 @@ void CommandCall::change_rights(const RightsChange& change, const std::string& t
   std::string answer_text = text + " (record " + std::to_string(*seq) + ")";
   const std::size_t left = world().session_count();
   if (left < sessions) answer_text += "; sessions ended: " + std::to_string(sessions - left);
+  if (in_force) answer_text += in_force();
   answer_when_durable(*seq, answer_text);
 }
 

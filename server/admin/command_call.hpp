@@ -14,6 +14,7 @@
 #include "common/rights/change_rules.hpp"
 #include "common/rights/rights_state.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/admin/announcements.hpp"
 #include "server/admin/command_row.hpp"
 #include "server/admin/known_players.hpp"
 #include "server/admin/operator_actions.hpp"
@@ -70,9 +71,10 @@ struct CommandServices {
   std::vector<Waiting> waiting = {};
   std::shared_ptr<FolderImport> folder_import = nullptr;  // the last one
   PlayerReports reports = {};
+  Announcements announcements = {};
 
-  /// Lets the commands go on that wait for the disk, and the import of a folder. Call it on every
-  /// tick, and when the log became durable or failed.
+  /// Lets the commands go on that wait for the disk, and the import of a folder, and writes
+  /// announcements that are due if somebody is here to read them. Call it on every tick, and when the log became durable or failed.
   void tick(const Clocks& now);
 };
 
@@ -132,8 +134,10 @@ struct CommandCall {
   void answer_when_names_durable(const std::string& text) const;
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
   /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
-  /// which hazard_of() warns must be confirmed.
-  void change_rights(const RightsChange& change, const std::string& text) const;
+  /// which hazard_of() warns must be confirmed. `in_force` is called when the change is in force, and
+  /// returns what is appended to the answer; null: nothing is.
+  void change_rights(const RightsChange& change, const std::string& text,
+                     const std::function<std::string()>& in_force = nullptr) const;
 
  private:
   void answer_when_durable(Sequence record, std::uint64_t name_change,

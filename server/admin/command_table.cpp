@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "server/admin/activity_commands.hpp"
+#include "server/admin/allow_commands.hpp"
 #include "server/admin/clock_commands.hpp"
 #include "server/admin/ground_commands.hpp"
 #include "server/admin/host_commands.hpp"
@@ -12,10 +13,12 @@
 #include "server/admin/password_commands.hpp"
 #include "server/admin/player_commands.hpp"
 #include "server/admin/report_commands.hpp"
+#include "server/admin/restore_box_commands.hpp"
 #include "server/admin/retention_commands.hpp"
 #include "server/admin/role_commands.hpp"
 #include "server/admin/rollback_commands.hpp"
 #include "server/admin/shape_commands.hpp"
+#include "server/admin/spawn_commands.hpp"
 #include "server/admin/texture_commands.hpp"
 #include "server/admin/time_commands.hpp"
 
@@ -30,7 +33,7 @@ constexpr const char* kFilterHelp =
     "FILTERS, any of: author NAME, author #N or author NA* (several: any of them), not author NAME,\n"
     "  address-of NAME, joined-after 2d, "
     "since 1h or since 2026-11-21T23:57:42Z,\n"
-    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z,\n"
+    "  until 1h or until 2026-11-21T23:57:42Z, box X Y Z X Y Z, in NAME (of a protected box),\n"
     "  cause player|console|rollback|undo|redo|import|rights|materials|library|clock|textures|gap";
 
 bool may_give(const CommandRule& rule, const std::function<bool(Right)>& has_right, bool is_local) {
@@ -121,10 +124,11 @@ const std::vector<CommandRow>& command_table() {
   static const std::vector<CommandRow> table = [] {
     std::vector<CommandRow> rows;
     for (const auto& part :
-         {player_commands(), ground_commands(), moderation_commands(), activity_commands(),
-          report_commands(), rollback_commands(), role_commands(), password_commands(),
-          clock_commands(), library_commands(), shape_commands(), texture_commands(),
-          time_commands(), retention_commands(), host_commands()})
+         {player_commands(), ground_commands(), spawn_commands(), moderation_commands(),
+          activity_commands(), report_commands(), rollback_commands(), restore_box_commands(),
+          role_commands(), allow_commands(), password_commands(), clock_commands(),
+          library_commands(), shape_commands(), texture_commands(), time_commands(),
+          retention_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

@@ -9,11 +9,12 @@ namespace {
 
 // They are read each time they are used, on the world strand, by the loggers or for a new connection.
 // Clients learn none of them when they join.
-constexpr std::array<std::string_view, 16> kReloaded = {
-    "log_level",           "log_format",       "sessions_per_key", "sessions_per_address",
-    "range_seats_percent", "idle_s",           "operators",        "public_address",
-    "reach_max",           "speed_max",        "tls_certificate",  "tls_key",
-    "message_of_the_day",  "move_to_builders", "border",           "retention_days"};
+constexpr std::array<std::string_view, 17> kReloaded = {
+    "log_level",           "log_format",    "sessions_per_key", "sessions_per_address",
+    "range_seats_percent", "idle_s",        "operators",        "public_address",
+    "reach_max",           "speed_max",     "tls_certificate",  "tls_key",
+    "message_of_the_day",  "announcements", "move_to_builders", "border",
+    "retention_days"};
 
 std::string list_of(const std::vector<std::string>& names) {
   std::string text;

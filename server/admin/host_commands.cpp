@@ -68,6 +68,34 @@ void say(const CommandCall& call, const std::string& text) {
   call.answer("sent to " + std::to_string(sessions) + (sessions == 1 ? " session" : " sessions"));
 }
 
+Result<Announcement, std::string> parse_announce(WordReader& reader) {
+  auto announcement = parse_announcement(reader.text());
+  if (!announcement) return failure("announce: " + announcement.error());
+  return announcement;
+}
+
+void announce(const CommandCall& call, const Announcement& announcement) {
+  const auto added = call.services.announcements.add(announcement);
+  if (!added) return call.refuse("announce: " + added.error());
+  call.answer("announced until the server stops: " + text_of(announcement));
+}
+
+void list_announcements(const CommandCall& call) {
+  call.answer(call.services.announcements.list());
+}
+
+Result<std::size_t, std::string> parse_announcement_number(WordReader& reader) {
+  const std::int64_t number = reader.number("announcements remove", 1, 1'000);
+  reader.expect_end("announcements remove N");
+  return reader.result(static_cast<std::size_t>(number));
+}
+
+void remove_announcement(const CommandCall& call, const std::size_t& number) {
+  const auto removed = call.services.announcements.remove(number);
+  if (!removed) return call.refuse("announcements remove: " + removed.error());
+  call.answer("no longer announced: " + text_of(*removed));
+}
+
 Result<std::string, std::string> parse_backup(WordReader& reader) {
   return reader.result(reader.take_only("the new folder comes after it"));
 }
@@ -125,7 +153,7 @@ void stop_follower(const FollowerCall& call) {
 
 constexpr CommandRule kAdministrators = needs(Right::administer);
 
-constexpr std::array<CommandRow, 8> kHostRows = {{
+constexpr std::array<CommandRow, 11> kHostRows = {{
     {"names release", kAdministrators,
      "names release NAME        free a name, so that the next player who joins under it owns it",
      parsed_by<parse_name, release_name>()},
@@ -136,6 +164,17 @@ constexpr std::array<CommandRow, 8> kHostRows = {{
      .help = "say TEXT                  write to all players, as the server",
      .functions = parsed_by<line_text, say>(),
      .takes_text = true},
+    {.words = "announce",
+     .rule = kAdministrators,
+     .help = "announce every DURATION TEXT, announce at HH:MM TEXT\n"
+             "                          write a line to all players again and again, until the "
+             "server stops",
+     .functions = parsed_by<parse_announce, announce>(),
+     .takes_text = true},
+    {"announcements", kAdministrators, "announcements             the lines that are announced",
+     alone<list_announcements>()},
+    {"announcements remove", kAdministrators, "announcements remove N    announce a line no longer",
+     parsed_by<parse_announcement_number, remove_announcement>()},
     {"backup", kLocal,
      "backup DIR                copy the world to a new folder, while people go on playing",
      parsed_by<parse_backup, back_up>()},

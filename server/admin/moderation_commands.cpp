@@ -273,6 +273,31 @@ std::string exempt_by_default(const RightsState& rights) {
          " administers (role default visitor changes it)";
 }
 
+/// Returns the players who are here and whom a restriction is for.
+std::vector<PublicKey> present_players(const CommandCall& call, const RestrictionSubject& subject) {
+  if (const auto* key = std::get_if<PublicKey>(&subject)) return {*key};
+  std::vector<PublicKey> keys;
+  for (const OnlinePlayer& player : call.world().people().online()) {
+    const bool is_meant = std::get<AddressRange>(subject).contains(player.from);
+    if (is_meant && std::ranges::find(keys, player.key) == keys.end()) keys.push_back(player.key);
+  }
+  return keys;
+}
+
+/// Withdraws the newest lines of the chat of those players who are not here any more. Returns what
+/// the answer says of it, or an empty text if there were none.
+std::string withdraw_lines_of_gone(const CommandCall& call, const std::vector<PublicKey>& players) {
+  People& people = call.world().people();
+  std::size_t lines = 0;
+  for (const PublicKey& key : players) {
+    const auto online = people.online();
+    const bool is_here =
+        std::ranges::any_of(online, [&](const OnlinePlayer& player) { return player.key == key; });
+    if (!is_here) lines += people.chat().withdraw(key);
+  }
+  return lines == 0 ? "" : "; lines of the chat withdrawn: " + std::to_string(lines);
+}
+
 void restrict_subjects(const CommandCall& call, const RestrictCommand& command) {
   with_subjects(call, command.who, [call, command](const FoundSubjects& subjects) {
     const auto change_of = [&](const FoundSubject& each) {
@@ -295,7 +320,12 @@ void restrict_subjects(const CommandCall& call, const RestrictCommand& command) 
       if (word.range) text += exempt_by_default(call.rights());
       CommandCall part = call;
       part.reply = replies[i];
-      part.change_rights(change, text);
+      if (command.kind != RestrictionKind::ban) {
+        part.change_rights(change, text);
+        continue;
+      }
+      const std::vector<PublicKey> players = present_players(call, subject);
+      part.change_rights(change, text, [&] { return withdraw_lines_of_gone(call, players); });
     }
   });
 }
@@ -349,7 +379,7 @@ void list_refusals(const CommandCall& call) {
 
 Result<ChatQuery, std::string> parse_chat_log(WordReader& reader) {
   if (!reader.take_word("log"))
-    return failure("chat: log comes after it, and then by, since or limit");
+    return failure("chat: log comes after it, and then by, since or limit; or withdraw PLAYER");
   ChatQuery query;
   while (!reader.at_end()) {
     const std::string word = reader.take("", "");
@@ -373,9 +403,42 @@ void list_chat_log(const CommandCall& call, const ChatQuery& query) {
   list(query, call.reply);
 }
 
+Result<WithdrawCommand, std::string> parse_withdraw(WordReader& reader) {
+  WithdrawCommand command;
+  do {
+    command.players.push_back(reader.player(reader.command()));
+  } while (!reader.at_end());
+  return reader.result(command);
+}
+
+void withdraw_one(const CommandCall& call, const PublicKey& key, const std::string& who) {
+  // A player withdraws the lines of those whom the player may mute.
+  const Restrict mute{RestrictionKind::mute, key, 0, ""};
+  const bool is_self = call.caller.actor.key == key;
+  if (auto why = call.world().rights().change_refusal(mute, call.caller.actor); why && !is_self)
+    return call.refuse(*std::move(why));
+  const std::size_t lines = call.world().people().chat().withdraw(key);
+  if (lines == 0) return call.refuse(who + " has no line among the newest ones of the chat");
+  call.answer(who + ": lines of the chat withdrawn: " + std::to_string(lines));
+}
+
+void withdraw_lines(const CommandCall& call, const WithdrawCommand& command) {
+  call.with_players(
+      command.players,
+      [call](const KnownPlayers& players, const CommandCall::Keys& keys) {
+        const auto replies = joined_replies(call.reply, keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+          CommandCall part = call;
+          part.reply = replies[i];
+          withdraw_one(part, keys[i], players.text_of(keys[i]));
+        }
+      },
+      before_unknown(command.players.size()));
+}
+
 constexpr CommandRule kModerators = needs(Right::moderate);
 
-constexpr std::array<CommandRow, 12> kModerationRows = {{
+constexpr std::array<CommandRow, 13> kModerationRows = {{
     {.words = "status",
      .rule = kModerators,
      .help = "status                    what the server does",
@@ -412,6 +475,9 @@ constexpr std::array<CommandRow, 12> kModerationRows = {{
      "chat log [by PLAYER] [since MOMENT] [limit N]\n"
      "                          the newest lines of the chat, the last one at the bottom",
      parsed_by<parse_chat_log, list_chat_log>()},
+    {"chat withdraw", kModerators,
+     "chat withdraw PLAYER ...  hide the newest lines of players from everybody; a ban does it, too",
+     parsed_by<parse_withdraw, withdraw_lines>()},
 }};
 
 }  // namespace

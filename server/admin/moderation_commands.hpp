@@ -40,6 +40,11 @@ struct LiftCommand {
   friend bool operator==(const LiftCommand&, const LiftCommand&) = default;
 };
 
+struct WithdrawCommand {
+  std::vector<std::string> players;  // whose lines of the chat are withdrawn
+  friend bool operator==(const WithdrawCommand&, const WithdrawCommand&) = default;
+};
+
 std::span<const CommandRow> moderation_commands();
 
 }  // namespace runstone

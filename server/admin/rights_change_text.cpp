@@ -27,7 +27,8 @@ std::string line_for(const RemoveRole& change) { return "role " + change.role + 
 std::string line_for(const GrantRole& change) {
   const std::string player = key_fingerprint(change.key);
   if (change.role.empty()) return "took the role of " + player + " back";
-  return "gave " + player + " the role " + change.role;
+  return "gave " + player + " the role " + change.role +
+         (change.until_us == 0 ? "" : " until " + utc_text(change.until_us));
 }
 std::string line_for(const SetDefaultRole& change) { return "default role " + change.role; }
 std::string line_for(const Restrict& change) {

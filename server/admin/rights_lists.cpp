@@ -53,7 +53,7 @@ std::string role_list(const RightsState& state, const KnownPlayers& players) {
   return lines.text("there are no roles");
 }
 
-std::string grant_list(const RightsState& state, const KnownPlayers& players) {
+std::string grant_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players) {
   RightsLines lines;
   for (const auto& [key, grant] : state.grants()) {
     if (!lines.take()) continue;
@@ -61,6 +61,11 @@ std::string grant_list(const RightsState& state, const KnownPlayers& players) {
     lines.add(players.text_of(key) + ": " + grant.value +
               (is_known ? "" : " (there is no such role: the default role counts)") + "; " +
               origin_text(grant.by, players));
+  }
+  for (const auto& [key, grant] : state.timed_grants()) {
+    if (state.timed_grant(key, now_us) == nullptr || !lines.take()) continue;
+    lines.add(players.text_of(key) + ": " + grant.value.role + " until " +
+              utc_text(grant.value.until_us) + "; " + origin_text(grant.by, players));
   }
   return lines.text("nobody has a granted role (roles names the default role)");
 }

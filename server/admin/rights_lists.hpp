@@ -15,7 +15,7 @@ namespace runstone {
 /// is marked.
 std::string role_list(const RightsState& state, const KnownPlayers& players);
 /// Returns one line per grant: player, role, and record.
-std::string grant_list(const RightsState& state, const KnownPlayers& players);
+std::string grant_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
 /// Returns one line per invite that can be accepted: number, role, uses, end, and record.
 std::string invite_list(const RightsState& state, TimeUs now_us, const KnownPlayers& players);
 /// Returns one line: whether the world has a password, its role, and record.

@@ -23,6 +23,9 @@ std::string decided_by(const RightsState& state, const RightsDecision& decision,
     return "the player has no grant, and the default role " +
            (is_choice ? "is " + decision.role : decision.role + rights);
   }
+  if (const auto* timed = state.timed_grant(key, now_us); timed && timed->by == decision.by)
+    return "the player was given the role " + decision.role + " until " +
+           utc_text(timed->value.until_us);
   const auto grant = state.grants().find(key);
   if (grant != state.grants().end() && grant->second.by == decision.by)
     return "the player was given the role " + decision.role;

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/core/utc_text.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/edit_budget_text.hpp"
@@ -20,16 +21,28 @@ Result<GrantCommand, std::string> parse_grant(WordReader& reader) {
   GrantCommand command;
   command.player = reader.player("grant");
   command.role = reader.rights_name("grant " + command.player);
-  reader.expect_end("grant " + command.player + " " + command.role);
+  const std::string before = "grant " + command.player + " " + command.role;
+  if (reader.take_word("for")) command.until_us = reader.end_of_duration(before + " for");
+  reader.expect_end(before);
   return reader.result(command);
 }
 
+/// Returns " until 2026-11-30T20:00:00Z", or an empty text without an end.
+std::string until_text(TimeUs until_us) {
+  return until_us == 0 ? "" : " until " + utc_text(until_us);
+}
+
 void grant_role(const CommandCall& call, const GrantCommand& command) {
-  call.with_players({command.player}, [call, role = command.role](const KnownPlayers& players,
-                                                                  const CommandCall::Keys& keys) {
-    call.change_rights(GrantRole{keys[0], role},
-                       players.text_of(keys[0]) + " has the role " + role);
-  });
+  if (command.until_us != 0) {
+    if (auto why = call.world().cluster().timed_grant_refusal())
+      return call.refuse("grant: " + *why);
+  }
+  call.with_players({command.player},
+                    [call, command](const KnownPlayers& players, const CommandCall::Keys& keys) {
+                      call.change_rights(GrantRole{keys[0], command.role, command.until_us},
+                                         players.text_of(keys[0]) + " has the role " +
+                                             command.role + until_text(command.until_us));
+                    });
 }
 
 Result<std::string, std::string> parse_revoke(WordReader& reader) {
@@ -41,8 +54,9 @@ Result<std::string, std::string> parse_revoke(WordReader& reader) {
 void revoke_role(const CommandCall& call, const std::string& player) {
   call.with_players({player}, [call](const KnownPlayers& players, const CommandCall::Keys& keys) {
     const std::string who = players.text_of(keys[0]);
-    if (!call.rights().grants().contains(keys[0]))
-      return call.refuse(who + " has no granted role (grants lists them)");
+    const bool has_grant = call.rights().grants().contains(keys[0]) ||
+                           call.rights().timed_grant(keys[0], call.rights_time()) != nullptr;
+    if (!has_grant) return call.refuse(who + " has no granted role (grants lists them)");
     call.change_rights(GrantRole{keys[0], ""},
                        who + " has the default role " + call.rights().default_role().value);
   });
@@ -50,7 +64,7 @@ void revoke_role(const CommandCall& call, const std::string& player) {
 
 void list_grants(const CommandCall& call) {
   call.with_players({}, [call](const KnownPlayers& players, const CommandCall::Keys&) {
-    call.answer(grant_list(call.rights(), players));
+    call.answer(grant_list(call.rights(), call.rights_time(), players));
   });
 }
 
@@ -266,7 +280,9 @@ constexpr CommandRule kGranters = needs(Right::grant);
 constexpr CommandRule kRoleAdministrators = needs(Right::administer);
 
 constexpr std::array<CommandRow, 10> kRoleRows = {{
-    {"grant", kGranters, "grant PLAYER ROLE         give a player a role",
+    {"grant", kGranters,
+     "grant PLAYER ROLE [for DURATION]\n"
+     "                          give a player a role, which ends by itself with for",
      parsed_by<parse_grant, grant_role>()},
     {"revoke", kGranters, "revoke PLAYER             give a player the default role again",
      parsed_by<parse_revoke, revoke_role>()},

@@ -13,6 +13,7 @@ namespace runstone {
 struct GrantCommand {
   std::string player;
   std::string role;
+  TimeUs until_us = 0;  // UTC; 0: without an end
   friend bool operator==(const GrantCommand&, const GrantCommand&) = default;
 };
 struct CreateInviteCommand {

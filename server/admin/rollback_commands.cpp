@@ -41,7 +41,7 @@ constexpr std::array<CauseName, 12> kCauses = {{{"player", Cause::player},
                                                 {"textures", Cause::textures},
                                                 {"gap", Cause::gap}}};
 constexpr const char* kFilterWords =
-    "author, not author, address-of, joined-after, since, until, box, cause";
+    "author, not author, address-of, joined-after, since, until, box, in, cause";
 constexpr const char* kCauseNames =
     "player, console, rollback, undo, redo, import, rights, materials, library, clock, textures or "
     "gap";
@@ -97,6 +97,11 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
   } else if (word == "box") {
     reader.take("", "");
     filter.box = reader.box(word);
+    if (!filter.in.empty()) reader.wrong("box: a place is a box, or in NAME, and not both");
+  } else if (word == "in") {
+    reader.take("", "");
+    filter.in = reader.rights_name(word);
+    if (filter.box) reader.wrong("in: a place is a box, or in NAME, and not both");
   } else if (word == "cause") {
     reader.take("", "");
     const std::string name = reader.take(word, kCauseNames);
@@ -108,6 +113,16 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
     return false;
   }
   return true;
+}
+
+/// Puts the place of a protected box that the filter names into it. Returns why it cannot, or nullopt.
+std::optional<std::string> place_filter(const CommandCall& call, CommandFilter& filter) {
+  if (filter.in.empty()) return std::nullopt;
+  const Decided<ProtectedBox>* box = call.rights().find_box(filter.in);
+  if (box == nullptr)
+    return "in \"" + filter.in + "\": there is no such protected box (protected lists them)";
+  filter.box = box->value.box;
+  return std::nullopt;
 }
 
 /// Returns the players who have built, for the lines of the log. Blocks on the disk.
@@ -171,14 +186,15 @@ Result<std::string, std::string> read_log_lines(WorldReader& reader, const Selec
 
 void list_log(const CommandCall& call, const LogCommand& command) {
   call.world().commit(call.now);
-  with_selection(
-      call, command.filter, "log", false, [call, limit = command.limit](SelectionFilter filter) {
-        filter.last = call.world().order().durable();
-        call.on_worker(
-            "log: ",
-            [filter, limit](WorldReader& reader) { return read_log_lines(reader, filter, limit); },
-            [call](const std::string& text) { call.answer(text); });
-      });
+  CommandFilter filter = command.filter;
+  if (auto why = place_filter(call, filter)) return call.refuse("log " + *why);
+  with_selection(call, filter, "log", false, [call, limit = command.limit](SelectionFilter filter) {
+    filter.last = call.world().order().durable();
+    call.on_worker(
+        "log: ",
+        [filter, limit](WorldReader& reader) { return read_log_lines(reader, filter, limit); },
+        [call](const std::string& text) { call.answer(text); });
+  });
 }
 
 Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
@@ -212,7 +228,65 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
   return preview;
 }
 
+constexpr CommandRule kRollback = needs(Right::roll_back);
+// Without the right roll_back these commands are for the owners of protected ground.
+constexpr CommandRule kOwnRollback = needs(Right::roll_back, Right::claim, Right::build);
+
+RollbackService::Scope scope_of(const CommandCall& call) {
+  const bool has_all = has_right(call.caller, call.rights(), Right::roll_back, call.rights_time());
+  return has_all ? RollbackService::Scope::all : RollbackService::Scope::own;
+}
+
+std::string box_names(const std::vector<const Decided<ProtectedBox>*>& boxes) {
+  std::string text;
+  for (const auto* box : boxes) text += (text.empty() ? "" : ", ") + box->value.name;
+  return text;
+}
+
+/// Chooses the ground on which a caller without the right roll_back takes edits back, and puts it
+/// into the filter. A failure is the reason why there is none.
+Result<OwnGround, std::string> choose_own_ground(const CommandCall& call,
+                                                 const RollbackPreviewCommand& command,
+                                                 CommandFilter& filter) {
+  const PublicKey& key = *call.caller.actor.key;
+  const auto boxes = call.rights().boxes_of(key);
+  if (boxes.empty()) {
+    const auto lacks = why_not(call.caller, call.rights(), kRollback, call.rights_time());
+    return failure(lacks.value_or("you own no protected ground") +
+                   " (who owns protected ground takes edits back there without it)");
+  }
+  if (auto frozen = call.world().rights().freeze_text(key)) return failure(*frozen);
+  if (!filter.address_of.empty())
+    return failure("rollback preview: address-of needs the right roll_back");
+  if (command.picture) return failure("rollback preview: picture needs the right roll_back");
+  const Decided<ProtectedBox>* chosen = nullptr;
+  for (const auto* box : boxes) {
+    const bool is_named = !filter.in.empty() && box->value.name == filter.in;
+    const bool has_place =
+        filter.in.empty() && filter.box && intersect(box->value.box, *filter.box) == *filter.box;
+    const bool is_only = filter.in.empty() && !filter.box && boxes.size() == 1;
+    if (is_named || has_place || is_only) chosen = box;
+  }
+  if (chosen == nullptr && filter.in.empty() && !filter.box)
+    return failure("rollback preview: say in which of your boxes, with in NAME: " +
+                   box_names(boxes));
+  if (chosen == nullptr)
+    return failure("rollback preview: that is not wholly in ground of yours: your boxes are " +
+                   box_names(boxes));
+  if (!filter.box) filter.box = chosen->value.box;
+  return OwnGround{call.caller.author, chosen->value.name, *filter.box};
+}
+
 void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& command) {
+  CommandFilter filter = command.filter;
+  std::optional<OwnGround> own;
+  if (scope_of(call) == RollbackService::Scope::own) {
+    auto chosen = choose_own_ground(call, command, filter);
+    if (!chosen) return call.refuse(chosen.error());
+    own = *std::move(chosen);
+  } else if (auto why = place_filter(call, filter)) {
+    return call.refuse("rollback preview " + *why);
+  }
   const auto edits = call.caller.preview_view
                          ? std::make_shared<PreviewEdits>(*call.caller.preview_view)
                          : std::shared_ptr<PreviewEdits>();
@@ -249,9 +323,10 @@ void preview_rollback(const CommandCall& call, const RollbackPreviewCommand& com
     }
     reply(given);
   };
-  with_selection(call, command.filter, "rollback preview", true,
-                 [call, answer, viewer, summarise](const SelectionFilter& filter) {
-                   call.services.rollback.preview(filter, call.now, answer, viewer, summarise);
+  with_selection(call, filter, "rollback preview", true,
+                 [call, answer, viewer, summarise, own](const SelectionFilter& selected) {
+                   call.services.rollback.preview(selected, call.now, answer, viewer, summarise,
+                                                  own);
                  });
 }
 
@@ -259,38 +334,59 @@ Result<std::string, std::string> parse_rollback_id(WordReader& reader) {
   return reader.result(reader.take_only("one id comes after it (rollback list names them)"));
 }
 
+/// Returns why an owner of ground may not apply a preview: the ground has changed hands or place.
+std::optional<std::string> why_not_own(const CommandCall& call, const OwnGround& ground) {
+  const PublicKey& key = *call.caller.actor.key;
+  if (auto frozen = call.world().rights().freeze_text(key)) return frozen;
+  const Decided<ProtectedBox>* box = call.rights().find_box(ground.name);
+  const bool is_owned = box != nullptr && box->value.owner == key &&
+                        intersect(box->value.box, ground.box) == ground.box;
+  if (is_owned) return std::nullopt;
+  return "rollback apply: the ground of the preview is not wholly yours any more (" + ground.name +
+         ")";
+}
+
 void apply_rollback(const CommandCall& call, const std::string& id) {
-  call.services.rollback.apply(id, call.caller.author, call.reply);
+  RollbackService& rollback = call.services.rollback;
+  const RollbackService::Scope scope = scope_of(call);
+  const OwnGround* const ground =
+      scope == RollbackService::Scope::own ? rollback.own_ground(id, call.caller.author) : nullptr;
+  if (ground != nullptr) {
+    if (auto why = why_not_own(call, *ground)) return call.refuse(*std::move(why));
+  }
+  rollback.apply(id, call.caller.author, call.reply, scope);
 }
 void cancel_rollback(const CommandCall& call, const std::string& id) {
-  call.services.rollback.cancel(id, call.reply);
+  call.services.rollback.cancel(id, call.reply, call.caller.author, scope_of(call));
 }
 void undo_rollback(const CommandCall& call, const std::string& id) {
-  call.services.rollback.undo_rollback(id, call.caller.author, call.now, call.reply);
+  call.services.rollback.undo_rollback(id, call.caller.author, call.now, call.reply,
+                                       scope_of(call));
 }
-void list_rollbacks(const CommandCall& call) { call.services.rollback.list(call.reply); }
-
-constexpr CommandRule kRollback = needs(Right::roll_back);
+void list_rollbacks(const CommandCall& call) {
+  call.services.rollback.list(call.reply, call.caller.author, scope_of(call));
+}
 
 constexpr std::array<CommandRow, 6> kRollbackRows = {{
     {"log", kRollback, "log FILTERS [limit N]     the newest actions, the last one at the bottom",
      parsed_by<parse_log, list_log>()},
     {.words = "rollback preview",
-     .rule = kRollback,
+     .rule = kOwnRollback,
      .help = "rollback preview FILTERS [picture]\n"
              "                          what a rollback of these edits would do; "
-             "`picture` draws the area before and after",
+             "`picture` draws the area before and after.\n"
+             "                          Owners of protected ground: of edits there, in NAME",
      .functions = parsed_by<parse_preview, preview_rollback>(),
      .may_be_confirmed = true},
-    {"rollback apply", kRollback,
+    {"rollback apply", kOwnRollback,
      "rollback apply ID         do it, while people go on playing; "
      "what others built since stays",
      parsed_by<parse_rollback_id, apply_rollback>()},
-    {"rollback cancel", kRollback, "rollback cancel ID        stop it, or forget a preview",
+    {"rollback cancel", kOwnRollback, "rollback cancel ID        stop it, or forget a preview",
      parsed_by<parse_rollback_id, cancel_rollback>()},
-    {"rollback undo", kRollback, "rollback undo ID          take a rollback back",
+    {"rollback undo", kOwnRollback, "rollback undo ID          take a rollback back",
      parsed_by<parse_rollback_id, undo_rollback>()},
-    {"rollback list", kRollback, "rollback list             previews, and the rollbacks so far",
+    {"rollback list", kOwnRollback, "rollback list             previews, and the rollbacks so far",
      alone<list_rollbacks>()},
 }};
 

@@ -31,6 +31,7 @@ struct CommandFilter {
   std::optional<TimeUs> joined_after_us;    // UTC; edits of players who joined later
   std::optional<TimeUs> from_us, until_us;  // UTC, both included
   std::optional<VoxelBox> box;
+  std::string in;  // the name of a protected box, in place of `box`; empty: none
   std::optional<Cause> cause;
   /// Returns true if players must be looked up.
   bool is_about_players() const {

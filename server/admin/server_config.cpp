@@ -168,6 +168,16 @@ FormField message_of_the_day_field() {
           [](const ServerConfig& config) { return config.message_of_the_day; }};
 }
 
+FormField announcements_field() {
+  return {[](ServerConfig& config, const std::string& text) -> Result<void, std::string> {
+            auto announcements = parse_announcements(text);
+            if (!announcements) return failure(announcements.error());
+            config.announcements = *std::move(announcements);
+            return {};
+          },
+          [](const ServerConfig& config) { return text_of(config.announcements); }};
+}
+
 constexpr std::uint64_t kBackupEveryMin = 60, kBackupEveryMax = 366ULL * 86'400;
 
 FormField backup_every_field() {
@@ -329,8 +339,8 @@ const SettingsTable<ServerConfig>& settings() {
                  "voxels below y = 0 where edits may be"),
           form(
               "border",
-              "x z x z of two opposite columns, or x y z x y z of two opposite corners, all inside: "
-              "players edit within them; empty: everywhere",
+              "x z x z of two opposite columns, or x y z x y z of two opposite corners, all inside, "
+              "or circle x z radius: players edit within it; empty: everywhere",
               border_field()),
           number("reach_max", &C::reach_max, 0, 1ULL << 30,
                  "voxels from a player to the farthest voxel of an edit, 0: no limit"),
@@ -359,6 +369,11 @@ const SettingsTable<ServerConfig>& settings() {
                message_of_the_day_field()),
           number("retention_days", &C::retention_days, 0, kRetentionDaysMax,
                  "days before the newest edit for which edits stay in the log, 0: for ever"),
+          form(
+              "announcements",
+              "every 30m TEXT or at 20:00 TEXT (UTC), with | between several: lines that the server "
+              "writes to all players; empty: none",
+              announcements_field()),
           form("backup_every",
                "time between two backups that the server makes by itself, such as 6h; 0: none",
                backup_every_field()),

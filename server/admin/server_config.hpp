@@ -16,10 +16,12 @@
 #include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/default_port.hpp"
+#include "server/admin/announcements.hpp"
 #include "server/admin/log_format.hpp"
 #include "server/admin/log_level.hpp"
 #include "server/limits/address_form.hpp"
 #include "server/settings/setting_names.hpp"
+#include "server/world/environment/world_border.hpp"
 
 namespace runstone {
 
@@ -99,7 +101,7 @@ struct ServerConfig {
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
   std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
-  std::optional<VoxelBox> border;             // edits lie within it; nullopt: there is none
+  std::optional<WorldBorder> border;          // edits lie within it; nullopt: there is none
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
   /// Voxels a second at which `reach_max` follows a player who jumps, 0: at once .. 2^30.
   std::uint64_t speed_max = 0;
@@ -117,6 +119,7 @@ struct ServerConfig {
   std::string message_of_the_day;      // for players who join; empty: none
   // Retention.
   std::uint64_t retention_days = 0;  // for which edits stay in the log, 0: for ever .. 36500
+  std::vector<Announcement> announcements;  // lines that are written again and again
   // Backups that the server makes by itself.
   std::uint64_t backup_every_s = 0;       // seconds between two backups, 0: none, 60..31622400
   std::string backup_folder;              // that holds them; not in the world's folder

@@ -102,7 +102,7 @@ std::string chat_list(const std::vector<ChatEntry>& entries) {
     if (!text.empty()) text += "\n";
     text += utc_text(entry.line.utc_us) + " " + (is_of_server ? "server" : entry.line.name);
     if (entry.key != PublicKey{}) text += " " + key_fingerprint(entry.key);
-    text += ": " + entry.line.text;
+    text += (entry.is_withdrawn ? " (withdrawn): " : ": ") + entry.line.text;
   }
   return text;
 }

@@ -102,6 +102,7 @@ BackupState BackupSchedule::state() const {
   if (last_) {
     state.last = last_->backup;
     state.last->age_s = seconds_of(now_us - last_->taken_us);
+    state.last->ahead_s = seconds_of(last_->taken_us - now_us);
   }
   state.next_s = seconds_of(next_us_ - now_us);
   state.is_under_way = is_under_way_;

@@ -27,6 +27,14 @@ constexpr const char* kSchema =
     "CREATE TABLE line(id INTEGER PRIMARY KEY AUTOINCREMENT, utc_us INTEGER NOT NULL, "
     "kind INTEGER NOT NULL, key BLOB NOT NULL, name TEXT NOT NULL, text TEXT NOT NULL)";
 
+// A column that files of earlier versions lack, and that those versions ignore.
+constexpr const char* kHasWithdrawn =
+    "SELECT COUNT(*) FROM pragma_table_info('line') WHERE name = 'withdrawn'";
+constexpr const char* kAddWithdrawn = "ALTER TABLE line ADD COLUMN withdrawn INTEGER";
+
+// The world strand withdraws lines that it keeps in memory. Each is among the newest lines here.
+constexpr std::int64_t kWithdrawnAmongNewest = 4'096;
+
 // A commit waits for no fsync, which would delay those of the edit log: only a checkpoint does, once
 // in some thousand lines. The file shrinks when lines are removed.
 constexpr const char* kPragmas =
@@ -64,6 +72,7 @@ std::optional<ChatEntry> entry_of(const sql::Statement& row) {
   const auto text = chat_text(row.text(4));
   if (!text) return std::nullopt;
   line.text = *text;
+  entry.is_withdrawn = row.integer(5) != 0;
   return entry;
 }
 
@@ -97,6 +106,11 @@ sql::Result<void> ChatDatabase::prepare() {
   } else if (*layout != kLayout) {
     return failure(sql::Error{sql::Error::Kind::corrupt, database_.file(), "has another layout"});
   }
+  const auto has_withdrawn = database_.integer(kHasWithdrawn);
+  if (!has_withdrawn) return failure(has_withdrawn.error());
+  if (*has_withdrawn == 0) {
+    if (auto added = database_.run(kAddWithdrawn); !added) return added;
+  }
   const auto take = [this](const char* text, sql::Statement& into) -> sql::Result<void> {
     auto statement = database_.prepare(text);
     if (!statement) return failure(statement.error());
@@ -114,7 +128,13 @@ sql::Result<void> ChatDatabase::prepare() {
                      forget_);
       !ok)
     return ok;
-  return take("SELECT utc_us, kind, key, name, text FROM line ORDER BY id DESC", newest_);
+  if (auto ok = take("UPDATE line SET withdrawn = 1 WHERE id > (SELECT MAX(id) FROM line) - ?1 "
+                     "AND kind = ?2 AND key = ?3 AND utc_us = ?4",
+                     withdraw_);
+      !ok)
+    return ok;
+  return take("SELECT utc_us, kind, key, name, text, withdrawn FROM line ORDER BY id DESC",
+              newest_);
 }
 
 sql::Result<void> ChatDatabase::insert(const ChatEntry& entry) {
@@ -138,6 +158,20 @@ sql::Result<void> ChatDatabase::append(std::span<const ChatEntry> entries) {
   return transaction->commit();
 }
 
+sql::Result<void> ChatDatabase::withdraw(const PublicKey& key, std::span<const TimeUs> times) {
+  auto transaction = sql::Transaction::begin(database_);
+  if (!transaction) return failure(transaction.error());
+  for (const TimeUs utc_us : times) {
+    auto marked = withdraw_.bind(1, kWithdrawnAmongNewest)
+                      .bind(2, static_cast<std::int64_t>(ChatLineKind::player))
+                      .bind(3, ByteView(key))
+                      .bind(4, utc_us)
+                      .run();
+    if (!marked) return marked;
+  }
+  return transaction->commit();
+}
+
 sql::Result<void> ChatDatabase::forget_before(TimeUs utc_us) {
   forget_.bind(1, utc_us);
   if (auto forgotten = forget_.run(); !forgotten) return forgotten;
@@ -155,6 +189,7 @@ sql::Result<std::vector<ChatEntry>> ChatDatabase::search(const ChatQuery& query)
     auto entry = entry_of(newest_);
     if (!entry) continue;
     if (query.since_us && entry->line.utc_us < *query.since_us) break;
+    if (entry->is_withdrawn && !query.with_withdrawn) continue;
     if (!is_written_by(*entry, query.by)) continue;
     found.push_back(*std::move(entry));
   }

@@ -24,6 +24,9 @@ class ChatDatabase {
 
   /// Writes the lines, all or none.
   sql::Result<void> append(std::span<const ChatEntry> entries);
+  /// Marks the lines of a player with these times as withdrawn, if they are among the 4,096 newest.
+  /// Cost: O(times).
+  sql::Result<void> withdraw(const PublicKey& key, std::span<const TimeUs> times);
   /// Removes the lines up to the newest one that is older. The lines before it are older too, whatever
   /// time a wrong clock has given them.
   sql::Result<void> forget_before(TimeUs utc_us);
@@ -39,7 +42,7 @@ class ChatDatabase {
 
   sql::Database database_;
   std::uint64_t lines_max_;
-  sql::Statement insert_, trim_, forget_, newest_;
+  sql::Statement insert_, trim_, forget_, withdraw_, newest_;
 };
 
 /// Returns true if the failure means that the file is damaged, or is no log of the chat.

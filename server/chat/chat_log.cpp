@@ -53,6 +53,15 @@ void ChatLog::append(const ChatEntry& entry) {
   work_.notify_one();
 }
 
+void ChatLog::withdraw(const PublicKey& key, const std::vector<TimeUs>& times) {
+  {
+    const std::lock_guard guard(mutex_);
+    if (stopping_ || waiting_.withdrawals.size() >= limits_.queued_withdrawals_max) return;
+    waiting_.withdrawals.push_back({key, times});
+  }
+  work_.notify_one();
+}
+
 void ChatLog::forget_before(TimeUs utc_us) {
   {
     const std::lock_guard guard(mutex_);
@@ -94,7 +103,8 @@ std::optional<ChatLog::Work> ChatLog::take_work() {
   std::unique_lock lock(mutex_);
   const auto is_hurried = [this] { return stopping_ || !waiting_.searches.empty(); };
   const auto has_work = [&] {
-    return is_hurried() || !waiting_.lines.empty() || waiting_.forget_before_us;
+    return is_hurried() || !waiting_.lines.empty() || !waiting_.withdrawals.empty() ||
+           waiting_.forget_before_us;
   };
   if (missing_ == 0) {
     work_.wait(lock, has_work);
@@ -103,8 +113,8 @@ std::optional<ChatLog::Work> ChatLog::take_work() {
   }
   work_.wait_until(lock, written_ + limits_.commit_interval, is_hurried);
   Work work = std::exchange(waiting_, {});
-  const bool is_over =
-      stopping_ && work.lines.empty() && work.searches.empty() && !work.forget_before_us;
+  const bool is_over = stopping_ && work.lines.empty() && work.withdrawals.empty() &&
+                       work.searches.empty() && !work.forget_before_us;
   if (is_over) return std::nullopt;
   return work;
 }
@@ -123,6 +133,10 @@ void ChatLog::carry_out(Work& work) {
       const std::lock_guard guard(mutex_);
       missing_ += work.lines.size();
     }
+  }
+  for (const Withdrawal& each : work.withdrawals) {
+    static_cast<void>(with_database(
+        [&](ChatDatabase& database) { return database.withdraw(each.key, each.times); }));
   }
   for (const Search& search : work.searches) {
     Found found = std::vector<ChatEntry>();

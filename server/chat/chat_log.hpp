@@ -7,7 +7,7 @@
 //     that is damaged is renamed to chat.sqlite.damaged, which is removed when its lines would have
 //     been, and a new one is begun. Nobody waits for the log, and the server never stops for it. A
 //     warning, at most once a minute, counts the missing lines.
-// Threads: append(), forget_before(), search() from any thread; they never wait for the disk. The
+// Threads: append(), withdraw(), forget_before(), search() from any thread; they never wait for the disk. The
 // thread of the log calls `on_warning` and the answers of searches.
 #pragma once
 #include <chrono>
@@ -34,6 +34,7 @@ class ChatLog {
   struct Limits {
     std::size_t queued_lines_max = 1'024;
     std::size_t queued_searches_max = 8;
+    std::size_t queued_withdrawals_max = 1'024;
     std::uint64_t lines_max = 100'000;  // in the file, some 70 MB at most
     std::chrono::milliseconds commit_interval{1'000};
     std::chrono::milliseconds warning_interval{60'000};
@@ -51,6 +52,9 @@ class ChatLog {
   ChatLog& operator=(const ChatLog&) = delete;
 
   void append(const ChatEntry& entry);
+  /// Marks lines of a player that were appended before, by their times, as withdrawn. Does nothing if
+  /// too many such calls wait.
+  void withdraw(const PublicKey& key, const std::vector<TimeUs>& times);
   /// Removes the lines that are older, and a damaged file that was last written before, soon.
   void forget_before(TimeUs utc_us);
   using Found = Result<std::vector<ChatEntry>, std::string>;
@@ -65,8 +69,13 @@ class ChatLog {
     ChatQuery query;
     std::function<void(const Found&)> done;
   };
+  struct Withdrawal {
+    PublicKey key{};
+    std::vector<TimeUs> times;
+  };
   struct Work {
     std::vector<ChatEntry> lines;
+    std::vector<Withdrawal> withdrawals;  // of these lines and earlier ones
     std::optional<TimeUs> forget_before_us;
     std::deque<Search> searches;
   };

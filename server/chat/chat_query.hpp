@@ -18,6 +18,7 @@ struct ChatQuery {
   std::string by;
   std::optional<TimeUs> since_us;  // UTC
   std::uint64_t limit = 20;        // newest lines, 1 .. kChatLinesListedMax
+  bool with_withdrawn = true;      // also lines that were withdrawn
   friend bool operator==(const ChatQuery&, const ChatQuery&) = default;
 };
 

@@ -378,6 +378,7 @@ StoreResult<void> WorldRebuild::follow_log() {
       meta_[kShapesKey] = std::int64_t{1};
     if (given_texture_of(record.edit) != nullptr) meta_[kTexturesKey] = std::int64_t{1};
     if (gap_of(record.edit) != nullptr) meta_[kGapsKey] = std::int64_t{1};
+    if (grants_for_some_time(record)) meta_[kTimedGrantsKey] = std::int64_t{1};
     return segments->add(record.version.seq, author, bounding_box(record.edit));
   });
   if (!read) return read;
@@ -410,7 +411,8 @@ StoreResult<void> WorldRebuild::write_meta() {
   auto meta = MetaTable::open(*database_);
   if (!meta) return failed(meta.error());
   // These values follow from no other table. The values below are made again.
-  for (const char* key : {kShapesKey, kTexturesKey, kGapsKey, kClockKey, kPlacesKey}) {
+  for (const char* key :
+       {kShapesKey, kTexturesKey, kGapsKey, kTimedGrantsKey, kClockKey, kPlacesKey}) {
     const auto row = found_->meta().find(key);
     if (row != found_->meta().end()) meta_[key] = row->second;
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@
 #include "server/store/world_reader.hpp"
 
 namespace runstone {
+
+/// The protected ground of a player without the right `roll_back`, who takes edits back there.
+struct OwnGround {
+  AuthorId author = 0;  // of the player
+  std::string name;     // of the protected box
+  VoxelBox box;         // in the protected box; nothing outside changes
+};
 
 struct RollbackPreview {
   enum class State { computing, ready, applied };
@@ -41,7 +49,8 @@ struct RollbackPreview {
     std::atomic<std::uint64_t> chunks = 0, chunks_done = 0;
   };
   std::shared_ptr<Progress> progress = std::make_shared<Progress>();
-  Sequence rollback = 0;  // first edit of the rollback; 0 until it has written one
+  Sequence rollback = 0;         // first edit of the rollback; 0 until it has written one
+  std::optional<OwnGround> own;  // nullopt: of somebody with the right `roll_back`
 
   // The worker writes these in compute(). The world strand reads them after the worker has
   // answered.

@@ -13,6 +13,8 @@ namespace {
 
 // Selections are large, so the oldest preview is discarded when there are more.
 constexpr std::size_t kPreviewsMax = 16;
+// Of these, previews of players without the right `roll_back`. They displace no others.
+constexpr std::size_t kOwnPreviewsMax = 8;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 // A preview that takes longer than the first time answers with its progress at the second interval.
@@ -229,15 +231,16 @@ void RollbackService::undo_action(AuthorId author, ClientInstance instance, Sequ
 
 void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
                               RollbackPreview::PlanViewer viewer,
-                              RollbackPreview::Summary summarise) {
-  when_durable(now, reply, [this, filter, reply, viewer, summarise] {
+                              RollbackPreview::Summary summarise,
+                              const std::optional<OwnGround>& own) {
+  when_durable(now, reply, [this, filter, reply, viewer, summarise, own] {
+    if (own && !make_room_for_own(own->author))
+      return refuse(reply, "rollback preview: moderators keep too many previews: try again later");
     const auto preview = std::make_shared<RollbackPreview>();
     preview->number = next_preview_++;
+    preview->own = own;
     previews_[preview->number] = preview;
-    if (previews_.size() > kPreviewsMax) {
-      previews_.begin()->second->is_wanted->store(false);
-      previews_.erase(previews_.begin());
-    }
+    if (previews_.size() > kPreviewsMax) discard(previews_.begin()->first);
     computing_.push_back({preview, reply});
     SelectionFilter until_now = filter;
     until_now.last = std::min(filter.last, world_.order().durable());
@@ -250,6 +253,26 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
           answer_preview(*preview, error, reply);
         });
   });
+}
+
+void RollbackService::discard(std::uint64_t number) {
+  const auto found = previews_.find(number);
+  if (found == previews_.end()) return;
+  found->second->is_wanted->store(false);
+  previews_.erase(found);
+}
+
+bool RollbackService::make_room_for_own(AuthorId author) {
+  std::vector<std::uint64_t> mine, others;  // the oldest first
+  for (const auto& [number, preview] : previews_) {
+    if (preview->own) (preview->own->author == author ? mine : others).push_back(number);
+  }
+  for (const std::uint64_t number : mine) discard(number);
+  std::size_t discarded = 0;
+  while (discarded < others.size() &&
+         (others.size() - discarded >= kOwnPreviewsMax || previews_.size() >= kPreviewsMax))
+    discard(others[discarded++]);
+  return previews_.size() < kPreviewsMax;
 }
 
 void RollbackService::answer_preview(RollbackPreview& preview, const std::string& reader_error,
@@ -285,8 +308,26 @@ RollbackPreview* RollbackService::find_preview(const std::string& id) {
   return found == previews_.end() ? nullptr : found->second.get();
 }
 
-void RollbackService::apply(const std::string& id, AuthorId author, CommandReply reply) {
+RollbackPreview* RollbackService::find_preview(const std::string& id, AuthorId author,
+                                               Scope scope) {
   RollbackPreview* const preview = find_preview(id);
+  const bool is_in_scope = preview != nullptr && (scope == Scope::all ||
+                                                  (preview->own && preview->own->author == author));
+  return is_in_scope ? preview : nullptr;
+}
+
+const OwnGround* RollbackService::own_ground(const std::string& id, AuthorId author) {
+  const RollbackPreview* const preview = find_preview(id, author, Scope::own);
+  return preview == nullptr ? nullptr : &*preview->own;
+}
+
+void RollbackService::apply(const std::string& id, AuthorId author, CommandReply reply,
+                            Scope scope) {
+  const bool is_busy = scope == Scope::own && std::ranges::any_of(jobs_, [&](const auto& job) {
+                         return !job->player_change_of && job->job.order().payer == author;
+                       });
+  if (is_busy) return refuse(reply, "rollback apply: one of yours is still under way");
+  RollbackPreview* const preview = find_preview(id, author, scope);
   if (preview == nullptr) {
     return refuse(reply,
                   "rollback apply: there is no preview \"" + id + "\" (rollback list names them)");
@@ -304,6 +345,7 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
   RestoreOrder order;
   order.author = author;
   order.instance = new_instance();
+  order.payer = scope == Scope::own ? author : 0;
   order.cause = Cause::rollback;
   order.selection = preview->selection;
   reply(CommandAnswer::progress("rollback " + id + " begins: " + counted(preview->voxels, "voxel") +
@@ -313,30 +355,32 @@ void RollbackService::apply(const std::string& id, AuthorId author, CommandReply
       previews_[preview->number];
 }
 
-void RollbackService::cancel(const std::string& id, CommandReply reply) {
+void RollbackService::cancel(const std::string& id, CommandReply reply, AuthorId author,
+                             Scope scope) {
   for (const auto& job : jobs_) {
     const bool is_it =
         (job->preview && job->preview->id() == id) ||
         (job->job.progress().first != 0 && std::to_string(job->job.progress().first) == id);
-    if (!is_it || job->player_change_of) continue;
+    const bool is_in_scope = scope == Scope::all || job->job.order().payer == author;
+    if (!is_it || job->player_change_of || !is_in_scope) continue;
     job->job.cancel();
     return reply(CommandAnswer::last("rollback " + id + " stops"));
   }
-  RollbackPreview* const preview = find_preview(id);
+  RollbackPreview* const preview = find_preview(id, author, scope);
   if (preview == nullptr)
     return refuse(reply, "rollback cancel: there is no preview or running rollback \"" + id + "\"");
   if (preview->state == RollbackPreview::State::applied) {
     return refuse(reply, "rollback cancel: " + id + " is applied already: `rollback undo " +
                              std::to_string(preview->rollback) + "` takes it back");
   }
-  preview->is_wanted->store(false);
-  previews_.erase(preview->number);
+  discard(preview->number);
   reply(CommandAnswer::last("preview " + id + " is forgotten"));
 }
 
-Sequence RollbackService::rollback_named(const std::string& id, const CommandReply& reply) {
+Sequence RollbackService::rollback_named(const std::string& id, AuthorId author, Scope scope,
+                                         const CommandReply& reply) {
   Sequence seq = 0;
-  if (const RollbackPreview* preview = find_preview(id)) {
+  if (const RollbackPreview* preview = find_preview(id, author, scope)) {
     seq = preview->rollback;
     if (seq == 0) refuse(reply, "rollback undo: " + id + " has not changed anything yet");
   } else {
@@ -357,24 +401,31 @@ Sequence RollbackService::rollback_named(const std::string& id, const CommandRep
 }
 
 void RollbackService::undo_rollback(const std::string& id, AuthorId author, const Clocks& now,
-                                    CommandReply reply) {
-  const Sequence seq = rollback_named(id, reply);
+                                    CommandReply reply, Scope scope) {
+  const Sequence seq = rollback_named(id, author, scope, reply);
   if (seq == 0) return;
-  when_durable(now, reply, [this, seq, author, reply] {
+  when_durable(now, reply, [this, seq, author, reply, scope] {
     if (seq > world_.order().head())
       return refuse(reply, "rollback undo: there is no edit " + std::to_string(seq));
     auto found = std::make_shared<StoreResult<Selection>>(Selection());
+    auto is_foreign = std::make_shared<bool>(false);
     workers_.run(
-        [found, seq, should_continue = should_continue()](WorldReader& reader, const Generator&) {
+        [found, is_foreign, seq, author, scope, should_continue = should_continue()](
+            WorldReader& reader, const Generator&) {
           const auto group = rollback_group(reader, seq);
+          *is_foreign = group && scope == Scope::own && group->op.author != author;
+          if (*is_foreign) return;
           *found = group ? select_edits(reader, group->edits, should_continue)
                          : StoreResult<Selection>(failure(group.error()));
         },
-        [this, found, seq, author, reply](const std::string& error) {
+        [this, found, is_foreign, seq, author, scope, reply](const std::string& error) {
           if (!error.empty()) return refuse(reply, "rollback undo: " + error);
+          if (*is_foreign)
+            return refuse(reply, "rollback undo: " + std::to_string(seq) + " is not one of yours");
           if (!*found) return refuse(reply, "rollback undo: " + found->error().message());
           RestoreOrder order;
           order.author = author;
+          order.payer = scope == Scope::own ? author : 0;
           order.instance = new_instance();
           order.cause = Cause::undo;
           order.selection = std::make_shared<const Selection>(*std::move(*found));
@@ -383,9 +434,10 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
   });
 }
 
-void RollbackService::list(CommandReply reply) {
+void RollbackService::list(CommandReply reply, AuthorId author, Scope scope) {
   std::string text;
   for (const auto& [number, preview] : previews_) {
+    if (find_preview(preview->id(), author, scope) == nullptr) continue;
     if (preview->state == RollbackPreview::State::computing)
       text += preview->id() + " is being computed: " + preview->progress_text() + "\n";
     if (preview->state == RollbackPreview::State::ready) {
@@ -394,6 +446,7 @@ void RollbackService::list(CommandReply reply) {
     }
   }
   for (const auto& job : jobs_) {
+    if (scope == Scope::own && job->job.order().payer != author) continue;
     const RestoreJob::Progress& p = job->job.progress();
     text += job->name + " is being applied: " + std::to_string(p.chunks_done) + " of " +
             counted(p.chunks, "chunk");
@@ -406,11 +459,12 @@ void RollbackService::list(CommandReply reply) {
       [groups](WorldReader& reader, const Generator&) {
         *groups = rollback_groups(reader, kListedMax);
       },
-      [groups, text, reply](const std::string& error) {
+      [groups, text, author, scope, reply](const std::string& error) {
         if (!error.empty()) return refuse(reply, "rollback list: " + error);
         if (!*groups) return refuse(reply, "rollback list: " + groups->error().message());
         std::string all = text;
         for (const RollbackGroup& group : **groups) {
+          if (scope == Scope::own && group.op.author != author) continue;
           all += "rollback " + std::to_string(group.id) + " " + utc_text(group.time_us) + " by " +
                  (group.op.author == 0 ? "the server" : "#" + std::to_string(group.op.author)) +
                  ": " + counted(group.edits.size(), "edit");

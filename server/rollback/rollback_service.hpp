@@ -61,17 +61,26 @@ class RollbackService {
 
   /// Answers what a rollback of these edits would do, and keeps the preview under an id ("p1"). If
   /// that takes longer than a moment, answers with the id and the progress come before. Changes
-  /// nothing. The functions are those of RollbackPreview::compute().
+  /// nothing. The functions are those of RollbackPreview::compute(). `own`: of a player without the
+  /// right `roll_back`, whose earlier preview is discarded; the filter has the box.
   void preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
-               RollbackPreview::PlanViewer viewer = {}, RollbackPreview::Summary summarise = {});
+               RollbackPreview::PlanViewer viewer = {}, RollbackPreview::Summary summarise = {},
+               const std::optional<OwnGround>& own = std::nullopt);
+  /// What a caller may do with previews and rollbacks. `own` is for players without the right
+  /// `roll_back`: the others do not exist for them, and their edit budget pays.
+  enum class Scope : std::uint8_t { all, own };
+  /// Returns the ground of a preview of the author, or null if the author has no such preview.
+  const OwnGround* own_ground(const std::string& id, AuthorId author);
   /// Begins to carry out a preview. `author` gives the command; 0 is the server.
-  void apply(const std::string& id, AuthorId author, CommandReply reply);
+  void apply(const std::string& id, AuthorId author, CommandReply reply, Scope scope = Scope::all);
   /// Stops a rollback that is being applied, or discards a preview.
-  void cancel(const std::string& id, CommandReply reply);
+  void cancel(const std::string& id, CommandReply reply, AuthorId author = 0,
+              Scope scope = Scope::all);
   /// Undoes a rollback. `id` is the sequence of its first edit, or the id of its preview.
-  void undo_rollback(const std::string& id, AuthorId author, const Clocks& now, CommandReply reply);
+  void undo_rollback(const std::string& id, AuthorId author, const Clocks& now, CommandReply reply,
+                     Scope scope = Scope::all);
   /// Answers with previews, running jobs, and the rollbacks in the log.
-  void list(CommandReply reply);
+  void list(CommandReply reply, AuthorId author = 0, Scope scope = Scope::all);
 
   /// Begins the work that waited for the disk, lets jobs write, and answers. Call it on every tick,
   /// when the log became durable, and when a worker has answered.
@@ -124,7 +133,8 @@ class RollbackService {
   void answer_preview(RollbackPreview& preview, const std::string& reader_error,
                       const CommandReply& reply);
   /// Returns the first edit of the rollback that `id` names, or 0 after it has refused the command.
-  Sequence rollback_named(const std::string& id, const CommandReply& reply);
+  Sequence rollback_named(const std::string& id, AuthorId author, Scope scope,
+                          const CommandReply& reply);
   /// Calls `begin` once everything ordered so far is durable. Refuses the command if the log cannot
   /// be written any more.
   void when_durable(const Clocks& now, const CommandReply& reply, std::function<void()> begin);
@@ -140,6 +150,13 @@ class RollbackService {
   /// Returns the reason why the author cannot have another undo or redo now.
   std::string busy_text(AuthorId author) const;
   RollbackPreview* find_preview(const std::string& id);
+  /// Returns null also for a preview that is not in the scope of the author.
+  RollbackPreview* find_preview(const std::string& id, AuthorId author, Scope scope);
+  /// Discards previews of players without the right `roll_back`: an earlier one of the author, and the
+  /// oldest ones beyond their number. Returns false if there is no room, because the others are all of
+  /// players with the right.
+  bool make_room_for_own(AuthorId author);
+  void discard(std::uint64_t number);
   ClientInstance new_instance();
   WorldServer& world_;
   Workers& workers_;

@@ -27,7 +27,7 @@ std::vector<ChatEntry> newest_chat(ChatLog& log) {
   // The thread of the log may still be in set_value() when the value is here.
   const auto newest = std::make_shared<std::promise<std::vector<ChatEntry>>>();
   const bool is_taken =
-      log.search({"", std::nullopt, kChatRecentMax}, [newest](const ChatLog::Found& found) {
+      log.search({"", std::nullopt, kChatKeptMax, false}, [newest](const ChatLog::Found& found) {
         newest->set_value(found ? *found : std::vector<ChatEntry>());
       });
   return is_taken ? newest->get_future().get() : std::vector<ChatEntry>();

@@ -36,6 +36,10 @@ class CommandRunner final : private RollbackService::Workers {
   void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
 
   void set_operators(std::set<PublicKey> operators) { operators_ = std::move(operators); }
+  /// Takes over the announcements of the settings.
+  void set_announcements(const std::vector<Announcement>& announcements) {
+    services_.announcements.set_configured(announcements);
+  }
   /// Lets the work go on that waits for the disk or for the next slice of a rollback. Call it on
   /// every tick, and when the log became durable or failed.
   void tick(const Clocks& now) {

@@ -129,7 +129,8 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   const WorldPos& spawn = store_.meta().spawn;
   const auto whole = [](double at) { return static_cast<std::int32_t>(std::floor(at)); };
   const VoxelPos spawn_voxel{whole(spawn.x), whole(spawn.y), whole(spawn.z)};
-  if (config_.border && !config_.border->contains(spawn_voxel)) {
+  const VoxelBox spawn_box{spawn_voxel, {spawn_voxel.x + 1, spawn_voxel.y + 1, spawn_voxel.z + 1}};
+  if (config_.border && !is_within(*config_.border, spawn_box)) {
     logger("world").warn(
         "border: the spawn of the world lies outside ({}): players who join there cannot edit",
         border_text(*config_.border));
@@ -188,6 +189,7 @@ void ServerCore::make_log(Store& store, Sequence durable) {
   // A task that on_space posts from the constructor runs later.
   log_ = std::make_unique<DurableLog>(strand_, store, world_place(config_), generator_, options,
                                       log_events());
+  commands_->set_announcements(running_.announcements);
   environment_.attach(*log_, *commands_);
 }
 
@@ -421,6 +423,7 @@ void ServerCore::answer_gateway(const std::string& question, CommandReply reply)
     text += fmt::format("\nversion {}", version());
     if (const std::string why = read_only_reason(world_->order()); !why.empty())
       text += "\nread_only " + why;
+    if (world_->border()) text += "\nborder " + border_words(*world_->border());
     for (const auto& player : world_->people().online()) {
       text += "\nplayer " + player.name;
       text += fmt::format("\nplace {:.1f} {:.1f} {:.1f} {}", player.at.x, player.at.y, player.at.z,
@@ -442,6 +445,7 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
     if (log_) log_->retention().set_days(running_.retention_days);
+    if (commands_) commands_->set_announcements(running_.announcements);
     logger("app").info("reload: {}", reloaded.text());
     reply(CommandAnswer::last(reloaded.text()));
   });

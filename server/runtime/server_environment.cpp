@@ -133,6 +133,10 @@ void ServerEnvironment::log_chat(const ChatEntry& entry) {
   if (chat_log_ != nullptr) chat_log_->append(entry);
 }
 
+void ServerEnvironment::withdraw_chat(const PublicKey& key, const std::vector<TimeUs>& times) {
+  if (chat_log_ != nullptr) chat_log_->withdraw(key, times);
+}
+
 void ServerEnvironment::load_chunk(const ChunkKey& key) {
   readers_.load_chunk(key, [this, key](StoreResult<Chunk> loaded) {
     if (loaded) {

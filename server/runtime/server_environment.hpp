@@ -84,6 +84,7 @@ class ServerEnvironment final : public WorldEnvironment {
   void log_names(std::vector<NameChange> changes) override;
   bool save_state(SavedState state) override;
   void log_chat(const ChatEntry& entry) override;
+  void withdraw_chat(const PublicKey& key, const std::vector<TimeUs>& times) override;
   void load_chunk(const ChunkKey& key) override;
   void make_tile(TileRequest request) override;
   void make_past_tile(SessionId session, TileRequest request) override;

@@ -65,6 +65,10 @@ StoreResult<void> MetaTable::put_clock(const SavedClock& clock) {
   return put(kClockKey, bytes);
 }
 
+StoreResult<void> MetaTable::put_spawn(const WorldPos& spawn) {
+  return put("spawn", spawn_bytes(spawn));
+}
+
 StoreResult<void> MetaTable::put_places(const std::vector<LastPlace>& places) {
   Bytes bytes;
   bytes.reserve(places.size() * kPlaceBytes);

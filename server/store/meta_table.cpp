@@ -92,10 +92,14 @@ constexpr std::int64_t kIntegerMax = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
+Bytes spawn_bytes(const WorldPos& spawn) {
+  Bytes bytes;
+  ByteWriter writer(bytes);
+  for (const double coordinate : {spawn.x, spawn.y, spawn.z}) writer.f64(coordinate);
+  return bytes;
+}
+
 MetaRows rows_of(const WorldMeta& meta) {
-  Bytes spawn;
-  ByteWriter writer(spawn);
-  for (const double coordinate : {meta.spawn.x, meta.spawn.y, meta.spawn.z}) writer.f64(coordinate);
   return {{"world_id", bytes_of(meta.world_id)},
           {"chunk_edge", std::int64_t{meta.chunk_edge}},
           {"generator", meta.generator.name},
@@ -104,7 +108,7 @@ MetaRows rows_of(const WorldMeta& meta) {
           {"generator_parameters", meta.generator.parameters},
           {"materials", to_toml(meta.materials)},
           {"server_key_seed", bytes_of(meta.server_key_seed)},
-          {"spawn", std::move(spawn)}};
+          {"spawn", spawn_bytes(meta.spawn)}};
 }
 
 Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {

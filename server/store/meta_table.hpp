@@ -19,6 +19,8 @@ namespace runstone {
 using MetaValue = std::variant<std::int64_t, std::string, Bytes>;
 using MetaRows = std::map<std::string, MetaValue, std::less<>>;
 
+/// Returns the value of the row `spawn`.
+Bytes spawn_bytes(const WorldPos& spawn);
 /// Returns the pinned rows of a world.
 MetaRows rows_of(const WorldMeta& meta);
 /// Returns the values in the pinned rows. The error names the first key that is missing or wrong.
@@ -60,6 +62,8 @@ inline constexpr const char* kShapesKey = "shapes";
 inline constexpr const char* kTexturesKey = "textures";
 /// The key of a row, always 1, that only a world has whose log has or had a gap.
 inline constexpr const char* kGapsKey = "gaps";
+/// The key of a row, always 1, that only a world has in which a role was given for some time.
+inline constexpr const char* kTimedGrantsKey = "timed_grants";
 
 /// The keys of the rows that clock() and places() read. Only a world whose clock was set has the
 /// first one.
@@ -103,6 +107,7 @@ class MetaTable {
   StoreResult<std::vector<LastPlace>> places();
   StoreResult<void> put_clock(const SavedClock& clock);
   StoreResult<void> put_places(const std::vector<LastPlace>& places);
+  StoreResult<void> put_spawn(const WorldPos& spawn);
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)

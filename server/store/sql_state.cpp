@@ -26,6 +26,9 @@ StoreResult<void> SqlStore::save_state(const SavedState& state) {
     if (!places || state.places != *places) {
       if (auto put = meta_table_.put_places(state.places); !put) return put;
     }
+    if (state.spawn) {
+      if (auto put = meta_table_.put_spawn(*state.spawn); !put) return put;
+    }
     const auto clock = meta_table_.clock();
     if (!clock && !is_damaged(clock)) return failed(clock.error());
     const bool is_newest = state.clock && clock && *clock &&

@@ -211,6 +211,7 @@ StoreResult<void> SqlStore::insert(std::span<const PlayerRow> players,
   if (auto applied = apply_library(records, is_history); !applied) return applied;
   if (auto marked = mark_textures(records); !marked) return marked;
   if (auto marked = mark_gaps(records); !marked) return marked;
+  if (auto marked = mark_timed_grants(records); !marked) return marked;
   if (auto set = set_clock(records); !set) return set;
   if (auto raised = raise_watermarks(marks); !raised) return raised;
   if (auto put = meta_table_.put("log_last", static_cast<std::int64_t>(next.seq)); !put) return put;
@@ -241,6 +242,12 @@ StoreResult<void> SqlStore::mark_gaps(std::span<const EditRecord> records) {
   if (!has_gaps) return {};
   if (auto put = meta_table_.put(kGapsKey, std::int64_t{1}); !put) return put;
   return raise_format(kWorldFormatOfGaps);
+}
+
+StoreResult<void> SqlStore::mark_timed_grants(std::span<const EditRecord> records) {
+  if (std::ranges::none_of(records, grants_for_some_time)) return {};
+  if (auto put = meta_table_.put(kTimedGrantsKey, std::int64_t{1}); !put) return put;
+  return raise_format(kWorldFormatOfTimedGrants);
 }
 
 StoreResult<void> SqlStore::raise_format(std::uint32_t format) {

@@ -218,6 +218,8 @@ class SqlStore final : public Store {
   StoreResult<void> mark_textures(std::span<const EditRecord> records);
   /// Marks the world as one with gaps if a record is one.
   StoreResult<void> mark_gaps(std::span<const EditRecord> records);
+  /// Marks the world as one with roles for some time if a record gives one.
+  StoreResult<void> mark_timed_grants(std::span<const EditRecord> records);
   /// Marks the world as one with shapes if a record gives some or has a look with a silhouette, and
   /// records the rules of tiles that follow. Deletes the tiles if a voxel of such a material may be
   /// below one. Call it before the records are inserted.

@@ -141,7 +141,8 @@ StoreResult<std::unique_ptr<SqlStore>> SqlStore::open(std::unique_ptr<WorldBacke
   for (const auto& [key, needed] :
        {std::pair(kShapesKey, kWorldFormatOfShapes),
         std::pair(kTexturesKey, kWorldFormatOfTextures), std::pair(kClockKey, kWorldFormatOfClock),
-        std::pair(kGapsKey, kWorldFormatOfGaps)}) {
+        std::pair(kGapsKey, kWorldFormatOfGaps),
+        std::pair(kTimedGrantsKey, kWorldFormatOfTimedGrants)}) {
     if (!rows->contains(key) || access == StoreAccess::read_only || store->loss_) continue;
     const auto format = store->backend_->format();
     if (!format) return failed(format.error());

@@ -229,10 +229,10 @@ StoreResult<void> check_format(const std::string& file, std::uint32_t version) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return failure(StoreError{kind, file, "", std::move(what)});
   };
-  if (version > kWorldFormatOfGaps) {
+  if (version > kWorldFormatNewest) {
     return fail_as(StoreError::Kind::newer_version,
                    "is of world format " + std::to_string(version) +
-                       "; this program knows format " + std::to_string(kWorldFormatOfGaps) +
+                       "; this program knows format " + std::to_string(kWorldFormatNewest) +
                        ". Nothing was changed.");
   }
   if (version == 1) {

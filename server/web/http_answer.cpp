@@ -29,7 +29,7 @@ HttpAnswer metrics_answer(std::span<const WorldStatus> worlds, const WebCounters
   return {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(worlds, web)};
 }
 
-constexpr std::array<Route, 9> kRoutes = {{
+constexpr std::array<Route, 10> kRoutes = {{
     {"/", true,
      [](const PageContents& in) {
        return HttpAnswer{200, kHtml, world_page(in.config, !in.client.empty(), in.server)};
@@ -63,6 +63,10 @@ constexpr std::array<Route, 9> kRoutes = {{
     {kMapPlayersPath, true,
      [](const PageContents& in) {
        return HttpAnswer{200, "application/json", map_players_json(in.server)};
+     }},
+    {kMapBorderPath, true,
+     [](const PageContents& in) {
+       return HttpAnswer{200, "application/json", map_border_json(in.server)};
      }},
     {kPlayPath, false,
      [](const PageContents& /*in*/) {

@@ -41,6 +41,21 @@ std::optional<PlayerPlace> read_place(std::string_view text) {
   return out;
 }
 
+/// Reads "box X Z X Z" or "circle X Z RADIUS". Returns nullopt on any other text.
+std::optional<StatusBorder> read_border(std::string_view text) {
+  StatusBorder out;
+  const std::string_view form = take_until(text, ' ');
+  out.is_circle = form == "circle";
+  if (!out.is_circle && form != "box") return std::nullopt;
+  for (std::size_t i = 0; i < (out.is_circle ? 3U : 4U); ++i) {
+    const std::string_view word = take_until(text, ' ');
+    const char* end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(word.data(), end, out.numbers[i]);
+    if (error != std::errc{} || rest != end || word.empty()) return std::nullopt;
+  }
+  return text.empty() ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 std::int64_t ServerStatus::counter(const std::string& name) const {
@@ -65,6 +80,7 @@ std::vector<EditWaits> edit_waits(const ServerStatus& status, std::string_view n
 Result<ServerStatus> parse_server_status(std::string_view answer) {
   constexpr std::string_view kCounters = "|counters ", kPlayer = "|player ", kPlace = "|place ";
   constexpr std::string_view kVersionLine = "|version ", kReadOnly = "|read_only ";
+  constexpr std::string_view kBorder = "|border ";
   ServerStatus out;
   while (!answer.empty()) {
     std::string_view line = take_until(answer, '\n');
@@ -83,6 +99,8 @@ Result<ServerStatus> parse_server_status(std::string_view answer) {
     } else if (line.starts_with(kPlace)) {
       const auto place = read_place(line.substr(kPlace.size()));
       if (place) out.places.push_back(*place);
+    } else if (line.starts_with(kBorder)) {
+      out.border = read_border(line.substr(kBorder.size()));
     } else if (!line.starts_with('|')) {
       return fail(ErrorCode::bad_value, "the server refused the question for its status");
     }

@@ -1,8 +1,10 @@
 // ServerStatus: what the server says of itself at its status socket.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,14 +19,23 @@ struct PlayerPlace {
   double x = 0, y = 0, z = 0;
 };
 
+/// The border of the world, as columns.
+struct StatusBorder {
+  bool is_circle = false;
+  /// Of a box: x and z of the first column, and of the one behind the last. Of a circle: x and z of the
+  /// column in the middle, the radius, and 0.
+  std::array<std::int64_t, 4> numbers{};
+};
+
 struct ServerStatus {
   bool is_up = false;     // the server has answered
   std::string why;        // it has not
   std::string version;    // of the server; empty: it is an older one, which does not say it
   std::string read_only;  // why edits are refused; empty: they are taken
   std::map<std::string, std::int64_t> counters;
-  std::vector<std::string> players;  // names, one for each session
-  std::vector<PlayerPlace> places;   // of the same players, empty if the server sends no places
+  std::vector<std::string> players;    // names, one for each session
+  std::vector<PlayerPlace> places;     // of the same players, empty if the server sends no places
+  std::optional<StatusBorder> border;  // nullopt: the world has none, or the server does not say it
 
   /// Returns a counter, or 0 if the server has none of this name.
   std::int64_t counter(const std::string& name) const;
@@ -45,8 +56,8 @@ struct EditWaits {
 std::vector<EditWaits> edit_waits(const ServerStatus& status, std::string_view name);
 
 /// Reads an answer of the status socket: lines that begin with "|", and "=ok" at the end. The lines
-/// are "counters NAME=VALUE NAME=VALUE ...", "version TEXT", "read_only WHY", "player NAME" and
-/// "place X Y Z NAME".
+/// are "counters NAME=VALUE NAME=VALUE ...", "version TEXT", "read_only WHY", "player NAME",
+/// "place X Y Z NAME", and "border box X Z X Z" or "border circle X Z RADIUS".
 /// Values that are no whole numbers and lines of other kinds are skipped, because a later server may
 /// have more of them.
 Result<ServerStatus> parse_server_status(std::string_view answer);

@@ -176,7 +176,8 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
     constexpr auto kMapSeconds = static_cast<std::uint64_t>(MapService::kAnswerUsMax / 1'000'000);
     self->stream_.allow_s(self->state_.config.handshake_s + kMapSeconds + 2);
   }
-  if (is_for_map && path == kMapPlayersPath) {
+  const bool is_of_status = path == kMapPlayersPath || path == kMapBorderPath;
+  if (is_for_map && is_of_status) {
     MapAnswer allowed = co_await world.map.answer(self->from_, kMapRightsPath, std::string());
     if (allowed.status != 200) {
       HttpAnswer out{allowed.status, std::move(allowed.type), ""};
@@ -184,7 +185,7 @@ boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebC
       co_return out;
     }
   }
-  if (is_for_map && path != kMapPlayersPath) {
+  if (is_for_map && !is_of_status) {
     MapAnswer answer = co_await world.map.answer(
         self->from_, place.target, std::string(view_of(request[http::field::if_none_match])));
     HttpAnswer out{answer.status, std::move(answer.type), ""};

@@ -268,4 +268,17 @@ std::string map_players_json(const ServerStatus& server) {
   return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::string map_border_json(const ServerStatus& server) {
+  nlohmann::json out = nlohmann::json::object();
+  if (server.border) {
+    const auto& [a, b, c, d] = server.border->numbers;
+    if (server.border->is_circle) {
+      out["circle"] = {a, b, c};
+    } else {
+      out["box"] = {a, b, c, d};
+    }
+  }
+  return out.dump();
+}
+
 }  // namespace runstone

@@ -54,6 +54,7 @@ struct WorldServer::Rooms {
   TextureSending textures;
   SavedState saved;     // what was queued last for the store, or was there at the start
   TimeUs saved_us = 0;  // when save_state() was called last; steady clock
+  std::optional<WorldPos> set_spawn;  // since the start
 };
 
 namespace {
@@ -137,7 +138,8 @@ const Cluster& WorldServer::cluster() const { return rooms_->cluster; }
 BuildReads& WorldServer::build_reads() { return rooms_->build_reads; }
 BuildUploads& WorldServer::build_uploads() { return rooms_->build_uploads; }
 const WorldCounters& WorldServer::counters() const { return rooms_->counters; }
-const std::optional<VoxelBox>& WorldServer::border() const { return rooms_->config.border; }
+const std::optional<WorldBorder>& WorldServer::border() const { return rooms_->config.border; }
+const WorldPos& WorldServer::spawn() const { return rooms_->config.spawn; }
 std::size_t WorldServer::session_count() const { return rooms_->sessions.count(); }
 
 void WorldServer::replay_onto_stack(const EditRecord& record) {
@@ -285,9 +287,16 @@ void WorldServer::save_state(TimeUs now_us, TimeUs clock_us) {
   rooms_->saved_us = now_us;
   if (!rooms_->order.owns_world()) return;
   rooms_->people.note_places();
-  SavedState state{rooms_->people.places().all(), rooms_->order.clock().saved_at(clock_us)};
+  SavedState state{rooms_->people.places().all(), rooms_->order.clock().saved_at(clock_us),
+                   rooms_->set_spawn};
   if (state == rooms_->saved) return;
   if (rooms_->environment.save_state(state)) rooms_->saved = std::move(state);
+}
+
+void WorldServer::set_spawn(const WorldPos& spawn, const Clocks& now) {
+  rooms_->config.spawn = spawn;
+  rooms_->set_spawn = spawn;
+  save_state(now.steady_us, now.steady_us + kSaveStateUs);
 }
 
 void WorldServer::save_state(const Clocks& now) { save_state(now.steady_us, now.steady_us); }
@@ -305,6 +314,11 @@ void WorldServer::tick(const Clocks& now) {
   }
   if (const auto warning = rooms_->order.authority().log_clock().take_warning())
     rooms_->environment.report(OperatorLogLevel::warn, *warning);
+  if (const auto ended = rooms_->rights.end_grants(); !ended.empty()) {
+    rooms_->rights.close_refused();
+    ground.rights_changed({});
+    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
+  }
   people.forget_gone_authors();
   people.close_silent(now);
   cluster.check_connections(now);

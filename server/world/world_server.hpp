@@ -51,8 +51,14 @@ class WorldServer {
   const WorldCounters& counters() const;
   /// Returns the number of sessions in any stage.
   std::size_t session_count() const;
-  /// Returns the box within which players may edit, or nullopt if there is none.
-  const std::optional<VoxelBox>& border() const;
+  /// Returns the border within which players may edit, or nullopt if there is none.
+  const std::optional<WorldBorder>& border() const;
+
+  /// Returns where players begin who have no last place.
+  const WorldPos& spawn() const;
+  /// Sets it for the players who join from now on, and saves it. The other servers of the world take it
+  /// at their next start. Requires a finite place in the world.
+  void set_spawn(const WorldPos& spawn, const Clocks& now);
 
   /// Replays a record of the log above the checkpoint. Call it for each, in order, before the first
   /// session.

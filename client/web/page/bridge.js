@@ -17,8 +17,11 @@ mergeInto(LibraryManager.library, {
   page_notice: function (text, isWarning) {
     Module.page.notice(UTF8ToString(text), isWarning !== 0);
   },
-  page_chat: function (text) {
-    Module.page.chat(UTF8ToString(text));
+  page_chat: function (text, id) {
+    Module.page.chat(UTF8ToString(text), UTF8ToString(id));
+  },
+  page_withdraw_chat: function (id) {
+    Module.page.withdrawChat(UTF8ToString(id));
   },
   page_open_chat: function () {
     Module.page.openChat();

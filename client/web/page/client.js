@@ -65,11 +65,15 @@ const page = {
     while ($("notices").children.length > 4) $("notices").firstChild.remove();
     setTimeout(() => line.remove(), NOTICE_MS);
   },
-  chat(text) {
+  chat(text, id) {
     const line = document.createElement("div");
     line.textContent = text;
+    line.dataset.id = id;
     $("lines").append(line);
     while ($("lines").children.length > LINES_MAX) $("lines").firstChild.remove();
+  },
+  withdrawChat(id) {
+    for (const line of [...$("lines").children]) if (line.dataset.id === id) line.remove();
   },
   openChat() {
     release();

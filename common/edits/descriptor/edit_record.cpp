@@ -31,6 +31,11 @@ bool corrects_time(const EditRecord& record) {
   return change != nullptr && std::holds_alternative<CorrectTime>(*change);
 }
 
+bool grants_for_some_time(const EditRecord& record) {
+  const RightsChange* change = rights_change_of(record.edit);
+  return change != nullptr && is_timed_grant(*change);
+}
+
 Bytes encode_record(const EditRecord& record) {
   RUNSTONE_ASSERT(validate_fields(record).has_value());
   RUNSTONE_ASSERT(static_cast<std::uint8_t>(record.cause) <= kCauseMax);

@@ -40,6 +40,9 @@ Result<void> validate_fields(const EditRecord& record);
 /// decrease.
 bool corrects_time(const EditRecord& record);
 
+/// Returns true for a record that gives a player a role for some time.
+bool grants_for_some_time(const EditRecord& record);
+
 /// Returns the canonical bytes without the checksum: version byte, numbers, bounding box,
 /// descriptor. Requires validate_fields().
 Bytes encode_record(const EditRecord& record);

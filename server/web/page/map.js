@@ -2,6 +2,7 @@
 // The map: tiles on a canvas. World coordinates are voxels, x to the right and z down. A tile is kept
 // with its ETag, so a request for another moment costs nothing where nothing changed.
 const GLOW_MS = 5000, TILES_MAX = 400, LOADS_MAX = 6, STEP_MS = 150, STEPS = 200;
+const BORDER_POLLS = 30;  // between two questions for the border
 const el = (id) => document.getElementById(id);
 const canvas = el('map'), draw = canvas.getContext('2d');
 const view = {x: 0, z: 0, scale: 1};  // the middle, and CSS pixels of a voxel
@@ -11,6 +12,7 @@ let playing = false;
 const tiles = new Map();              // by "zoom/x/z"
 const glows = new Map();              // by "x/z" of a column of chunks
 let players = [], loads = 0, clock = 0, isDue = false;
+let border = {}, polls = 0;           // of the world, and how often state.json was asked for
 
 function say(words) { el('words').textContent = words; }
 
@@ -160,6 +162,21 @@ function label(text, x, y) {
   draw.fillText(text, x, y);
 }
 
+function paintBorder() {
+  draw.strokeStyle = '#f26b4c';
+  draw.lineWidth = 2;
+  if (border.circle) {
+    const [x, z, radius] = border.circle, [left, top] = toScreen(x + 0.5, z + 0.5);
+    draw.beginPath();
+    draw.arc(left, top, (radius + 0.5) * view.scale, 0, 2 * Math.PI);
+    draw.stroke();
+  } else if (border.box) {
+    const [left, top] = toScreen(border.box[0], border.box[1]);
+    const [right, bottom] = toScreen(border.box[2], border.box[3]);
+    draw.strokeRect(left, top, right - left, bottom - top);
+  }
+}
+
 function paintPlayers() {
   for (const [name, x, , z] of players) {
     const [left, top] = toScreen(x, z);
@@ -188,6 +205,7 @@ function paint() {
   if (!state) return;
   isComplete = paintTiles(width, height);
   if (at === null) {
+    paintBorder();
     paintGlows();
     paintPlayers();
   }
@@ -236,6 +254,10 @@ async function poll() {
       showTime();
       const list = await fetch('map/players.json', {cache: 'no-store'});
       players = list.ok ? await list.json() : [];
+      if (isFirst || ++polls % BORDER_POLLS === 0) {
+        const bounds = await fetch('map/border.json', {cache: 'no-store'});
+        border = bounds.ok ? await bounds.json() : {};
+      }
       redraw();
     }
   } catch (error) {

@@ -57,6 +57,10 @@ class Cluster {
   /// Returns why the clock of the world may not be set, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> clock_refusal() const { return followers_.clock_refusal(); }
+  /// Returns why no role may be given for some time, as a sentence without its period, or nullopt.
+  std::optional<std::string> timed_grant_refusal() const {
+    return followers_.timed_grant_refusal();
+  }
   // These return what the functions of Handover with the same names return.
   std::vector<KnownServer> known_servers() const { return handover_.known_servers(); }
   std::optional<std::string> handover_refusal(std::optional<SessionId> successor) const {

@@ -149,6 +149,15 @@ std::optional<std::string> Followers::clock_refusal() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Followers::timed_grant_refusal() const {
+  for (const auto& [link, follower] : all_) {
+    if (!follower.takes_timed_grants)
+      return "a server that follows is of an older version, which cannot read a role for some time: "
+             "stop it, or start it with this version (servers lists them)";
+  }
+  return std::nullopt;
+}
+
 void Followers::admit(Session& session, const Clocks& now) {
   const SessionId link = session.id;
   environment_.report(OperatorLogLevel::info,
@@ -168,6 +177,7 @@ void Followers::admit(Session& session, const Clocks& now) {
   follower.takes_shapes = session.has(kFeatureShapeRecords);
   follower.takes_textures = session.has(kFeatureTextureRecords);
   follower.takes_clock = session.has(kFeatureClockRecords);
+  follower.takes_timed_grants = session.has(kFeatureTimedGrants);
   order_.feed().add(link);
   environment_.trust(link);
   environment_.opened(link);

@@ -31,6 +31,7 @@ struct Follower {
   bool takes_shapes = false;                 // it knows GivenShapes
   bool takes_textures = false;               // it knows a GivenTexture
   bool takes_clock = false;                  // it knows a ClockEdit
+  bool takes_timed_grants = false;           // it knows a GrantRole with an end
   std::uint64_t servers_sent = 0;            // number of the last list
 };
 
@@ -75,6 +76,8 @@ class Followers {
   /// Returns why the clock of the world may not be set, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> clock_refusal() const;
+  /// Returns why no role may be given for some time, as a sentence without its period, or nullopt.
+  std::optional<std::string> timed_grant_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);
   const Follower* of_session(SessionId session) const;

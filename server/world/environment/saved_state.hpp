@@ -1,5 +1,6 @@
 // SavedState: the state of a world that the store keeps besides the log and writes once a minute:
-// where players were last, and how far the clock of the world has come. No edit depends on it.
+// where players were last, how far the clock of the world has come, and a spawn that was set. No edit
+// depends on it.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/core/public_key.hpp"
+#include "common/core/world_pos.hpp"
 #include "common/core/world_time.hpp"
 #include "protocol/codec/pose.hpp"
 
@@ -30,6 +32,7 @@ struct SavedClock {
 struct SavedState {
   std::vector<LastPlace> places;    // at most kPlayerPlacesMax, those seen last at the end
   std::optional<SavedClock> clock;  // nullopt: nobody has set it
+  std::optional<WorldPos> spawn = std::nullopt;  // that was set since the start; nullopt: none was
   friend bool operator==(const SavedState&, const SavedState&) = default;
 };
 

@@ -11,6 +11,7 @@
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/world/environment/world_border.hpp"
 #include "server/world/environment/world_limits.hpp"
 
 namespace runstone {
@@ -49,7 +50,7 @@ struct WorldConfig {
   std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint8_t tile_levels_max = 0;           // of levels of detail that views may have; 0: none
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
-  std::optional<VoxelBox> border;             // edits of players lie within it; nullopt: none
+  std::optional<WorldBorder> border;          // edits of players lie within it; nullopt: none
   double reach_max = 0;                       // voxels from the player to the edit; 0: no limit
   double speed_max = 0;                   // voxels a second of a player, for the reach; 0: no limit
   EditBudget edit_budget;                 // of a player's key

@@ -33,9 +33,9 @@ ChatRoom::ChatRoom(const WorldConfig& config, const WorldStart& start,
       rights_(rights),
       state_(config.chat_budget, config.budgets_per_address) {
   for (const ChatEntry& entry : start.chat) {
-    state_.add(entry.line);
+    state_.add(entry);
     if (entry.line.kind == ChatLineKind::player)
-      state_.recent.back().author = order.players().author_of(entry.key).value_or(0);
+      state_.sent.back().line.author = order.players().author_of(entry.key).value_or(0);
   }
 }
 
@@ -47,15 +47,16 @@ TimeUs ChatRoom::time_of_line(const Clocks& now) {
 }
 
 /// Returns how long the author must wait until the same line may come again: 0 if it may come now.
-/// Cost: O(kChatRecentMax + kChatLinesMax).
+/// Cost: O(kChatKeptMax + kChatLinesMax).
 TimeUs ChatRoom::repeat_wait_us(AuthorId author, const std::string& text, TimeUs now_us) const {
   TimeUs wait_us = 0;
-  const auto look_at = [&](const ChatLine& line) {
+  const auto look_at = [&](const ChatEntry& entry) {
+    const ChatLine& line = entry.line;
     const TimeUs age_us = now_us - line.utc_us;
     if (line.author == author && line.text == text && age_us >= 0)
       wait_us = std::max(wait_us, kChatRepeatUs - age_us);
   };
-  std::ranges::for_each(state_.recent, look_at);
+  std::ranges::for_each(state_.sent, look_at);
   std::ranges::for_each(state_.waiting, look_at);
   return wait_us;
 }
@@ -92,7 +93,7 @@ void ChatRoom::refuse(Session& session, const Refusal& refusal, const Clocks& no
 
 void ChatRoom::add(ChatLine line, const PublicKey& by) {
   if (!order_.is_disk_full()) environment_.log_chat({line, by});  // the rest is for edits
-  state_.waiting.push_back(std::move(line));
+  state_.waiting.push_back({std::move(line), by});
   if (state_.waiting.size() == kChatLinesMax) broadcast();
 }
 
@@ -145,7 +146,12 @@ void ChatRoom::tell_of_visit(const PublicKey& player, const std::string& text, c
 
 void ChatRoom::send_recent(const Session& session, const Clocks& now) {
   if (!reads_chat(session)) return;
-  ChatLines recent{{state_.recent.begin(), state_.recent.end()}};
+  ChatLines recent;
+  for (auto entry = state_.sent.rbegin(); entry != state_.sent.rend(); ++entry) {
+    if (recent.lines.size() == kChatRecentMax) break;
+    if (!entry->is_withdrawn) recent.lines.push_back(entry->line);
+  }
+  std::ranges::reverse(recent.lines);
   const std::string& today = config_.message_of_the_day;
   if (!today.empty())
     recent.lines.push_back({ChatLineKind::message_of_the_day, 0, "", today, time_of_line(now)});
@@ -153,14 +159,41 @@ void ChatRoom::send_recent(const Session& session, const Clocks& now) {
 }
 
 void ChatRoom::broadcast() {
-  if (state_.waiting.empty()) return;
-  const ChatLines lines{std::exchange(state_.waiting, {})};
+  ChatLines lines;
+  for (ChatEntry& entry : std::exchange(state_.waiting, {})) {
+    if (!entry.is_withdrawn) lines.lines.push_back(entry.line);
+    state_.add(std::move(entry));
+  }
+  if (lines.lines.empty()) return;
   std::vector<SessionId> readers;
   for (const Session* session : sessions_.open()) {
     if (reads_chat(*session)) readers.push_back(session->id);
   }
   sessions_.send_to_all(readers, encode_message(lines));
-  for (const ChatLine& line : lines.lines) state_.add(line);
+}
+
+std::size_t ChatRoom::withdraw(const PublicKey& key) {
+  std::vector<TimeUs> times;
+  ChatWithdrawn withdrawn;
+  const auto take = [&](ChatEntry& entry) {
+    const bool is_meant = entry.line.kind == ChatLineKind::player && entry.key == key;
+    if (!is_meant || std::exchange(entry.is_withdrawn, true)) return false;
+    times.push_back(entry.line.utc_us);
+    return true;
+  };
+  for (ChatEntry& entry : state_.sent) {
+    if (take(entry)) withdrawn.lines.push_back(id_of(entry.line));
+  }
+  for (ChatEntry& entry : state_.waiting) take(entry);
+  if (times.empty()) return 0;
+  environment_.withdraw_chat(key, times);
+  std::vector<SessionId> readers;
+  for (const Session* session : sessions_.open()) {
+    if (reads_chat(*session) && session->has(kFeatureChatWithdrawal))
+      readers.push_back(session->id);
+  }
+  if (!withdrawn.lines.empty()) sessions_.send_to_all(readers, encode_message(withdrawn));
+  return times.size();
 }
 
 }  // namespace runstone

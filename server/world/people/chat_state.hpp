@@ -3,19 +3,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "common/core/budget.hpp"
 #include "common/core/token_bucket.hpp"
-#include "protocol/codec/chat_messages.hpp"
 #include "protocol/limits.hpp"
 #include "server/limits/budget_ledger.hpp"
+#include "server/world/environment/chat_entry.hpp"
 
 namespace runstone {
 
 /// Lines that a player who joins gets. One more is the message of the day.
 inline constexpr std::size_t kChatRecentMax = 50;
 static_assert(kChatRecentMax + 1 <= kChatLinesMax);
+/// Sent lines that can be withdrawn from everybody.
+inline constexpr std::size_t kChatKeptMax = 128;
+static_assert(kChatRecentMax <= kChatKeptMax && kChatKeptMax <= kChatWithdrawnMax);
 /// The lines that all players together may write. The bound exists because each line is sent to
 /// every session.
 inline constexpr std::uint64_t kChatLinesPerSecond = 20, kChatLinesAtOnce = 60;
@@ -33,14 +37,14 @@ struct ChatState {
   ChatState(const Budget& of_key, std::uint64_t budgets_per_address)
       : ledger(of_key, budgets_per_address) {}
 
-  /// Adds a line to `recent`.
-  void add(const ChatLine& line) {
-    recent.push_back(line);
-    if (recent.size() > kChatRecentMax) recent.pop_front();
+  /// Adds a line to `sent`.
+  void add(ChatEntry line) {
+    sent.push_back(std::move(line));
+    if (sent.size() > kChatKeptMax) sent.pop_front();
   }
 
-  std::deque<ChatLine> recent;    // that were sent, at most kChatRecentMax, the newest last
-  std::vector<ChatLine> waiting;  // for the next broadcast_chat(), fewer than kChatLinesMax
+  std::deque<ChatEntry> sent;      // at most kChatKeptMax, the newest last
+  std::vector<ChatEntry> waiting;  // for the next broadcast(), fewer than kChatLinesMax
   BudgetLedger ledger;
   TokenBucket all{kChatLinesPerSecond, kChatLinesAtOnce};
 };

@@ -126,8 +126,7 @@ std::optional<EditRequests::Refusal> EditRequests::check_reach(const Attempt& at
 
 std::optional<EditRequests::Refusal> EditRequests::check_border(const Attempt& attempt) {
   if (!config_.border || !has_voxels(attempt.request.edit)) return std::nullopt;
-  const VoxelBox box = bounding_box(attempt.request.edit);
-  if (intersect(box, *config_.border) == box) return std::nullopt;
+  if (is_within(*config_.border, bounding_box(attempt.request.edit))) return std::nullopt;
   return Refusal{RejectReason::outside_world, "the edit reaches beyond the border of this world: " +
                                                   border_text(*config_.border)};
 }

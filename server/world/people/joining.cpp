@@ -232,6 +232,8 @@ bool Joining::close_if_old_server(Session& session) {
     why = "this world has textures: start a version that can read this";
   if (!session.has(kFeatureClockRecords) && world_.order.clock().is_set())
     why = "the clock of this world was set: start a version that can read this";
+  if (!session.has(kFeatureTimedGrants) && world_.rights.state().has_timed_grants_ever())
+    why = "this world has roles for some time: start a version that can read this";
   if (why == nullptr) return false;
   world_.sessions.close(session, GoodbyeReason::wrong_protocol, why);
   return true;

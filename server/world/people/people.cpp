@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "protocol/codec/invite_token.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/codec/server_link.hpp"
 
 namespace runstone {
@@ -59,6 +60,17 @@ std::size_t People::kick(const RestrictionSubject& who, const std::string& reaso
     ++kicked;
   }
   return kicked;
+}
+
+void People::grants_ended(const std::vector<GrantRole>& grants, const Clocks& now) {
+  for (const GrantRole& grant : grants) {
+    const std::string& role = world_.rights.state().role_of(grant.key).name;
+    chat_.tell_those([&](const PublicKey& player) { return player == grant.key; },
+                     "your role " + grant.role + " has ended: your role is " + role + " now", now);
+    world_.environment.report(OperatorLogLevel::info,
+                              "the role " + grant.role + " of " + key_fingerprint(grant.key) +
+                                  " has ended: its role is " + role + " now");
+  }
 }
 
 void People::note_places() {

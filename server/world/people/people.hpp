@@ -58,6 +58,8 @@ class People {
   InviteId new_invite_id();
   /// Returns the link with which players accept an invite.
   std::string invite_link(InviteId invite) const;
+  /// Tells players and the operator that grants have ended.
+  void grants_ended(const std::vector<GrantRole>& grants, const Clocks& now);
   /// Notes the places of the players with open sessions.
   void note_places();
   /// Closes the sessions that have sent nothing for too long.

@@ -1,5 +1,6 @@
 #include "server/world/rights/rights.hpp"
 
+#include <utility>
 #include <variant>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -161,6 +162,15 @@ std::optional<std::vector<VoxelBox>> Rights::apply(const std::vector<EditRecord>
   }
   if (ground) ++revision_;
   return ground;
+}
+
+std::vector<GrantRole> Rights::end_grants() {
+  const TimeUs now_us = time();
+  state_.set_time(now_us);
+  const TimeUs since_us = std::exchange(grants_ended_us_, now_us).value_or(now_us);
+  std::vector<GrantRole> ended = state_.grants_ended(since_us, now_us);
+  if (!ended.empty()) ++revision_;
+  return ended;
 }
 
 void Rights::close_refused() {

@@ -68,6 +68,9 @@ class Rights {
   std::optional<std::vector<VoxelBox>> apply(const std::vector<EditRecord>& records);
   /// Closes the sessions that may not stay.
   void close_refused();
+  /// Lets the time go on to that of the log. Returns the grants that have ended since the last call, and
+  /// none at the first one. Cost: O(timed grants).
+  std::vector<GrantRole> end_grants();
 
   /// Notes that a player was refused something, for moderators.
   void note_refusal(const PublicKey& key, const std::string& what, TimeUs utc_us) {
@@ -85,6 +88,7 @@ class Rights {
   RightsState state_;
   Sequence newest_ = 0;
   std::uint64_t revision_ = 0;
+  std::optional<TimeUs> grants_ended_us_;  // end_grants() has returned those up to this time
   RecentRefusals refusals_;
 };
 

@@ -488,6 +488,13 @@ ChatLines any_chat_lines(SplitMix64& rng) {
   return m;
 }
 
+ChatWithdrawn any_chat_withdrawn(SplitMix64& rng) {
+  ChatWithdrawn m;
+  m.lines.resize(1 + rng.below(kChatWithdrawnMax));
+  for (ChatLineId& line : m.lines) line = {any_time(rng), any_name(rng)};
+  return m;
+}
+
 KeySlot any_slot(SplitMix64& rng) {
   KeySlot slot;
   draw(rng, slot);
@@ -819,6 +826,8 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_ground(rng);
     case kKindOf<ChatRequest>:
       return ChatRequest{any_text(rng, 1, kChatBytesMax)};
+    case kKindOf<ChatWithdrawn>:
+      return any_chat_withdrawn(rng);
     case kKindOf<ChatLines>:
       return any_chat_lines(rng);
     case kKindOf<KeyRequest>:

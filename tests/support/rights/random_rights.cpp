@@ -123,6 +123,9 @@ RightsChange random_rights_change(SplitMix64& rng) {
     case 1:
       return RemoveRole{any_rights_name(rng)};
     case 2:
+      if (rng.below(4) == 0)
+        return GrantRole{any_key(rng), any_rights_name(rng),
+                         std::max<TimeUs>(1, static_cast<TimeUs>(any_number(rng) >> 1))};
       return GrantRole{any_key(rng), rng.below(4) == 0 ? "" : any_rights_name(rng)};
     case 3:
       return SetDefaultRole{any_rights_name(rng)};

@@ -27,4 +27,31 @@ TEST_CASE("the bytes of a correction of the time are pinned", "[rights][golden]"
   }
 }
 
+TEST_CASE("the bytes of a grant with an end are pinned", "[rights][golden]") {
+  GrantRole grant{{}, "mason", 1'700'000'000'000'000};
+  for (std::size_t i = 0; i < grant.key.size(); ++i)
+    grant.key[i] = static_cast<std::uint8_t>(i + 1);
+  Bytes golden = {16};
+  golden.insert(golden.end(), grant.key.begin(), grant.key.end());
+  const Bytes rest = {5, 'm', 'a', 's', 'o', 'n', 0x80, 0x80, 0xf9, 0xc0, 0xc1, 0xc4, 0x82, 0x03};
+  golden.insert(golden.end(), rest.begin(), rest.end());
+  Bytes out;
+  encode(grant, out);
+  CHECK(out == golden);
+  ByteReader in(golden);
+  CHECK(read_rights_change(in) == RightsChange{grant});
+  CHECK(in.ok());
+  for (std::size_t size = 0; size < golden.size(); ++size) {
+    ByteReader cut(ByteView(golden).first(size));
+    static_cast<void>(read_rights_change(cut));
+    CHECK_FALSE(cut.ok());
+  }
+  // Without an end it has the bytes of a grant as it always was.
+  Bytes without(golden.begin(), golden.begin() + 1 + 32 + 6);
+  without.push_back(0);
+  ByteReader endless(without);
+  static_cast<void>(read_rights_change(endless));
+  CHECK_FALSE(endless.ok());
+}
+
 }  // namespace runstone::test

@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-static_assert(kMessageKindCount == 63, "a kind that is added needs golden bytes here");
+static_assert(kMessageKindCount == 64, "a kind that is added needs golden bytes here");
 
 Builds golden_builds() {
   ListedBuild mill;
@@ -95,6 +95,10 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
        "0c00000000000600080004000600000004000000250000000102030405060708"
        "090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f200300070809000000"},
       {WorldTime{75'600'000, 20}, "0c00000008000c0004000800080000008090810414000000"},
+      {ChatWithdrawn{{{1'700'000'000'000'000, "ann"}, {-5, "bea"}}},
+       "0c00000000000600080004000600000004000000020000002800000004000000"
+       "e8ffffff0c000000fbffffffffffffff03000000626561000800100008000400"
+       "080000000c00000000401e18240a060003000000616e6e00"},
       {SessionAccepted{7, 41, 3, Pose{{1.5, -2, 3}, 16384, -8192}},
        "14000000000000000c00340004002c0008000c000c0000000700000003000000"
        "000000000000f83f00000000000000c00000000000000840004000e000000000"
@@ -123,6 +127,8 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureClockRecords == 1 << 23);
   CHECK(kFeatureVisits == 1 << 24);
   CHECK(kFeatureVoxelAuthors == 1 << 25);
+  CHECK(kFeatureChatWithdrawal == 1 << 27);
+  CHECK(kFeatureTimedGrants == 1 << 28);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
@@ -138,6 +144,7 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<TexturesWanted>) == 61);
   CHECK(wire_number(kKindOf<TextureParts>) == 62);
   CHECK(wire_number(kKindOf<WorldTime>) == 63);
+  CHECK(wire_number(kKindOf<ChatWithdrawn>) == 64);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

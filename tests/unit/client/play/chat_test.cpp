@@ -41,7 +41,44 @@ TEST_CASE_METHOD(SessionBench, "the answer of a command is read before the next 
   CHECK(lines[1].text == "[not sent] the previous command is still running");
   CHECK(lines[1].tone == ChatTone::refused);
   CHECK(lines[2].text == "<ana> hello");
+  CHECK(lines[0].id == ChatLineId{});
+  CHECK(lines[2].id == ChatLineId{1, "ana"});
   CHECK(chat.take_lines().empty());
+}
+
+TEST_CASE_METHOD(SessionBench, "the window forgets the lines that the server withdraws",
+                 "[client][chat]") {
+  server.features = kFeatureChat | kFeatureChatWithdrawal;
+  static_cast<void>(open());
+  Chat chat(session);
+  ChatWindow window;
+  const auto show = [&] {
+    for (ShownLine& line : chat.take_lines()) window.hear(std::move(line));
+    return window.withdraw(chat.take_withdrawn());
+  };
+  receive(ChatLines{{{ChatLineKind::player, 7, "ana", "hello", 1},
+                     {ChatLineKind::player, 8, "mole", "buy gold", 1},
+                     {ChatLineKind::server, 0, "", "restart at ten", 1},
+                     {ChatLineKind::player, 8, "mole", "buy more gold", 2}}});
+  CHECK(show() == 0);
+  CHECK(window.line_count() == 4);
+  receive(ChatLines{{{ChatLineKind::player, 8, "mole", "and more", 3}}});
+  receive(ChatWithdrawn{{{1, "mole"}, {2, "mole"}, {3, "mole"}, {9, "ana"}}});
+  CHECK(show() == 2);
+  CHECK(window.line_count() == 2);
+}
+
+TEST_CASE_METHOD(SessionBench, "the command undo is reported before it is sent, and no other one",
+                 "[client][chat]") {
+  server.features = kFeatureChat | kFeatureCommands;
+  static_cast<void>(open());
+  int undos = 0;
+  Chat chat(session, [&] { ++undos; });
+  for (const char* line : {"/undone", "undo", "/redo", "/help undo", "/"}) chat.send(line);
+  CHECK(undos == 0);
+  chat.send("/undo");
+  chat.send("/ undo ");
+  CHECK(undos == 2);
 }
 
 }  // namespace runstone::test::chat_test

@@ -73,6 +73,16 @@ TEST_CASE("a new connection brings the newest lines again, and known ones are le
   CHECK(drained(inbox) == Texts{"a"});
 }
 
+TEST_CASE("a withdrawn line is dropped if it was not drained, and reported", "[chat]") {
+  ChatInbox inbox;
+  inbox.receive({{line_of("a", 1), line_of("b", 2), line_of("refused", 1, ChatLineKind::refused)}});
+  const ChatLineId first = id_of(line_of("a", 1));
+  inbox.receive(ChatWithdrawn{{first, {7, "nobody"}}});
+  CHECK(drained(inbox) == Texts{"b", "refused"});
+  CHECK(inbox.take_withdrawn() == std::vector<ChatLineId>{first, {7, "nobody"}});
+  CHECK(inbox.take_withdrawn().empty());
+}
+
 TEST_CASE_METHOD(ChatSession, "a session sends lines, and gets lines that overtook the handshake",
                  "[session][chat]") {
   CHECK(session.chat("hello").error() == "no world is open");

@@ -59,6 +59,50 @@ TEST_CASE("a built-in role that is removed is as it was built in", "[rights]") {
   CHECK(state.find_role(kVisitorRole)->by == ChangeOrigin{2, 9, 20});
 }
 
+TEST_CASE("a grant with an end counts before the other until it ends", "[rights]") {
+  RightsState state;
+  state.apply(GrantRole{kAda, kVisitorRole}, {1, 9, 10});
+  state.apply(GrantRole{kAda, kModeratorRole, 100}, {2, 9, 20});
+  state.apply(GrantRole{kBob, kModeratorRole, 50}, {3, 9, 20});
+  CHECK(state.role_of(kAda).name == kModeratorRole);
+  CHECK(state.role_of(kAda, 99).name == kModeratorRole);
+  CHECK(state.role_of(kAda, 100).name == kVisitorRole);
+  CHECK(state.role_of(kBob, 50).name == kBuilderRole);
+  CHECK(state.decide(kAda, Right::moderate, 99).by == ChangeOrigin{2, 9, 20});
+  CHECK(state.decide(kAda, Right::moderate, 100).by == ChangeOrigin{1, 9, 10});
+  CHECK(state.rights_in_force(kAda, 99).has(Right::moderate));
+  CHECK_FALSE(state.rights_in_force(kAda, 100).has(Right::moderate));
+  state.set_time(100);
+  CHECK(state.role_of(kAda).name == kVisitorRole);
+  CHECK(state.grants_ended(49, 50) == std::vector<GrantRole>{{kBob, kModeratorRole, 50}});
+  CHECK(state.grants_ended(50, 99).empty());
+  CHECK(state.grants_ended(0, 100).size() == 2);
+
+  // A later grant without an end replaces both.
+  state.apply(GrantRole{kAda, kBuilderRole}, {4, 9, 30});
+  CHECK(state.role_of(kAda, 30).name == kBuilderRole);
+  // A grant that has ended is removed by the next one with an end.
+  CHECK(state.timed_grants().contains(kBob));
+  state.apply(GrantRole{kAda, kModeratorRole, 200}, {5, 9, 60});
+  CHECK_FALSE(state.timed_grants().contains(kBob));
+  state.apply(GrantRole{kAda, ""}, {6, 9, 70});
+  CHECK(state.timed_grants().empty());
+  CHECK(state.role_of(kAda, 70).name == kBuilderRole);
+  CHECK(state.decide(kAda, Right::see, 70).reason == RightsDecision::Reason::default_role);
+}
+
+TEST_CASE("a correction of the time moves the end of a grant that the wrong clock gave",
+          "[rights][clock]") {
+  RightsState state;
+  state.apply(GrantRole{kBob, kModeratorRole, 300}, {1, 9, 10});
+  state.apply(GrantRole{kAda, kModeratorRole, 1'100}, {2, 9, 1'000});
+  CHECK(state.has_ends_given_since(2, 1'000));
+  state.apply(CorrectTime{-900, 2}, {3, 0, 100});
+  CHECK(state.role_of(kAda, 199).name == kModeratorRole);
+  CHECK(state.role_of(kAda, 200).name == kBuilderRole);
+  CHECK_FALSE(state.timed_grants().contains(kBob));  // it had ended by the wrong clock
+}
+
 TEST_CASE("a restriction holds until it ends or is lifted", "[rights]") {
   RightsState state;
   state.apply(Restrict{RestrictionKind::mute, kAda, 100, "loud"}, {1, 9, 10});

@@ -25,6 +25,18 @@ struct ChatLineFields {
   }
 };
 
+struct WithdrawnLineFields {
+  std::string name = "ann";
+  std::int64_t utc_us = 5;
+  std::size_t count = 1;
+  Offset<wire::ChatWithdrawn> operator()(FlatBufferBuilder& b) const {
+    std::vector<Offset<wire::ChatLineId>> lines;
+    for (std::size_t i = 0; i < count; ++i)
+      lines.push_back(wire::CreateChatLineId(b, utc_us, b.CreateString(name)));
+    return wire::CreateChatWithdrawn(b, b.CreateVector(lines));
+  }
+};
+
 struct KeyDepositFields {
   std::size_t slot = kKeySlotBytes, sealed = 1, signature = kSignatureBytes;
   Offset<wire::KeyDeposit> operator()(FlatBufferBuilder& b) const {
@@ -67,6 +79,19 @@ TEST_CASE("chat lines are refused with a bad text, name, time or number of lines
       [](auto& l) { l.count = kChatLinesMax + 1; },
   });
   CHECK(passes<ChatLines>(ChatLineFields{200, 0, "", "of a later version", 5, kChatLinesMax}));
+}
+
+TEST_CASE("withdrawn chat lines are refused with a bad name, time or number of lines",
+          "[protocol]") {
+  refuses<ChatWithdrawn, WithdrawnLineFields>({
+      [](auto& l) { l.name = ""; },
+      [](auto& l) { l.name = " ann"; },
+      [](auto& l) { l.name = std::string(33, 'a'); },
+      [](auto& l) { l.utc_us = kWireTimeUsMax + 1; },
+      [](auto& l) { l.count = 0; },
+      [](auto& l) { l.count = kChatWithdrawnMax + 1; },
+  });
+  CHECK(passes<ChatWithdrawn>(WithdrawnLineFields{"ann", -5, kChatWithdrawnMax}));
 }
 
 TEST_CASE("a key for another device is refused with a slot or a seal of the wrong size",

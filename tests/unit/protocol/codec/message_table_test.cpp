@@ -43,6 +43,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureShapes) return "shapes";
   if (feature == kFeatureTextures) return "textures";
   if (feature == kFeatureWorldTime) return "world time";
+  if (feature == kFeatureChatWithdrawal) return "chat withdrawal";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -98,7 +99,8 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<WorldTime> == kMessageKindCount - 1);
+  CHECK(kKindOf<WorldTime> == kMessageKindCount - 2);
+  CHECK(kKindOf<ChatWithdrawn> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {

@@ -26,4 +26,16 @@ TEST_CASE("the state of the backups says when the last one was and when the next
         "BACKUPS FAIL, 2 times: /b: is no folder: make it, or mount its disk");
 }
 
+TEST_CASE("the state of the backups says that the newest one is dated in the future",
+          "[admin][backup]") {
+  BackupState state;
+  state.last = LastBackup{"20361118T110640Z", 0, 1'024, 0};
+  state.last->ahead_s = 7'200;
+  const std::string text = backup_state_text(state);
+  CHECK(text.starts_with("backups: last 20361118T110640Z, dated 2 h in the future, "));
+  CHECK(text.find("\nBACKUPS: the last one is dated in the future: ") != std::string::npos);
+  state.last->ahead_s = 0;
+  CHECK(backup_state_text(state).find("future") == std::string::npos);
+}
+
 }  // namespace runstone::test

@@ -57,8 +57,10 @@ TEST_CASE("chat log selects lines by player, age and number", "[admin][command]"
   CHECK(parsed<ChatQuery>("chat log") == ChatQuery{});
   const auto query = parsed<ChatQuery>("chat log by \"the mole\" since 1h limit 1000");
   CHECK(query == ChatQuery{"the mole", kTypedUs - 3'600'000'000, 1'000});
-  CHECK(mistake("chat") == "chat: log comes after it, and then by, since or limit");
-  CHECK(mistake("chat hello") == "chat: log comes after it, and then by, since or limit");
+  constexpr const char* kChatRule =
+      "chat: log comes after it, and then by, since or limit; or withdraw PLAYER";
+  CHECK(mistake("chat") == kChatRule);
+  CHECK(mistake("chat hello") == kChatRule);
   CHECK(mistake("chat log of ana") == "chat log \"of\": by, since or limit");
   CHECK(mistake("chat log limit 1001") == "chat log limit \"1001\": a number from 1 to 1000");
   CHECK(mistake("chat log by") == "chat log by: a name, a fingerprint, a key or server is missing");
@@ -139,7 +141,7 @@ TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]
         "rollback apply: one id comes after it (rollback list names them)");
   CHECK(mistake("rollback list now") == "rollback list \"now\": nothing comes after list");
   const std::string filters =
-      "author, not author, address-of, joined-after, since, until, box, cause";
+      "author, not author, address-of, joined-after, since, until, box, in, cause";
   CHECK(mistake("rollback preview") ==
         "rollback preview: say whose edits, when, where or why: " + filters);
   CHECK(mistake("rollback preview by ana") ==
@@ -224,9 +226,10 @@ TEST_CASE("each command needs its right", "[admin][rights]") {
                            "unban ana", "bans", "chat log"}) {
     CHECK(rule(line).any_of == RightSet{Right::moderate});
   }
-  for (const char* line :
-       {"log", "rollback list", "rollback apply p1", "rollback preview since 1h"}) {
-    CHECK(rule(line).any_of == RightSet{Right::roll_back});
+  CHECK(rule("log").any_of == RightSet{Right::roll_back});
+  // Owners of protected ground take edits back there.
+  for (const char* line : {"rollback list", "rollback apply p1", "rollback preview since 1h"}) {
+    CHECK(rule(line).any_of == RightSet{Right::build, Right::claim, Right::roll_back});
   }
   for (const char* line : {"grant ana mason", "revoke ana", "grants"})
     CHECK(rule(line).any_of == RightSet{Right::grant});

@@ -102,6 +102,64 @@ TEST_CASE("grants and revokes answer with the key's fingerprint and the record",
   CHECK_FALSE(bench.console("grant player1 mason").is_ok);
 }
 
+TEST_CASE("a grant for some time ends by itself, and the role before counts again",
+          "[admin][rights]") {
+  RightsBench bench;
+  constexpr std::uint8_t kReader = 7;
+  bench.bench.join(kReader, kReader, 1, {}, kFeatureChat);
+  const std::string who = key_fingerprint(RightsBench::key_of(kReader));
+  bench.done("grant " + who + " visitor");
+  const std::string answer = bench.done("grant " + who + " moderator for 2h");
+  CHECK(has(answer, " has the role moderator until "));
+  CHECK(has(bench.done("grants"), ": moderator until "));
+  CHECK(has(bench.done("why " + who + " moderate"), "was given the role moderator until "));
+  CHECK(bench.player(kReader, "bans").is_ok);
+  const auto said = [&] {
+    std::vector<std::string> texts;
+    for (const auto& lines : bench.bench.environment.messages<ChatLines>(kReader, kEdge)) {
+      for (const ChatLine& line : lines.lines) texts.push_back(line.text);
+    }
+    return texts;
+  };
+  bench.bench.tick(7'100'000'000);
+  CHECK(bench.role_of(kReader) == "moderator");
+  bench.bench.join(kReader + 1, kReader, 2, {}, kFeatureChat);  // the silent session was closed
+  bench.bench.tick(200'000'000);
+  CHECK(bench.role_of(kReader) == "visitor");
+  CHECK_FALSE(bench.player(kReader, "bans").is_ok);
+  CHECK(bench.done("grants").ends_with("by console"));
+  CHECK_FALSE(has(bench.done("grants"), "moderator"));
+  bench.bench.tick();
+
+  CHECK_FALSE(bench.console("grant " + who + " moderator for 0s").is_ok);
+  CHECK_FALSE(bench.console("grant " + who + " moderator 2h").is_ok);
+  bench.done("grant " + who + " moderator for 2h");
+  bench.done("revoke " + who);
+  CHECK(bench.role_of(kReader) == "builder");
+  CHECK_FALSE(bench.console("revoke " + who).is_ok);
+  CHECK(said().empty());
+}
+
+TEST_CASE("a player who is here is told that a role has ended", "[admin][rights]") {
+  RightsBench bench;
+  constexpr std::uint8_t kReader = 7;
+  bench.bench.join(kReader, kReader, 1, {}, kFeatureChat | kFeatureRights);
+  const std::string who = key_fingerprint(RightsBench::key_of(kReader));
+  bench.done("grant " + who + " moderator for 2s");
+  bench.bench.tick(1'000'000);
+  const auto permissions = [&] {
+    return bench.bench.environment.messages<Permissions>(kReader, kEdge).back().role;
+  };
+  CHECK(permissions() == "moderator");
+  bench.bench.tick(2'000'000);
+  CHECK(permissions() == "builder");
+  const auto lines = bench.bench.environment.messages<ChatLines>(kReader, kEdge);
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].lines[0].text == "your role moderator has ended: your role is builder now");
+  bench.bench.tick(1'000'000);
+  CHECK(bench.bench.environment.messages<ChatLines>(kReader, kEdge).size() == 1);
+}
+
 TEST_CASE("the console makes roles, and players need the right", "[admin][rights]") {
   RightsBench bench;
   CHECK(bench.done("role set mason see,build claims 2") ==

@@ -20,6 +20,8 @@ TEST_CASE("each change of rights is one readable line", "[admin][rights]") {
   CHECK(rights_change_text(DefineRole{{"nobody", {}, 0, 0, 0}}) == "role nobody := none");
   CHECK(rights_change_text(RemoveRole{"mason"}) == "role mason removed");
   CHECK(rights_change_text(GrantRole{key, "mason"}) == "gave " + ana + " the role mason");
+  CHECK(rights_change_text(GrantRole{key, "mason", 1'000'000}) ==
+        "gave " + ana + " the role mason until 1970-01-01T00:00:01Z");
   CHECK(rights_change_text(GrantRole{key, ""}) == "took the role of " + ana + " back");
   CHECK(rights_change_text(SetDefaultRole{"mason"}) == "default role mason");
   CHECK(rights_change_text(Restrict{RestrictionKind::ban, key, 1'000'000'000'000'000, "grief"}) ==

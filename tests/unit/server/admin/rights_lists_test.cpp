@@ -44,9 +44,10 @@ TEST_CASE("roles lists rights, limits, grants and records", "[admin][rights]") {
 
 TEST_CASE("grants lists player, role, time and giver", "[admin][rights]") {
   RightsState state;
-  CHECK(grant_list(state, known()) == "nobody has a granted role (roles names the default role)");
+  CHECK(grant_list(state, 0, known()) ==
+        "nobody has a granted role (roles names the default role)");
   state.apply(GrantRole{kAna, "moderator"}, {7, 3, kNow});
-  CHECK(grant_list(state, known()) == named("ana #1", kAna) + ": moderator; " + record(7));
+  CHECK(grant_list(state, 0, known()) == named("ana #1", kAna) + ": moderator; " + record(7));
 }
 
 TEST_CASE("bans lists what is in force", "[admin][rights]") {

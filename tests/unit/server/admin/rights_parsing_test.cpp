@@ -38,6 +38,8 @@ TEST_CASE("commands about roles and grants are parsed", "[admin][rights]") {
   CHECK(row_of("role default mason") == "role default");
   CHECK(parsed<std::string>("role default mason") == "mason");
   CHECK(parsed<GrantCommand>("grant \"the mole\" mason") == GrantCommand{"the mole", "mason"});
+  CHECK(parsed<GrantCommand>("grant ana mason for 2h") ==
+        GrantCommand{"ana", "mason", kTypedUs + 7'200'000'000});
   CHECK(row_of("revoke #3") == "revoke");
   CHECK(parsed<std::string>("revoke #3") == "#3");
   CHECK(row_of("grants") == "grants");

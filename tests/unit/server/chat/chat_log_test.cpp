@@ -98,6 +98,43 @@ TEST_CASE("lines come back in their order after a restart, in a file for its own
   CHECK(bench.warnings().empty());
 }
 
+TEST_CASE("the log keeps withdrawn lines, and a search may leave them out", "[chat]") {
+  LogBench bench;
+  bench.log->append(entry_by(1, "buy gold", 10));
+  bench.log->append(entry_by(2, "hello", 10));
+  bench.log->append(entry_by(1, "good morning", 20));
+  bench.log->withdraw(entry_by(1, "").key, {10, 30});
+  bench.log->append(entry_by(1, "after it", 10));
+  for (int round = 0; round < 2; ++round) {
+    const auto all = bench.find({"", std::nullopt, 10});
+    REQUIRE(all.has_value());
+    REQUIRE(all->size() == 4);
+    CHECK((*all)[0].is_withdrawn);
+    CHECK_FALSE((*all)[1].is_withdrawn);
+    CHECK_FALSE((*all)[2].is_withdrawn);
+    const auto rest = bench.find({"", std::nullopt, 2, false});
+    REQUIRE(rest.has_value());
+    REQUIRE(rest->size() == 2);
+    CHECK(rest->front().line.text == "good morning");
+    bench.open();
+  }
+}
+
+TEST_CASE("a log of a version without withdrawn lines is continued", "[chat]") {
+  LogBench bench;
+  bench.log->append(entry_by(1, "old", 10));
+  bench.log.reset();
+  {
+    auto file = sql::open_sqlite(bench.folder.path() + "/chat.sqlite", sql::SqliteMode::create);
+    REQUIRE(file.has_value());
+    REQUIRE(file->run("ALTER TABLE line DROP COLUMN withdrawn").has_value());
+  }
+  bench.open();
+  bench.log->append(entry_by(1, "new", 20));
+  CHECK(bench.texts() == Texts{"old", "new"});
+  CHECK(bench.warnings().empty());
+}
+
 TEST_CASE("a search selects lines by player and time, the newest ones", "[chat]") {
   LogBench bench;
   for (int i = 0; i < 6; ++i)

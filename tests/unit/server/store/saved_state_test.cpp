@@ -65,6 +65,20 @@ TEST_CASE("the newest record sets the clock, and its time is saved over and over
   CHECK(store->check().has_value());
 }
 
+TEST_CASE("a spawn that is saved is that of the world from the next start on",
+          "[store][saved_state]") {
+  TempPlace place;
+  {
+    auto store = *create_world(place / "w", sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->save_state({{}, std::nullopt, WorldPos{1.5, -2, 3}}).has_value());
+    REQUIRE(store->save_state({{place_of(1, 7.5)}, std::nullopt}).has_value());
+  }
+  const auto store = *open_world(place / "w", StoreAccess::read_only);
+  CHECK(store->meta().spawn == WorldPos{1.5, -2, 3});
+  CHECK(store->check().has_value());
+}
+
 TEST_CASE("the clock stays when its record is compacted away", "[store][saved_state]") {
   TempPlace place;
   auto store = *create_world(place / "w", sample_meta());
@@ -99,6 +113,29 @@ TEST_CASE("a world is of format 10 from the first clock on, and so is a copy",
     CHECK(store->check().has_value());
   }
   CHECK(stored_format(copy) == std::to_string(kWorldFormatOfClock));
+}
+
+TEST_CASE("a world is of format 13 from the first role for some time on, and so is a copy",
+          "[store][rights]") {
+  TempPlace place;
+  const std::string world = place / "w", copy = place / "copy";
+  const auto record_of_grant = [](Sequence seq, TimeUs until_us) {
+    EditRecord record = record_of_clock(seq, kEvening);
+    record.cause = Cause::rights;
+    record.edit = rights_edit(GrantRole{PublicKey{1}, "moderator", until_us});
+    return record;
+  };
+  {
+    auto store = *create_world(world, sample_meta());
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->append({}, std::vector{record_of_grant(1, 0)}).has_value());
+    CHECK(stored_format(world) == std::to_string(kWorldFormat));
+    REQUIRE(store->append({}, std::vector{record_of_grant(2, 5)}).has_value());
+  }
+  CHECK(stored_format(world) == std::to_string(kWorldFormatOfTimedGrants));
+  REQUIRE(copy_stored_world(world, copy).has_value());
+  CHECK((*open_world(copy, StoreAccess::read_write))->check().has_value());
+  CHECK(stored_format(copy) == std::to_string(kWorldFormatOfTimedGrants));
 }
 
 TEST_CASE("damaged places and a damaged clock end neither the opening nor the writing",

@@ -32,6 +32,21 @@ TEST_CASE("the answer of the status socket tells where players are", "[web]") {
   CHECK(read->places[0].y == -20);
 }
 
+TEST_CASE("the answer of the status socket tells the border of the world", "[web]") {
+  const auto border = [](const std::string& line) {
+    return parse_server_status("|border " + line + "\n=ok\n")->border;
+  };
+  REQUIRE(border("circle 1 -2 500").has_value());
+  CHECK(border("circle 1 -2 500")->is_circle);
+  CHECK(border("circle 1 -2 500")->numbers == std::array<std::int64_t, 4>{1, -2, 500, 0});
+  REQUIRE(border("box 1 2 3 4").has_value());
+  CHECK(border("box 1 2 3 4")->numbers == std::array<std::int64_t, 4>{1, 2, 3, 4});
+  for (const char* line : {"", "box", "box 1 2 3", "box 1 2 3 4 5", "circle 1 2", "ring 1 2 3",
+                           "circle 1 2 x", "box 1 2 3 99999999999999999999"})
+    CHECK_FALSE(border(line).has_value());
+  CHECK_FALSE(parse_server_status("=ok\n")->border.has_value());
+}
+
 TEST_CASE("an answer that is cut, refused or something else gives no status", "[web]") {
   const std::string whole = "|counters sessions=2\n|player ana\n=ok";
   for (std::size_t size = 0; size < whole.size(); ++size)

@@ -171,6 +171,12 @@ class FakeEnvironment : public WorldEnvironment {
     return true;
   }
   void log_chat(const ChatEntry& entry) override { chat.push_back(entry); }
+  void withdraw_chat(const PublicKey& key, const std::vector<TimeUs>& times) override {
+    for (ChatEntry& entry : chat) {
+      if (entry.key == key && std::ranges::find(times, entry.line.utc_us) != times.end())
+        entry.is_withdrawn = true;
+    }
+  }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
   void make_tile(TileRequest request) override { tile_requests.push_back(std::move(request)); }
   void make_past_tile(SessionId session, TileRequest request) override {

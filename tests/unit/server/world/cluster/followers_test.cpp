@@ -302,6 +302,25 @@ TEST_CASE("the clock is not set while a follower cannot read it", "[world][serve
         "the clock of this world was set: start a version that can read this");
 }
 
+TEST_CASE("no role is given for some time while a follower cannot read it",
+          "[world][servers][rights]") {
+  constexpr std::uint64_t kOlder = kFeaturesOfServers & ~kFeatureTimedGrants;
+  WorldBench bench;
+  const auto refused = [&] { return bench.server.cluster().timed_grant_refusal().has_value(); };
+  handshake(bench, kLink, kWorldKey, kFeaturesOfServers);
+  CHECK_FALSE(refused());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  CHECK(refused());
+  bench.server.disconnected(kLink + 1);
+  const GrantRole grant{PublicKey{1}, "moderator", bench.now().utc_us + 1'000'000'000};
+  REQUIRE(bench.server.changes().change_rights(grant, {}, 0, bench.now()).has_value());
+  handshake(bench, kLink + 1, kWorldKey, kOlder);
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::wrong_protocol);
+  CHECK(bench.environment.closed[0].text ==
+        "this world has roles for some time: start a version that can read this");
+}
+
 TEST_CASE("the features of servers are in force for no player", "[world][servers][clock]") {
   WorldBench bench;
   CHECK((handshake(bench, 1, 3, ~std::uint64_t{0}) & kFeaturesOfServers) == 0);

@@ -302,4 +302,63 @@ TEST_CASE("a client without the feature may not write", "[world][chat]") {
   CHECK(bench.environment.closed[0].reason == GoodbyeReason::unexpected_message);
 }
 
+TEST_CASE("withdrawn lines are hidden from everybody, and from players who join later",
+          "[world][chat]") {
+  constexpr std::uint64_t kHides = kFeatureChat | kFeatureChatWithdrawal;
+  ChatBench bench;
+  bench.enter(1, 1, kHome, kHides);
+  bench.enter(2, 2, kHome, kHides);
+  bench.enter(3, 3, kSchool);  // an older client, which cannot hide lines
+  bench.write(1, "buy gold");
+  bench.write(2, "hello");
+  bench.tick(1'000'000);
+  bench.write(1, "buy more gold");
+  bench.tick(1'000'000);
+  bench.write(1, "not sent yet");
+  CHECK(bench.server.people().chat().withdraw(player_key(1)) == 3);
+  CHECK(bench.server.people().chat().withdraw(player_key(1)) == 0);
+  CHECK(bench.server.people().chat().withdraw(player_key(9)) == 0);
+  bench.tick();
+  const std::vector<ChatLine> read = bench.lines(2);
+  REQUIRE(read.size() == 3);
+  for (const SessionId session : {1, 2}) {
+    const auto withdrawn = bench.environment.messages<ChatWithdrawn>(session, kEdge);
+    REQUIRE(withdrawn.size() == 1);
+    CHECK(withdrawn[0].lines == std::vector{id_of(read[0]), id_of(read[2])});
+  }
+  CHECK(bench.environment.messages<ChatWithdrawn>(3, kEdge).empty());
+  CHECK(bench.texts(3) == Texts{"buy gold", "hello", "buy more gold"});
+
+  bench.enter(4, 4, kHome, kHides);
+  CHECK(bench.texts(4) == Texts{"hello"});
+  CHECK(bench.environment.messages<ChatWithdrawn>(4, kEdge).empty());
+
+  // The log has all lines, and says which are withdrawn. They still count as written.
+  std::vector<std::pair<std::string, bool>> logged;
+  for (const ChatEntry& entry : bench.environment.chat)
+    logged.emplace_back(entry.line.text, entry.is_withdrawn);
+  CHECK(logged ==
+        std::vector<std::pair<std::string, bool>>{
+            {"buy gold", true}, {"hello", false}, {"buy more gold", true}, {"not sent yet", true}});
+  bench.write(1, "not sent yet");
+  CHECK(bench.refused(1).size() == 1);
+}
+
+TEST_CASE("withdrawn lines make no room for older ones than the newest that are kept",
+          "[world][chat]") {
+  ChatBench bench;
+  bench.enter(1, 1);
+  bench.enter(2, 2);
+  for (std::size_t i = 0; i < kChatKeptMax + 10; ++i) {
+    bench.write(1 + i % 2, "line " + std::to_string(i));
+    bench.tick(1'000'000);
+  }
+  CHECK(bench.server.people().chat().withdraw(player_key(1)) == kChatKeptMax / 2);
+  bench.enter(3, 3);
+  const Texts got = bench.texts(3);
+  REQUIRE(got.size() == kChatRecentMax);
+  CHECK(got.back() == "line " + std::to_string(kChatKeptMax + 9));
+  CHECK(got.front() == "line " + std::to_string(kChatKeptMax + 11 - 2 * kChatRecentMax));
+}
+
 }  // namespace runstone::test::chat_handlers_test

@@ -1,0 +1,66 @@
+// Announcements: lines that the host writes to everybody again and again, or at a time of each day. A
+// list comes from the setting `announcements`, and commands add to it until the server stops.
+// Pure: times are arguments. Thread: one.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+inline constexpr std::size_t kAnnouncementsMax = 16;  // of the setting, and as many of commands
+inline constexpr TimeUs kAnnouncedEveryUsMin = TimeUs{60} * 1'000'000;
+inline constexpr TimeUs kAnnouncedEveryUsMax = TimeUs{7} * 86'400'000'000;
+
+struct Announcement {
+  TimeUs every_us = 0;      // between two of them; 0: at a time of the day
+  std::uint32_t at_ms = 0;  // since midnight UTC
+  std::string text;         // chat_text()
+  friend bool operator==(const Announcement&, const Announcement&) = default;
+};
+
+/// Parses "every 30m TEXT" or "at 20:00 TEXT". The time of day is in UTC. Fails with what is wrong.
+Result<Announcement, std::string> parse_announcement(std::string_view text);
+/// Parses announcements with "|" between them. An empty text has none. Fails with what is wrong, or if
+/// there are more than kAnnouncementsMax.
+Result<std::vector<Announcement>, std::string> parse_announcements(std::string_view text);
+/// Returns a text that parse_announcement() reads.
+std::string text_of(const Announcement& announcement);
+/// Returns a text that parse_announcements() reads.
+std::string text_of(const std::vector<Announcement>& announcements);
+
+class Announcements {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  /// Replaces those of the setting. Those that were there before keep the time of their next line.
+  void set_configured(const std::vector<Announcement>& announcements);
+  /// Adds one. Fails if there are too many.
+  Result<void, std::string> add(Announcement announcement);
+  /// Removes the one with this number of list(), if a command has added it. Fails otherwise, with the
+  /// reason.
+  Result<Announcement, std::string> remove(std::size_t number);
+  /// Returns a line for each, with its number from 1.
+  std::string list() const;
+  /// Calls `say` for each line that is due. A line that was due while the clock jumped by more than ten
+  /// minutes, or before the first call, is left out. Cost: O(announcements).
+  void tick(TimeUs steady_us, TimeUs utc_us, const Say& say);
+
+ private:
+  struct Entry {
+    Announcement what;
+    bool is_configured = false;
+    std::optional<TimeUs> next_us;  // steady clock; nullopt: tick() has not seen it yet
+  };
+  std::vector<Entry> entries_;  // those of the setting first
+  std::optional<TimeUs> ticked_utc_us_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,172 @@
+#include "server/admin/restore_box_commands.hpp"
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/core/utc_text.hpp"
+#include "common/rights/protected_box.hpp"
+#include "server/admin/command_call.hpp"
+#include "server/admin/place_words.hpp"
+#include "server/admin/rights_change_text.hpp"
+#include "server/history/build_at.hpp"
+#include "server/history/named_moment.hpp"
+#include "server/rollback/count_text.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+namespace {
+
+/// The memory of the box of one world.
+constexpr std::size_t kRestoredBytesMax = std::size_t{128} << 20;
+
+Result<RestoreBoxCommand, std::string> parse_restore_box(WordReader& reader) {
+  RestoreBoxCommand command;
+  command.backup = reader.take("restore-box", "a folder with a backup");
+  if (!reader.take_word("box")) {
+    reader.wrong("restore-box " + command.backup + ": box X Y Z X Y Z comes after the folder");
+    return reader.result(command);
+  }
+  command.box = reader.box("box");
+  if (reader.take_word("at")) command.at_us = reader.moment("at");
+  reader.expect_end("restore-box");
+  if (reader.error().empty() && volume_of(command.box) > kRestoredVoxelsMax)
+    reader.wrong("restore-box: the box has more than " + std::to_string(kRestoredVoxelsMax) +
+                 " voxels: restore it in parts");
+  return reader.result(command);
+}
+
+/// A box as it was in a backup, beside the box of the world now.
+struct BackupBox {
+  std::shared_ptr<const FileBuild> then;
+  LogEnd end;  // of the backup, at the moment
+  std::uint64_t differing = 0;
+};
+
+Result<FileBuild, std::string> read_box(WorldReader& reader, const Generator& generator,
+                                        Sequence at, const VoxelBox& box, LogEnd& end,
+                                        const ShouldContinue& should_continue) {
+  const auto world = WorldAt::open(reader, generator, at);
+  if (!world) return failure(world.error().message());
+  end = world->end();
+  const auto materials = reader.materials(at);
+  if (!materials) return failure(materials.error().message());
+  return build_at(*world, reader, *materials, box, reader.meta().chunk_edge, kRestoredBytesMax,
+                  [&](std::uint64_t, std::uint64_t) { return should_continue(); });
+}
+
+/// Returns how many cells of two builds with the same cuts differ. Cost: O(cells log runs) for the
+/// sections that are not the same.
+std::uint64_t differing_cells(const FileBuild& then, const FileBuild& now) {
+  constexpr std::int32_t kNone = -1;
+  std::vector<std::int32_t> numbers(then.materials.size() + 1, kNone);  // by number then
+  numbers[0] = 0;
+  bool is_same_palette = then.materials.size() == now.materials.size();
+  for (std::size_t i = 0; i < then.materials.size(); ++i) {
+    for (std::size_t j = 0; j < now.materials.size(); ++j) {
+      if (then.materials[i] == now.materials[j]) numbers[i + 1] = static_cast<std::int32_t>(j + 1);
+    }
+    is_same_palette = is_same_palette && numbers[i + 1] == static_cast<std::int32_t>(i + 1);
+  }
+  std::uint64_t count = 0;
+  const SectionPos counts = then.build->section_counts();
+  for (SectionPos at; at.z < counts.z; ++at.z) {
+    for (at.y = 0; at.y < counts.y; ++at.y) {
+      for (at.x = 0; at.x < counts.x; ++at.x) {
+        const RunChunk& a = *then.build->section(at);
+        const RunChunk& b = *now.build->section(at);
+        if (is_same_palette && a == b) continue;
+        const VoxelBox cells = then.build->box_of(at);
+        const VoxelPos sides{cells.max.x - cells.min.x, cells.max.y - cells.min.y,
+                             cells.max.z - cells.min.z};
+        for (std::int32_t z = 0; z < sides.z; ++z) {
+          for (std::int32_t y = 0; y < sides.y; ++y) {
+            for (std::int32_t x = 0; x < sides.x; ++x) {
+              const LocalPos cell{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                  static_cast<std::uint8_t>(z)};
+              if (numbers[material_at(a, cell)] != std::int32_t{material_at(b, cell)}) ++count;
+            }
+          }
+        }
+      }
+    }
+  }
+  return count;
+}
+
+/// Reads the box of the backup and that of the world, as it is on disk up to `durable`. Blocks on the
+/// disk.
+Result<BackupBox, std::string> read_backup_box(WorldReader& live, const Generator& generator,
+                                               const RestoreBoxCommand& wanted, Sequence durable,
+                                               const ShouldContinue& should_continue) {
+  const auto opened = open_world(wanted.backup, StoreAccess::read_only);
+  if (!opened) return failure(opened.error().message());
+  Store& backup = **opened;
+  if (backup.meta().world_id != live.meta().world_id)
+    return failure(wanted.backup + ": is a backup of another world");
+  const NamedMoment moment =
+      wanted.at_us ? NamedMoment(AtTime{*wanted.at_us}) : NamedMoment(BeforeEnd{0});
+  const auto at = sequence_of(backup, moment);
+  if (!at) return failure(at.error().message());
+  BackupBox out;
+  auto then = read_box(backup, generator, *at, wanted.box, out.end, should_continue);
+  if (!then) return failure(wanted.backup + ": " + then.error());
+  LogEnd ignored;
+  const auto now = read_box(live, generator, durable, wanted.box, ignored, should_continue);
+  if (!now) return failure(now.error());
+  out.differing = differing_cells(*then, *now);
+  out.then = std::make_shared<const FileBuild>(*std::move(then));
+  return out;
+}
+
+void place_backup_box(const CommandCall& call, const RestoreBoxCommand& wanted,
+                      const BackupBox& box) {
+  const std::string moment = box.end.version.seq == 0
+                                 ? std::string("before its first edit")
+                                 : "after edit " + std::to_string(box.end.version.seq) + " of " +
+                                       utc_text(box.end.time_us);
+  const std::string place = "the box " + ground_text(wanted.box);
+  if (box.differing == 0)
+    return call.answer(place + " is as it was in the backup " + moment + ": nothing to restore");
+  const std::string what = place + " would become as it was in the backup " + moment + ": " +
+                           counted(box.differing, "voxel") +
+                           " would change, also where players have built since";
+  if (call.refuse_unless_confirmed(what)) return;
+  PlaceWords words;
+  words.at = wanted.box.min;
+  place_build(call, "restore-box", place, box.then, words);
+}
+
+void restore_box(const CommandCall& call, const RestoreBoxCommand& wanted) {
+  call.world().commit(call.now);
+  const Sequence durable = call.world().order().durable();
+  auto found = std::make_shared<Result<BackupBox, std::string>>(BackupBox{});
+  call.services.workers.run(
+      [found, wanted, durable, should_continue = call.services.rollback.should_continue()](
+          WorldReader& reader, const Generator& generator) {
+        *found = read_backup_box(reader, generator, wanted, durable, should_continue);
+      },
+      [found, call, wanted](const std::string& error) {
+        if (!error.empty()) return call.refuse("restore-box: " + error);
+        if (!*found) return call.refuse("restore-box: " + found->error());
+        place_backup_box(call, wanted, **found);
+      });
+}
+
+constexpr std::array<CommandRow, 1> kRestoreBoxRows = {{
+    {.words = "restore-box FILE",
+     .rule = kLocal,
+     .help = "restore-box FOLDER box X Y Z X Y Z [at MOMENT]\n"
+             "                          make a box as it was in a backup, as an action that can be "
+             "undone;\n"
+             "                          without the word anyway it says what would change",
+     .functions = parsed_by<parse_restore_box, restore_box>(),
+     .may_be_confirmed = true},
+}};
+
+}  // namespace
+
+std::span<const CommandRow> restore_box_commands() { return kRestoreBoxRows; }
+
+}  // namespace runstone
