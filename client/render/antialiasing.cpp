@@ -43,9 +43,9 @@ const char* to_string(Antialiasing antialiasing) {
 }
 
 std::optional<Antialiasing> parse_antialiasing(std::string_view name) {
-  const auto* const found = std::find_if(
-      kAntialiasings.begin(), kAntialiasings.end(),
-      [name](Antialiasing antialiasing) { return name == to_string(antialiasing); });
+  const auto* const found =
+      std::find_if(kAntialiasings.begin(), kAntialiasings.end(),
+                   [name](Antialiasing antialiasing) { return name == to_string(antialiasing); });
   if (found == kAntialiasings.end()) return std::nullopt;
   return *found;
 }
