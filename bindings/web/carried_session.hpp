@@ -1,14 +1,14 @@
-// CarriedSession: a session with a server for a program that carries the frames itself, as JavaScript
-// does with a WebSocket. It has the session and the replica of the clients, and makes the meshes of
-// the chunks around the player. The program
+// CarriedSession: a session with a server for a program that carries the frames itself, as
+// JavaScript does with a WebSocket. It has the session and the replica of the clients, and makes
+// the meshes of the chunks around the player. The program
 //   - calls connected() when a connection is there, with random bytes, and disconnected() after it;
 //   - passes each received message to receive();
 //   - calls step() about every 10 ms, sends what next_frame() returns, and closes the connection if
 //     wants_close() returns true;
 //   - draws what next_mesh() returns.
-// Shapes that are no cubes are meshed as in coarse levels of detail: as a cube if they fill at least half
-// of their voxel, otherwise not at all. Distant ground is not requested.
-// Pure: randomness and times are arguments, in microseconds of a steady clock. One thread. Bounds: the
+// Shapes that are no cubes are meshed as in coarse levels of detail: as a cube if they fill at
+// least half of their voxel, otherwise not at all. Distant ground is not requested. Pure:
+// randomness and times are arguments, in microseconds of a steady clock. One thread. Bounds: the
 // replica's (client/replica), and kNoticesMax notices.
 #pragma once
 #include <cstdint>
@@ -67,16 +67,17 @@ class CarriedSession final : private MessageSink {
 
   /// Begins a connection. `nonce` must be fresh and random.
   void connected(const Nonce& nonce, TimeUs now_us);
-  /// Takes bytes of the server. Fails if they break a rule of the protocol, or without a connection. The
-  /// program then closes the connection.
+  /// Takes bytes of the server. Fails if they break a rule of the protocol, or without a
+  /// connection. The program then closes the connection.
   Result<void> receive(ByteView bytes, TimeUs now_us);
   void disconnected();
   /// Sends pings, poses and what else is due. Call it about every 10 ms.
   void step(TimeUs now_us);
-  /// Returns the next frame to send, a message of a WebSocket, or an empty span if there is none. The
-  /// bytes hold until the next call.
+  /// Returns the next frame to send, a message of a WebSocket, or an empty span if there is none.
+  /// The bytes hold until the next call.
   ByteView next_frame();
-  /// Returns true if the connection should be closed: the session has ended and everything was sent.
+  /// Returns true if the connection should be closed: the session has ended and everything was
+  /// sent.
   bool wants_close() const;
 
   /// Moves the player, and the view with it. Requires a position within the world.
@@ -87,8 +88,8 @@ class CarriedSession final : private MessageSink {
   /// Queues a goodbye.
   void leave();
 
-  /// Meshes the next chunk: an edited one, or the nearest to the player. Returns nullopt if all meshes
-  /// are up to date, or wait for chunks.
+  /// Meshes the next chunk: an edited one, or the nearest to the player. Returns nullopt if all
+  /// meshes are up to date, or wait for chunks.
   std::optional<CarriedMesh> next_mesh();
   /// Returns the oldest notice that was not taken.
   std::optional<CarriedNotice> next_notice();

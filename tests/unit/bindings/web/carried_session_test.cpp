@@ -26,7 +26,8 @@ struct CarriedBench {
     return out;
   }
 
-  /// Returns what the session sends, as the server reads it. Each frame is a message of a WebSocket.
+  /// Returns what the session sends, as the server reads it. Each frame is a message of a
+  /// WebSocket.
   std::vector<Message> sent() {
     std::vector<Message> messages;
     for (ByteView frame = session.next_frame(); !frame.empty(); frame = session.next_frame()) {
