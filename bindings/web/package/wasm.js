@@ -47,7 +47,7 @@ class Room {
   // Returns zeroed memory.
   take(bytes) {
     const at = wasm().malloc(Math.max(bytes, 1));
-    if (at === 0) throw new RunstoneError("no memory", `there is no room for ${bytes} bytes`);
+    if (at === 0) throw new RunstoneError("not enough memory", `there is no room for ${bytes} bytes`);
     this.#taken.push(at);
     bytesAt(at, bytes).fill(0);
     return at;
