@@ -23,8 +23,9 @@ Antialiasing usable(Antialiasing wanted, Quality quality, const AntialiasingMean
 bool is_software_renderer(std::string_view name) {
   constexpr std::array<std::string_view, 6> kNames = {
       "llvmpipe", "softpipe", "swrast", "SwiftShader", "Software", "Microsoft Basic Render"};
-  return std::ranges::any_of(
-      kNames, [name](std::string_view part) { return name.find(part) != std::string_view::npos; });
+  return std::any_of(kNames.begin(), kNames.end(), [name](std::string_view part) {
+    return name.find(part) != std::string_view::npos;
+  });
 }
 
 const char* to_string(Antialiasing antialiasing) {
@@ -42,9 +43,9 @@ const char* to_string(Antialiasing antialiasing) {
 }
 
 std::optional<Antialiasing> parse_antialiasing(std::string_view name) {
-  const auto* const found = std::ranges::find_if(kAntialiasings, [name](Antialiasing antialiasing) {
-    return name == to_string(antialiasing);
-  });
+  const auto* const found =
+      std::find_if(kAntialiasings.begin(), kAntialiasings.end(),
+                   [name](Antialiasing antialiasing) { return name == to_string(antialiasing); });
   if (found == kAntialiasings.end()) return std::nullopt;
   return *found;
 }

@@ -51,8 +51,10 @@ void Terrain::set_textures(const DrawnTexturesPtr& textures) {
 
 void Terrain::surfaces_changed() {
   // Cubes cast the same shadows with every look and every picture.
-  const bool has_shapes = std::ranges::any_of(
-      bodies_.chunks(), [](const auto& entry) { return entry.second.shapes.count != 0; });
+  const auto& chunks = bodies_.chunks();
+  const bool has_shapes = std::any_of(chunks.begin(), chunks.end(), [](const auto& entry) {
+    return entry.second.shapes.count != 0;
+  });
   if (has_shapes) shadows_.all_changed();
 }
 

@@ -10,7 +10,7 @@ std::optional<PngSides> png_sides(ByteView png) {
   constexpr std::array<std::uint8_t, 16> kHeadOfPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n',
                                                        0,    0,   0,   13,  'I',  'H',  'D',  'R'};
   if (png.size() < kHeadOfPng.size() + 8 ||
-      !std::ranges::equal(png.first(kHeadOfPng.size()), kHeadOfPng))
+      !std::equal(kHeadOfPng.begin(), kHeadOfPng.end(), png.begin()))
     return std::nullopt;
   const auto side = [png](std::size_t at) {
     std::uint32_t value = 0;

@@ -41,12 +41,14 @@ MaterialTable with_looks_on_shapes(const MaterialTable& table) {
 }
 
 bool has_silhouettes(std::span<const MaterialRow> rows) {
-  return std::ranges::any_of(rows, [](const MaterialRow& row) { return has_silhouette(row.look); });
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const MaterialRow& row) { return has_silhouette(row.look); });
 }
 
 bool has_silhouettes(const MaterialTable& table) {
-  return std::ranges::any_of(table.rows(),
-                             [](const MaterialInfo& row) { return has_silhouette(row.look); });
+  const auto rows = table.rows();
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const MaterialInfo& row) { return has_silhouette(row.look); });
 }
 
 }  // namespace runstone

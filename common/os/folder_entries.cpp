@@ -14,7 +14,7 @@ Result<std::vector<std::filesystem::path>, std::string> folder_entries(const std
        entry.increment(error))
     paths.push_back(entry->path());
   if (error) return failure(folder + ": cannot be read: " + error.message());
-  std::ranges::sort(paths);
+  std::sort(paths.begin(), paths.end());
   return paths;
 }
 

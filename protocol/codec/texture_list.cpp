@@ -12,7 +12,7 @@ namespace {
 TextureHash read_texture_hash(ByteReader& r) {
   TextureHash hash{};
   const ByteView bytes = r.bytes(hash.size());
-  if (r.ok()) std::ranges::copy(bytes, hash.begin());
+  if (r.ok()) std::copy(bytes.begin(), bytes.end(), hash.begin());
   return hash;
 }
 

@@ -2,13 +2,17 @@
 // depends on all of their bits, and the time of a chunk in microseconds, with vector instructions and
 // without. The presets release and web build it: scripts/check-browser compares the meshes of both.
 //   runstone-mesh-probe [SECONDS]    time each world for about SECONDS (0.2)
+//   runstone-mesh-probe digests      print the digests of generated worlds instead
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/core/digest.hpp"
 #include "common/core/hash.hpp"
 #include "common/generate/generator.hpp"
 #include "common/generate/generator_parameters.hpp"
@@ -142,10 +146,57 @@ int probe(double seconds) {
   return 0;
 }
 
+/// A column of chunks of a world, and the coarse tiles at its foot.
+Digest digest_of_column(const Generator& generator, ChunkCoord foot) {
+  constexpr std::int32_t kHigh = 16;      // chunks
+  constexpr std::uint8_t kLevelStep = 3;  // levels 3 and 6
+  Digest out;
+  for (std::int32_t y = 0; y < kHigh; ++y) {
+    const ChunkCoord at{foot.x, foot.y + y, foot.z};
+    const RunChunk chunk = generator.generate(origin_of(at, kEdge), Extent::cube(kEdge));
+    out = out + world_digest_term({0, at}, digest_of(chunk));
+  }
+  for (std::uint8_t level = kLevelStep; level <= 2 * kLevelStep; level += kLevelStep) {
+    const std::int32_t wide = kEdge << level;
+    const ChunkCoord at = chunk_of(origin_of(foot, kEdge), wide);
+    const auto tile = generator.coarse(origin_of(at, wide), kEdge, level);
+    if (tile) out = out + world_digest_term({level, at}, digest_of(*tile));
+  }
+  return out;
+}
+
+/// Prints a line for each generator, seed and place: the digest, and the height of the surface there.
+int print_digests() {
+  const MaterialTable& materials = landscape_material_table();
+  constexpr std::uint64_t kSeeds[] = {0, 7, (std::uint64_t{1} << 53) + 1,
+                                      std::numeric_limits<std::uint64_t>::max()};
+  constexpr ChunkCoord kFeet[] = {{0, -8, 0}, {-37, -8, 1001}, {2'000'003, -8, -3'000'017}};
+  for (const char* const name : {"landscape", "terrain"}) {
+    for (const std::uint64_t seed : kSeeds) {
+      const auto generator = make_generator({name, 1, seed, ""}, materials);
+      if (!generator) {
+        std::fprintf(stderr, "%s: %s\n", name, generator.error().what);
+        return 1;
+      }
+      for (const ChunkCoord& foot : kFeet) {
+        const VoxelPos origin = origin_of(foot, kEdge);
+        std::printf("%s %llu at %d %d, %s, %d\n", name, static_cast<unsigned long long>(seed),
+                    foot.x, foot.z, to_hex(digest_of_column(**generator, foot)).c_str(),
+                    (*generator)->surface_y(origin.x, origin.z));
+      }
+      const VoxelPos spawn = (*generator)->spawn().value_or(VoxelPos{});
+      std::printf("%s %llu spawn, %d %d, %d\n", name, static_cast<unsigned long long>(seed),
+                  spawn.x, spawn.y, spawn.z);
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 }  // namespace runstone
 
 int main(int argc, char** argv) {
   constexpr double kSeconds = 0.2;
+  if (argc > 1 && std::string_view(argv[1]) == "digests") return runstone::print_digests();
   return runstone::probe(argc > 1 ? std::strtod(argv[1], nullptr) : kSeconds);
 }

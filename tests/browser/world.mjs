@@ -32,16 +32,17 @@ async function stop(program) {
 }
 
 export class World {
-  // `bin` has the programs of the preset release, `page` the files of the preset web.
-  static async open(bin, page, world) {
+  // `bin` has the programs of the preset release, `page` the files of the preset web. Without a page the
+  // gateway serves none. `gateway` are further options of runstone-web.
+  static async open(bin, page, world, gateway = []) {
     const out = new World();
     out.bin = bin;
     out.folder = mkdtempSync(join(tmpdir(), "runstone-browser-"));
     out.worldFlags = world;
     await out.startServer(true);
     out.web = await start(join(bin, "runstone-web"),
-      ["--listen", "127.0.0.1:0", "--gateway-socket", out.socket, "--client-files", page, "--world",
-        join(out.folder, "world")],
+      ["--listen", "127.0.0.1:0", "--gateway-socket", out.socket, "--world", join(out.folder, "world"),
+        ...(page === null ? [] : ["--client-files", page]), ...gateway],
       join(out.folder, "web.port"));
     return out;
   }

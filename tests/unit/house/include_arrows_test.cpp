@@ -81,10 +81,10 @@ Arrows::const_iterator module_of(std::string_view path) {
 }
 
 /// Returns true if no module of this build need contain the path: tests are not modules, and a build
-/// without the client or the benchmarks has no modules below client/ or bench/.
+/// without the client or the benchmarks has no modules below client/, bindings/web/ or bench/.
 bool is_outside(std::string_view path) {
 #ifndef RUNSTONE_HAS_CLIENT
-  if (below(path, "client")) return true;
+  if (below(path, "client") || below(path, "bindings/web")) return true;
 #endif
   return below(path, "tests") || below(path, "bench");
 }
