@@ -173,16 +173,6 @@ def test_wrong_options_are_refused(options, kind):
         within(play())
 
 
-def test_a_join_that_a_server_refuses_raises_its_words(server):
-    async def play():
-        async with client_of(server):
-            await client_of(server, invite="no invite").join()
-    try:
-        within(play())
-    except (runstone.Error, ValueError) as error:
-        assert str(error)
-
-
 def start_example(name, *arguments):
     return subprocess.Popen([sys.executable, "-u", ROOT / "examples/python" / name, *map(str, arguments)],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
