@@ -68,8 +68,8 @@ vec3 runstone_corner(RunstoneQuad quad, uint corner) {
   bool far_u = corner == 2u || corner == (positive ? 1u : 3u);
   bool far_v = corner == 2u || corner == (positive ? 3u : 1u);
   float w = positive ? 1.0 : 0.0;
-  float u = far_u ? float(quad.width) : 0.0;
-  float v = far_v ? float(quad.height) : 0.0;
+  float u = float(far_u ? quad.width : 0u);
+  float v = float(far_v ? quad.height : 0u);
   uint axis = quad.direction >> 1u;
   float x = float(quad.voxel.x) + (axis == 0u ? w : axis == 1u ? v : u);
   float y = float(quad.voxel.y) + (axis == 0u ? u : axis == 1u ? w : v);

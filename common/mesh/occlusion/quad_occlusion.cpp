@@ -22,6 +22,7 @@ class QuadCutter {
         direction_(direction),
         u_step_(bits.step(u_axis_of(axis_of(direction)))),
         v_step_(bits.step(v_axis_of(axis_of(direction)))),
+        layer_step_(bits.step(axis_of(direction))),
         u_shift_(shift_of(u_axis_of(axis_of(direction)))),
         v_shift_(shift_of(v_axis_of(axis_of(direction)))),
         out_(out) {}
@@ -31,6 +32,7 @@ class QuadCutter {
     width_ = q.width;
     height_ = q.height;
     base_ = quad.bits & ~(std::uint64_t{0x3fff} << 21);
+    if (width_ == 1 && height_ == 1) return put_face(q);
     if (!read_rim(q)) {
       put(0, 0, width_, height_, 0, 0, 0, 0);
       return;
@@ -72,12 +74,25 @@ class QuadCutter {
     return std::any_of(points, points + count, [](Level level) { return level != 0; });
   }
 
+  /// Returns the bit of the voxel before the face at the lowest corner.
+  std::uint32_t place_before(const QuadFields& q) const {
+    return bits_.place(q.x, q.y, q.z) + (is_positive(direction_) ? layer_step_ : 0U - layer_step_);
+  }
+
+  /// Adds a quad of a single face, as most quads are.
+  void put_face(const QuadFields& q) {
+    const std::uint32_t at = place_before(q), below = at - v_step_, above = at + v_step_;
+    const unsigned left = bits_.at(at - u_step_), right = bits_.at(at + u_step_);
+    const unsigned lower = bits_.at(below), upper = bits_.at(above);
+    put(0, 0, 1, 1, point_level(left, lower, bits_.at(below - u_step_)),
+        point_level(right, lower, bits_.at(below + u_step_)),
+        point_level(left, upper, bits_.at(above - u_step_)),
+        point_level(right, upper, bits_.at(above + u_step_)));
+  }
+
   /// Reads the points of the four sides. Returns false if none is dark.
   bool read_rim(const QuadFields& q) {
-    // The voxel before the face at the lowest corner.
-    std::array<int, 3> before = {q.x, q.y, q.z};
-    before[static_cast<std::size_t>(axis_of(direction_))] += is_positive(direction_) ? 1 : -1;
-    const std::uint32_t low = bits_.place(before[0], before[1], before[2]);
+    const std::uint32_t low = place_before(q);
     // The voxels around those before the quad: a side and its corners.
     const std::uint32_t high = low + (width_ - 1) * u_step_ + (height_ - 1) * v_step_;
     const unsigned c00 = bits_.at(low - u_step_ - v_step_);
@@ -160,7 +175,7 @@ class QuadCutter {
 
   const OpaqueBits& bits_;
   const Direction direction_;
-  const std::uint32_t u_step_, v_step_;
+  const std::uint32_t u_step_, v_step_, layer_step_;
   const unsigned u_shift_, v_shift_;
   OccludedQuads& out_;
   std::uint64_t base_ = 0;  // the quad without its sizes
@@ -177,6 +192,8 @@ class QuadCutter {
 void occlude_quads(const QuadLayers& quads, const OpaqueBits& bits, OccludedQuads& out) {
   out.clear();
   if (quads.quads.empty()) return;
+  out.quads.quads.reserve(2 * quads.quads.size());
+  out.corners.reserve(2 * quads.quads.size());
   std::uint32_t next = 0;
   for (std::size_t d = 0; d < kDirectionCount; ++d) {
     QuadCutter cutter(bits, static_cast<Direction>(d), out);

@@ -1,5 +1,5 @@
 // Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's
-// orientation. They are read from the neighbour's runs in any axis order. Internal to rdm.
+// orientation. They are read from the neighbour's runs in any axis order. Internal to common/mesh.
 #pragma once
 #include <algorithm>
 #include <array>

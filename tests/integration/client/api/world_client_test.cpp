@@ -93,7 +93,7 @@ TEST_CASE("edits are confirmed, durable, rejected and refused, each with words",
   CHECK(ada->material_at(far) == kEmpty);
 
   // What the client knows itself is refused before it is sent.
-  CHECK(ada->submit({FillSphere{near, 60'000}, {}, 1}).error().code == ErrorCode::bad_value);
+  CHECK(ada->submit({FillSphere{near, 60'000}, {}, 1}).error().code == ErrorCode::limit_exceeded);
   CHECK_FALSE(ada->submit(voxel(near, 60'000)).error().text.empty());
   CHECK(ada->submit(clock_edit({})).error().code == ErrorCode::unknown_kind);
   must(config.world, {"role", "default", "visitor"});
