@@ -135,7 +135,7 @@ TEST_CASE("each field of a protected box has its range", "[rights]") {
 TEST_CASE("bytes that are no change are rejected with a reason", "[rights]") {
   CHECK(unreadable({}) == ErrorCode::truncated);
   CHECK(unreadable({0}) == ErrorCode::unknown_kind);
-  CHECK(unreadable({16}) == ErrorCode::unknown_kind);
+  CHECK(unreadable({17}) == ErrorCode::unknown_kind);
   CHECK(unreadable({2, 1, 'a', 0}) == ErrorCode::trailing_bytes);
   CHECK(unreadable({2, 0x81, 0, 'a'}) == ErrorCode::not_canonical);
   CHECK(unreadable({2, 33, 'a'}) == ErrorCode::bad_value);

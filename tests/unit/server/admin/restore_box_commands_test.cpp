@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "common/core/utc_text.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/store/copy_stored_world.hpp"
 #include "tests/support/core/text_contains.hpp"
