@@ -8,9 +8,9 @@
 #include "common/core/assert.hpp"
 #include "common/runs/line_starts.hpp"
 #include "common/runs/run_cursor.hpp"
+#include "common/runs/run_sink.hpp"
 #include "common/tiles/exposure.hpp"
 #include "common/tiles/layer_rows.hpp"
-#include "common/runs/run_sink.hpp"
 
 namespace runstone {
 

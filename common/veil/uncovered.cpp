@@ -96,10 +96,6 @@ void find_in_layers(Truth truth, Shown shown, const OrderedExtent& e, const Veil
 
 }  // namespace
 
-SlowLayers all_slow_layers(const RunChunk& chunk) {
-  return {0, ordered(chunk.extent, chunk.order).s};
-}
-
 SlowLayers layers_beside(const RunChunk& chunk, const DirtyLayers& dirty,
                          const std::array<DirtyLayers, kDirectionCount>& beyond) {
   const Axis slow = axes_of(chunk.order)[2];

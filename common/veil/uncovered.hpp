@@ -11,7 +11,6 @@
 // told once stays told, because no change covers it again.
 #pragma once
 #include <array>
-#include <cstdint>
 
 #include "common/core/coords.hpp"
 #include "common/runs/dirty_layers.hpp"
@@ -21,16 +20,6 @@
 #include "common/veil/veil_patch.hpp"
 
 namespace runstone {
-
-/// Layers [first, end) of the slowest axis of a chunk.
-struct SlowLayers {
-  std::uint32_t first = 0, end = 0;
-  bool empty() const { return first >= end; }
-  friend bool operator==(const SlowLayers&, const SlowLayers&) = default;
-};
-
-/// Returns all layers of a chunk.
-SlowLayers all_slow_layers(const RunChunk& chunk);
 
 /// Returns the layers in which an edit can uncover voxels: those in which voxels changed, and one to
 /// either side; and where the layer of a neighbour that touches the chunk changed, the layers beside
@@ -43,8 +32,8 @@ SlowLayers layers_beside(const RunChunk& chunk, const DirtyLayers& dirty,
 /// among them
 ///   - with its true material, if it is not enclosed;
 ///   - with the filler, if it is enclosed and shows a material that does not cover.
-/// Requires valid chunks of one extent and one axis order, the borders of the true chunk, and a
-/// filler that covers. Cost: O(lines of the layers + runs of both chunks in them + log runs).
+/// Requires valid chunks of one extent and one axis order, the borders of the true chunk beside the
+/// layers, and a filler that covers. Cost: O(lines of the layers + runs of both chunks in them + log runs).
 void find_uncovered(const RunChunk& truth, const VeilBorders& borders, const RunChunk& shown,
                     const VeilMaterials& materials, SlowLayers layers, VeilScratch& scratch,
                     VeilPatch& patch);

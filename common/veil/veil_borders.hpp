@@ -19,6 +19,16 @@ namespace runstone {
 ///     not before.
 enum class MissingSide : std::uint8_t { open, closed };
 
+/// Layers [first, end) of the slowest axis of a chunk.
+struct SlowLayers {
+  std::uint32_t first = 0, end = 0;
+  bool empty() const { return first >= end; }
+  friend bool operator==(const SlowLayers&, const SlowLayers&) = default;
+};
+
+/// Returns all layers of a chunk.
+SlowLayers all_slow_layers(const RunChunk& chunk);
+
 class VeilBorders {
  public:
   /// Makes the borders of a chunk of this extent and axis order, all of whose neighbours are
@@ -28,10 +38,10 @@ class VeilBorders {
   /// valid neighbours with the chunk's sides where they touch. Cost: O(runs of the neighbours).
   VeilBorders(const RunChunk& chunk, const std::array<const RunChunk*, kDirectionCount>& neighbours,
               const VisibilityTable& covers, MissingSide missing);
-
-  /// Replaces one side. Requirements and cost are those of the constructor.
-  void read(Direction side, const RunChunk& neighbour, const VisibilityTable& covers);
-  void set_missing(Direction side, MissingSide missing);
+  /// Reads what lies beside some layers of the chunk. The rest is not known afterwards. Cost: for a
+  /// few layers O(layers * (length + log runs)).
+  VeilBorders(const RunChunk& chunk, const std::array<const RunChunk*, kDirectionCount>& neighbours,
+              const VisibilityTable& covers, MissingSide missing, SlowLayers layers);
 
   Extent extent() const { return extent_; }
   AxisOrder order() const { return order_; }
@@ -46,9 +56,12 @@ class VeilBorders {
 
  private:
   using Side = std::array<Row128, kSideMax>;
+  void set_missing(Direction side, MissingSide missing);
+  void read(Direction side, const RunChunk& neighbour, const VisibilityTable& covers,
+            SlowLayers layers);
   template <class Row>
   void read_rows(Side& side, Direction direction, const RunChunk& neighbour,
-                 const VisibilityTable& covers);
+                 const VisibilityTable& covers, SlowLayers layers);
 
   Extent extent_;
   AxisOrder order_;
