@@ -59,14 +59,15 @@ class EnclosedLayers {
     const Row* const rows = layer_rows(layer_).data();
     const Row* const before = layer_rows(layer_ + 2).data();
     const Row* const after = layer_rows(layer_ + 1).data();
-    const Row first_beyond = borders_.row<Row>(0, false, layer_);
-    const Row last_beyond = borders_.row<Row>(0, true, layer_);
+    // Their bits lie along the middle axis, which may be longer than a row.
+    const auto first_beyond = borders_.row<Row128>(0, false, layer_);
+    const auto last_beyond = borders_.row<Row128>(0, true, layer_);
     Row below = borders_.row<Row>(1, false, layer_);
     for (std::uint32_t m = 0; m < e_.m; ++m) {
       const Row row = rows[m];
       const Row above = m + 1 < e_.m ? rows[m + 1] : borders_.row<Row>(1, true, layer_);
-      const Row from_left = row << 1 | (first_beyond >> m & 1);
-      const Row from_right = row >> 1 | (last_beyond >> m & 1) << (e_.f - 1);
+      const Row from_left = row << 1 | static_cast<Row>(first_beyond >> m & 1);
+      const Row from_right = row >> 1 | static_cast<Row>(last_beyond >> m & 1) << (e_.f - 1);
       scratch_.enclosed[m] = row & from_left & from_right & below & above & before[m] & after[m];
       below = row;
     }
