@@ -57,7 +57,8 @@ runstone_installed(edits REQUIRES runstone-rights runstone-runs libhwy DESCRIPTI
 runstone_installed(shapes REQUIRES runstone-core DESCRIPTION "voxels that are no cubes: boxes and their surface")
 runstone_installed(collision REQUIRES runstone-runs runstone-shapes DESCRIPTION "boxes that move through run chunks")
 runstone_installed(mesh REQUIRES runstone-runs runstone-shapes libhwy DESCRIPTION "quads from run chunks")
-runstone_installed(tiles REQUIRES runstone-mesh DESCRIPTION "levels of detail of run chunks")
+runstone_installed(veil REQUIRES runstone-mesh DESCRIPTION "chunks without what nobody can see")
+runstone_installed(tiles REQUIRES runstone-veil DESCRIPTION "levels of detail of run chunks")
 if(TARGET runstone_protocol_chunks)
   runstone_installed(codec MODULE protocol/chunks EXPORT runstone-codec REQUIRES runstone-runs libzstd
                      DESCRIPTION "bytes of run chunks on wire and disk")

@@ -28,6 +28,7 @@
 #include "bench/voxelise/voxelise_bench.hpp"
 #include "bench/wire/bytes_bench.hpp"
 #include "bench/wire/bytes_to_quads.hpp"
+#include "bench/wire/veil_bench.hpp"
 #include "common/os/output_file.hpp"
 
 namespace runstone::bench {
@@ -146,6 +147,13 @@ int bytes_to_quads(const BenchOptions& options, std::ostream& out, std::ostream&
   });
 }
 
+int veil(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_veil_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
 int tiles(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return finish(run_tiles_bench(options, err), options, err, [&](const auto& result) {
     write_machine(result.machine, out);
@@ -244,6 +252,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return bytes(options.bench, out, err);
     case Command::bytes_to_quads:
       return bytes_to_quads(options.bench, out, err);
+    case Command::veil:
+      return veil(options.bench, out, err);
     case Command::tiles:
       return tiles(options.bench, out, err);
     case Command::voxelise:

@@ -33,7 +33,7 @@ struct Subcommand {
   CLI::App* (*add)(CLI::App&, BenchOptions&);
 };
 /// The subcommands whose options are BenchOptions.
-constexpr std::array<Subcommand, 18> kSubcommands = {
+constexpr std::array<Subcommand, 19> kSubcommands = {
     {{Command::mesh, add_mesh_command},
      {Command::chunk_edge, add_chunk_edge_command},
      {Command::edits, add_edits_command},
@@ -43,6 +43,7 @@ constexpr std::array<Subcommand, 18> kSubcommands = {
      {Command::fan_out, add_fan_out_command},
      {Command::bytes, add_bytes_command},
      {Command::bytes_to_quads, add_bytes_to_quads_command},
+     {Command::veil, add_veil_command},
      {Command::storage, add_storage_command},
      {Command::tiles, add_tiles_command},
      {Command::voxelise, add_voxelise_command},

@@ -23,6 +23,7 @@ enum class Command {
   fan_out,
   bytes,
   bytes_to_quads,
+  veil,
   storage,
   tiles,
   voxelise,

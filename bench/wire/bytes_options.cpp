@@ -34,4 +34,18 @@ CLI::App* add_bytes_to_quads_command(CLI::App& app, BenchOptions& options) {
   return quads;
 }
 
+CLI::App* add_veil_command(CLI::App& app, BenchOptions& options) {
+  options.repetitions = 9;
+  options.edges = {32};
+  const auto worlds = landscape_names();
+  options.worlds = {worlds.begin(), worlds.end()};
+  CLI::App* veil = app.add_subcommand(
+      "veil", "chunks with and without what nobody can see: runs, bytes, unpacking and meshing");
+  add_world_options(*veil, options, measured_world_names());
+  add_edge_option(*veil, options);
+  veil->add_option("--json", options.json, "write all rows to this file");
+  add_repetitions_option(*veil, options, "--min-runs", "passes over the chunks of a world");
+  return veil;
+}
+
 }  // namespace runstone::bench

@@ -8,9 +8,9 @@
 #include "common/core/assert.hpp"
 #include "common/runs/line_starts.hpp"
 #include "common/runs/run_cursor.hpp"
+#include "common/runs/run_sink.hpp"
 #include "common/tiles/exposure.hpp"
 #include "common/tiles/layer_rows.hpp"
-#include "common/tiles/run_sink.hpp"
 
 namespace runstone {
 
@@ -19,7 +19,7 @@ struct TileScratch::State {
   tiles::LayerRows outside;
   tiles::ExposureSweep sweep;
   tiles::MostExposed most_exposed;
-  tiles::RunSink sink;
+  RunSink sink;
   RunChunk empty;                         // for children that are null
   std::array<LineStarts, 8> line_starts;  // of the children in another axis order
 };

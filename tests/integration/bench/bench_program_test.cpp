@@ -409,6 +409,29 @@ TEST_CASE("runstone-bench bytes-to-quads takes both ways over the same chunks", 
   }
 }
 
+TEST_CASE("runstone-bench veil measures chunks with and without a veil", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "veil.json";
+  const BenchOutput output =
+      run_bench({"veil", "--min-runs", "1", "--worlds", "luanti", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const auto document = nlohmann::json::parse(text_of(json));
+  REQUIRE(document.at("rows").size() == 1);
+  const auto& row = document.at("rows")[0];
+  CHECK(row.at("chunks") > 0);
+  CHECK(row.at("veiled").at("runs") < row.at("plain").at("runs"));
+  CHECK(row.at("veiled").at("bytes") < row.at("plain").at("bytes"));
+  CHECK(row.at("turned").at("runs") <= row.at("veiled").at("runs"));
+  for (const char* form : {"plain", "veiled", "turned"}) {
+    CHECK(row.at(form).at("unpack_us") > 0);
+    CHECK(row.at(form).at("mesh_us") > 0);
+    CHECK(row.at(form).at("quads") > 0);
+  }
+  CHECK(row.at("veil_us") > 0);
+  CHECK(row.at("uncover_us") > 0);
+}
+
 TEST_CASE("runstone-bench tiles measures each level of a world", "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "tiles.json";

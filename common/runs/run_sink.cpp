@@ -1,8 +1,8 @@
-#include "common/tiles/run_sink.hpp"
+#include "common/runs/run_sink.hpp"
 
 #include <utility>
 
-namespace runstone::tiles {
+namespace runstone {
 
 RunList RunSink::runs_of(std::uint32_t volume) const {
   RUNSTONE_ASSERT(!starts_.empty() && starts_.front().voxel == 0);
@@ -24,4 +24,4 @@ RunList RunSink::runs_of(std::uint32_t volume) const {
   return RunList::of_wide(std::move(ends), std::move(materials));
 }
 
-}  // namespace runstone::tiles
+}  // namespace runstone
