@@ -314,7 +314,7 @@ TEST_CASE("the size of a part follows the time of the log writer", "[server][ret
   CHECK(next_fold_size(size, microseconds(25'000)).chunks_max == 16);
   CHECK(next_fold_size(size, microseconds(15'000)).edits_max == 256);
   CHECK(next_fold_size(size, microseconds(1'000)).edits_max == 320);
-  CHECK(next_fold_size({16, 4}, microseconds(90'000)).edits_max == 16);
+  CHECK(next_fold_size({128, 16}, microseconds(90'000)).edits_max == 128);
   CHECK(next_fold_size({4'096, 128}, microseconds(1)).chunks_max == 128);
 }
 
