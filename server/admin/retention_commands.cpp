@@ -33,6 +33,7 @@ std::string causes_text(const LogVolume& volume) {
 
 std::string space_text(const FreeSpace& free) {
   if (free.can_be_given_back) return "the free space goes back to the disk, in parts, at the end";
+  if (!free.is_in_file) return "the database uses the free space for new rows";
   return "new edits use the free space. The file was made without a way to give it back while it is in "
          "use: `runstone-server compact --world DIR` does it at a stop, and makes one";
 }

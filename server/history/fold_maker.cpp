@@ -13,7 +13,8 @@
 namespace runstone {
 namespace {
 
-constexpr FoldSize kFoldSizeMax{4'096, 128}, kFoldSizeMin{16, 4};
+// Smaller folds take hardly less: what they take then is the wait for the disk.
+constexpr FoldSize kFoldSizeMax{4'096, 128}, kFoldSizeMin{128, 16};
 
 }  // namespace
 

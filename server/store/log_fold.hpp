@@ -28,11 +28,12 @@ struct LogVolume {
   std::vector<std::pair<Cause, std::uint64_t>> causes;
 };
 
-/// The free space inside the file of a world.
+/// The free space inside the file of a world. A world in PostgreSQL has no file.
 struct FreeSpace {
   std::uint64_t bytes = 0;
   /// True if give_back_space() can return it to the disk. Otherwise only Store::shrink() can.
   bool can_be_given_back = false;
+  bool is_in_file = false;  // false: the database keeps it for new rows
 };
 
 }  // namespace runstone

@@ -229,7 +229,7 @@ StoreResult<FreeSpace> SqliteBackend::free_space() {
   if (!page_bytes) return failed(page_bytes.error());
   const auto mode = database_.integer("PRAGMA auto_vacuum");
   if (!mode) return failed(mode.error());
-  return FreeSpace{static_cast<std::uint64_t>(*pages * *page_bytes), *mode == kIncremental};
+  return FreeSpace{static_cast<std::uint64_t>(*pages * *page_bytes), *mode == kIncremental, true};
 }
 
 StoreResult<bool> SqliteBackend::give_back(std::uint32_t pages) {

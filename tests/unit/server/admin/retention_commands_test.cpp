@@ -43,7 +43,7 @@ RetentionPlan sample_plan() {
   plan.cut = {{2, 900}, 1'700'000'000'000'000};
   plan.newest = {{3, 1'000}, 1'703'000'000'000'000};
   plan.volume = {900, 84'000, 2, 5'000, 9'000, {{Cause::rollback, 4}, {Cause::import, 1}}};
-  plan.free = {0, true};
+  plan.free = {0, true, true};
   return plan;
 }
 
@@ -82,6 +82,9 @@ TEST_CASE("a plan as text names what goes, what stays, the bytes and the reach",
   CHECK(text.find("new edits use the free space") != std::string::npos);
   CHECK(text.find("and now to seq=50 (2020-09-13T12:26:40Z)") != std::string::npos);
   CHECK(text.find("\nDOUBT       the time steps. A policy waits here") != std::string::npos);
+  plan.free.is_in_file = false;
+  CHECK(retention_plan_text(plan).find("the database uses the free space for new rows") !=
+        std::string::npos);
   plan.cut = plan.head;
   CHECK(retention_plan_text(plan) ==
         "nothing would go: no edit of the log is older than 30 days before the newest one "
