@@ -52,7 +52,7 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
 }
 
 /// Brushes of the terrain tool with a larger radius are costly.
-constexpr std::int32_t kCheapRadiusMax = 16;
+constexpr std::int32_t kCheapRadiusMax = 32;
 
 /// A tool that works on the ground along a stroke, which is drawn while the button is held.
 class GroundTool : public Tool {
