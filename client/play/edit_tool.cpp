@@ -73,11 +73,11 @@ Result<void, std::string> EditTool::press(ToolButton button, TimeUs now_us) {
 }
 
 Result<void, std::string> EditTool::carry_out(const ToolCommand& command, TimeUs now_us) {
-  const BoxSet selected = box_.selected_boxes();
+  const Selected selected = box_.selected();
   auto done = propose_beside(runstone::carry_out(box_, session_.replica(), player_.held(), command),
                              now_us);
   // It did not move. An equal selection is not set again, because that ends the preview.
-  if (!done && box_.selected_boxes() != selected) box_.select(selected);
+  if (!done && box_.selected() != selected) box_.select(selected);
   return done;
 }
 

@@ -111,7 +111,7 @@ void FrameScene::add_aim(std::vector<Marker>& markers) const {
 
 void FrameScene::add_selection(std::vector<Marker>& markers) const {
   constexpr double kGap = 0.01;
-  for (const VoxelBox& box : tool_.box().selected_boxes().boxes())
+  for (const VoxelBox& box : tool_.box().selected().boxes.boxes())
     markers.push_back(outline_of(box, kGap, 60, 160, 255));
   for (const VoxelPos at : tool_.box().points())
     markers.push_back(outline_of(box_between(at, at), kGap, 255, 200, 60));

@@ -56,15 +56,17 @@ script::Step select_step(ScriptWords& words) {
 
 script::Step selection_step(ScriptWords& words) {
   using Kind = SelectionCommand::Kind;
-  constexpr std::array<std::pair<std::string_view, Kind>, 9> kKinds = {{{"copy", Kind::copy},
-                                                                        {"cut", Kind::cut},
-                                                                        {"clear", Kind::clear},
-                                                                        {"fill", Kind::fill},
-                                                                        {"replace", Kind::replace},
-                                                                        {"stack", Kind::stack},
-                                                                        {"move", Kind::move},
-                                                                        {"grow", Kind::grow},
-                                                                        {"shift", Kind::shift}}};
+  constexpr std::array<std::pair<std::string_view, Kind>, 11> kKinds = {{{"copy", Kind::copy},
+                                                                         {"cut", Kind::cut},
+                                                                         {"clear", Kind::clear},
+                                                                         {"fill", Kind::fill},
+                                                                         {"replace", Kind::replace},
+                                                                         {"stack", Kind::stack},
+                                                                         {"move", Kind::move},
+                                                                         {"grow", Kind::grow},
+                                                                         {"shift", Kind::shift},
+                                                                         {"keep", Kind::keep},
+                                                                         {"drop", Kind::drop}}};
   const std::string_view text = words.word("what to do with the selection");
   script::SelectionEdit edit;
   SelectionCommand& command = edit.command;
@@ -89,6 +91,11 @@ script::Step selection_step(ScriptWords& words) {
     case Kind::replace:
       edit.material = read_material(words);
       edit.other = read_material(words);
+      break;
+    case Kind::keep:
+    case Kind::drop:
+      command.filter = words.rest();
+      if (command.filter.empty()) throw LineError{"expected FILTER"};
       break;
     case Kind::stack:
     case Kind::move:

@@ -45,12 +45,13 @@ ToolAction paste_of_build(BuildPaste paste, const EditLimits& limits) {
 }
 
 bool is_small(const ToolAction& action, const EditLimits& limits) {
-  return action.pastes.empty() && !action.pattern &&
+  return action.pastes.empty() && !action.pattern && !action.cleared &&
          std::none_of(action.edits.begin(), action.edits.end(),
                       [&](const EditDescriptor& edit) { return needs_cut(edit, limits); });
 }
 
 bool clears_at_end(const ToolAction& action) {
+  if (action.cleared) return true;
   return !action.edits.empty() && clears(action.edits.back()) &&
          (!action.pastes.empty() || !clears(action.edits.front()));
 }
@@ -60,11 +61,15 @@ std::unique_ptr<EditSource> source_of(const ToolAction& action, const EditLimits
   if (action.pattern) out->add(std::make_unique<PatternSource>(action.pattern, limits));
   for (const BuildPaste& paste : action.pastes)
     out->add(std::make_unique<BuildPasteSource>(paste, limits));
-  bool needs_barrier = clears_at_end(action);
+  bool needs_barrier = clears_at_end(action) && !action.cleared;
   for (const EditDescriptor& edit : action.edits) {
     const bool is_behind = needs_barrier && clears(edit);
     if (is_behind) needs_barrier = false;
     out->add(cut_edit(edit, limits), is_behind ? PartOrder::after_all_before : PartOrder::free);
+  }
+  if (action.cleared) {
+    out->add(std::make_unique<BuildPasteSource>(*action.cleared, limits),
+             PartOrder::after_all_before);
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "client/tools/flood_tool.hpp"
 #include "client/tools/mix_tool.hpp"
 #include "client/tools/placed_material.hpp"
+#include "client/tools/selected_voxels.hpp"
 #include "client/tools/shown_voxels.hpp"
 #include "client/tools/solid_tool.hpp"
 #include "client/tools/surface_flood.hpp"
@@ -48,10 +49,40 @@ ToolEdits VoxelTool::plan(const ToolInput& input) const {
   return joined(input, {SetVoxel{input.target}, {}, material});
 }
 
+/// The voxels of a box that the box tool fills. The values are those of its parameter.
+enum class BoxFill : std::uint8_t { solid, hollow, walls };
+
+/// Returns boxes that do not overlap and together are a box, its shell of some thickness, or the four
+/// upright sides of that shell.
+std::vector<VoxelBox> parts_of_box(const VoxelBox& box, BoxFill fill, std::int32_t wall) {
+  const VoxelPos sides = sides_of(box);
+  const bool has_ends = fill == BoxFill::hollow;
+  const std::int32_t thinnest = std::min(sides.x, sides.z);
+  if (fill == BoxFill::solid || 2 * wall >= (has_ends ? std::min(thinnest, sides.y) : thinnest))
+    return {box};
+  std::vector<VoxelBox> out;
+  VoxelBox inner = box;
+  const auto cut = [&](std::int32_t VoxelPos::* along) {
+    VoxelBox low = inner, high = inner;
+    low.max.*along = inner.min.*along += wall;
+    high.min.*along = inner.max.*along -= wall;
+    out.push_back(low);
+    out.push_back(high);
+  };
+  if (has_ends) cut(&VoxelPos::y);
+  cut(&VoxelPos::x);
+  cut(&VoxelPos::z);
+  return out;
+}
+
 /// Fills or clears the box between two corners.
 class BoxTool final : public Tool {
  public:
-  BoxTool() : Tool("box", "the box between two clicks", {mask_parameter()}) {}
+  BoxTool()
+      : Tool("box", "the box between two clicks",
+             {{"wall", "voxels", 1, 16, 1, {}},
+              {"fill", "", 0, 2, 0, {"solid", "hollow", "walls"}},
+              mask_parameter()}) {}
   std::size_t points_before() const override { return 1; }
   std::string_view place_name(std::size_t) const override { return "corner"; }
   bool spans_box() const override { return true; }
@@ -60,7 +91,12 @@ class BoxTool final : public Tool {
 
 ToolEdits BoxTool::plan(const ToolInput& input) const {
   const VoxelPos first = input.points.empty() ? input.target : input.points.front();
-  return joined(input, {FillBox{box_between(first, input.target)}, mask(), material_of(input)});
+  const VoxelBox box = box_between(first, input.target);
+  const auto parts = parts_of_box(box, static_cast<BoxFill>(value("fill")), value("wall"));
+  if (parts.size() == 1) return joined(input, {FillBox{box}, mask(), material_of(input)});
+  std::vector<EditDescriptor> edits;
+  for (const VoxelBox& part : parts) edits.push_back({FillBox{part}, mask(), material_of(input)});
+  return edits;
 }
 
 /// Fills or clears a sphere. Its radius is the parameter; with radius 0 the first click chooses the
@@ -165,6 +201,7 @@ ToolEdits ReplaceTool::plan(const ToolInput& input) const {
     }
     case 2: {
       if (input.selection.empty()) return failure("nothing is selected");
+      if (input.selected) return refilled(input.replica, *input.selected, mask.material, material);
       std::vector<EditDescriptor> edits;
       for (const VoxelBox& box : input.selection) edits.push_back({FillBox{box}, mask, material});
       return edits;

@@ -59,9 +59,10 @@ ToolEdits MixTool::plan(const ToolInput& input) const {
   if (!typed->mix) return failure("type a pattern first, such as 70% stone, 30% gravel");
   BoundMix mix = input.button == ToolButton::clear ? BoundMix::of(kEmpty) : *std::move(typed->mix);
   ToolAction out;
-  if (boxes.size() > 1 || !is_worked_out_at_once(sides_of(around))) {
-    auto work =
-        pattern_work(input.replica, std::move(boxes), std::move(mix), std::move(typed->filter));
+  const VoxelRowsPtr only = is_selected() ? input.selected : nullptr;
+  if (boxes.size() > 1 || only || !is_worked_out_at_once(sides_of(around))) {
+    auto work = pattern_work(input.replica, std::move(boxes), std::move(mix),
+                             std::move(typed->filter), only);
     if (!work) return failure(work.error());
     out.pattern = *std::move(work);
     return out;

@@ -43,9 +43,16 @@ void keep_around(const Replica& replica, const VoxelBox& box, PatternWork& work)
 
 Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica,
                                                  std::vector<VoxelBox> boxes, BoundMix mix,
-                                                 std::optional<BoundFilter> filter) {
-  auto out = std::make_shared<PatternWork>(PatternWork{
-      std::move(boxes), std::move(mix), std::move(filter), replica.chunk_edge(), {}, {}, {}});
+                                                 std::optional<BoundFilter> filter,
+                                                 VoxelRowsPtr only) {
+  auto out = std::make_shared<PatternWork>(PatternWork{std::move(boxes),
+                                                       std::move(mix),
+                                                       std::move(filter),
+                                                       std::move(only),
+                                                       replica.chunk_edge(),
+                                                       {},
+                                                       {},
+                                                       {}});
   for (const VoxelBox& box : out->boxes) {
     if (!keep_inside(replica, box, *out)) return failure("a chunk of the box is not loaded");
   }
@@ -72,10 +79,11 @@ Result<PatternWorkPtr, std::string> with_symmetry(PatternWorkPtr work, const Sym
 }
 
 Result<Replacing> replacing_in(const PatternWorkPtr& work, const VoxelBox& part) {
-  return Replacing::of(part, work->mix, work->filter, work->chunk_edge, [work](ChunkCoord at) {
+  const auto chunk_at = [work](ChunkCoord at) {
     const auto found = work->chunks.find(at);
     return found == work->chunks.end() ? nullptr : found->second;
-  });
+  };
+  return Replacing::of(part, work->mix, work->filter, work->chunk_edge, chunk_at, work->only);
 }
 
 std::string pattern_failure(const Error& error) {

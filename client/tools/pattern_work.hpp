@@ -17,6 +17,7 @@
 #include "common/patterns/bound_filter.hpp"
 #include "common/patterns/bound_mix.hpp"
 #include "common/patterns/replaced.hpp"
+#include "common/sculpt/voxel_rows.hpp"
 
 namespace runstone {
 
@@ -27,6 +28,7 @@ struct PatternWork {
   std::vector<VoxelBox> boxes;  // they do not overlap; at least one
   BoundMix mix;
   std::optional<BoundFilter> filter;
+  VoxelRowsPtr only;  // the voxels of the boxes that count; null: all
   std::int32_t chunk_edge = 0;
   /// The chunks that meet the boxes, and those around them that were shown.
   std::map<ChunkCoord, ShownPtr> chunks;
@@ -36,11 +38,13 @@ struct PatternWork {
 };
 using PatternWorkPtr = std::shared_ptr<const PatternWork>;
 
-/// Returns the work without copies. Fails with words for the player if a chunk of a box is not shown.
-/// Requires an open replica. Cost: O(chunks that meet the boxes or lie around them).
+/// Returns the work without copies. With `only`, no other voxels change. Fails with words for the player
+/// if a chunk of a box is not shown. Requires an open replica. Cost: O(chunks that meet the boxes or
+/// lie around them).
 Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica,
                                                  std::vector<VoxelBox> boxes, BoundMix mix,
-                                                 std::optional<BoundFilter> filter);
+                                                 std::optional<BoundFilter> filter,
+                                                 VoxelRowsPtr only = nullptr);
 
 /// Returns the work with the copies of a symmetry. Fails with words for the player if a copy reaches
 /// outside the world.

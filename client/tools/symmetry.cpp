@@ -189,6 +189,9 @@ Result<ToolAction, std::string> with_copies(ToolAction action, const Symmetry& s
                                             const MaterialTable& materials) {
   ToolAction out(with_copies(std::move(action.edits), symmetry, materials));
   out.copied = std::move(action.copied);
+  out.chosen = std::move(action.chosen);
+  out.chosen_mode = action.chosen_mode;
+  out.cleared = std::move(action.cleared);
   out.has_followers = action.has_followers && symmetry.kind == SymmetryKind::none;
   out.chain = action.chain;
   if (action.pattern) {

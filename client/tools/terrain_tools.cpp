@@ -8,6 +8,7 @@
 #include "client/tools/build_words.hpp"
 #include "client/tools/clipboard_copies.hpp"
 #include "client/tools/typed_pattern.hpp"
+#include "client/tools/upright_chunks.hpp"
 #include "common/patterns/column_patterns.hpp"
 #include "common/sculpt/path_brush.hpp"
 #include "common/sculpt/scatter.hpp"
@@ -26,8 +27,8 @@ Result<std::vector<VoxelPos>, std::string> stroke_of(const ToolInput& input) {
 
 /// Reads the shown columns of a box, as high and as low as chunks are shown at `place`. Fails with
 /// words for the player.
-Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox box,
-                                              VoxelPos place) {
+Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox box, VoxelPos place,
+                                              UprightChunks& upright) {
   const std::int32_t edge = replica.chunk_edge();
   const ChunkCoord middle = chunk_of(place, edge);
   const auto is_shown = [&](std::int32_t y) {
@@ -39,8 +40,11 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
   while ((high + 1) * edge < box.max.y && is_shown(high + 1)) ++high;
   box.min.y = std::max(box.min.y, low * edge);
   box.max.y = std::min(box.max.y, (high + 1) * edge);
-  auto columns =
-      GroundColumns::read(box, edge, [&](ChunkCoord coord) { return replica.shown({0, coord}); });
+  upright.begin_plan();
+  auto columns = GroundColumns::read(box, edge, [&](ChunkCoord coord) {
+    auto chunk = replica.shown({0, coord});
+    return chunk ? upright.of(chunk) : chunk;
+  });
   if (!columns)
     return failure(std::string(columns.error().what) +
                    ": make a shorter stroke, or choose a smaller radius or width");
@@ -48,7 +52,7 @@ Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox b
 }
 
 /// Brushes of the terrain tool with a larger radius are costly.
-constexpr std::int32_t kCheapRadiusMax = 16;
+constexpr std::int32_t kCheapRadiusMax = 32;
 
 /// A tool that works on the ground along a stroke, which is drawn while the button is held.
 class GroundTool : public Tool {
@@ -73,6 +77,8 @@ class GroundTool : public Tool {
   /// if there are none.
   ToolEdits action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
                       std::uint64_t seed, const ToolInput& input) const;
+
+  mutable UprightChunks upright_;  // of the last plan; they change no result
 };
 
 ToolEdits GroundTool::action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
@@ -128,7 +134,8 @@ ToolEdits TerrainTool::plan(const ToolInput& input) const {
   }
   const auto places = stroke_of(input);
   if (!places) return failure(places.error());
-  const auto columns = read_shown(input.replica, brush_box(brush, *places), places->front());
+  const auto columns =
+      read_shown(input.replica, brush_box(brush, *places), places->front(), upright_);
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
   return action_of(*columns, brush_changes(*columns, materials, brush, *places), places->front(),
@@ -156,7 +163,7 @@ ToolEdits PathTool::plan(const ToolInput& input) const {
   const auto places = stroke_of(input);
   if (!places) return failure(places.error());
   const auto curve = curve_through(*places);
-  const auto columns = read_shown(input.replica, path_box(brush, curve), places->front());
+  const auto columns = read_shown(input.replica, path_box(brush, curve), places->front(), upright_);
   if (!columns) return failure(columns.error());
   const GroundMaterials materials = GroundMaterials::of(input.materials);
   return action_of(*columns, path_changes(*columns, materials, brush, curve), places->front(), 1,
@@ -185,7 +192,8 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
   scattering.seed = static_cast<std::uint64_t>(value("seed"));
   const auto places = stroke_of(input);
   if (!places) return failure(places.error());
-  const auto columns = read_shown(input.replica, scatter_box(scattering, *places), places->front());
+  const auto columns =
+      read_shown(input.replica, scatter_box(scattering, *places), places->front(), upright_);
   if (!columns) return failure(columns.error());
   const auto spots =
       scattered_spots(*columns, GroundMaterials::of(input.materials), scattering, *places);

@@ -53,22 +53,16 @@ struct ToolClipboard {
   std::shared_ptr<const Clipboard> whole;
 };
 
-/// The effect of a chosen box on the selection.
-enum class SelectMode : std::uint8_t {
-  fresh,   // it becomes the selection
-  add,     // its voxels are selected as well
-  remove,  // its voxels are not selected any more
-};
-inline constexpr std::int32_t kSelectModeCount = 3;
-
 /// The facts from which a tool makes its edits.
 struct ToolInput {
   const Replica& replica;  // open
   const Aim& aim;
   ToolButton button = ToolButton::place;
-  std::span<const VoxelPos> points;     // chosen before
-  VoxelPos target;                      // the voxel that this click chooses
-  std::span<const VoxelBox> selection;  // boxes that do not overlap; none: nothing is selected
+  std::span<const VoxelPos> points;  // chosen before
+  VoxelPos target;                   // the voxel that this click chooses
+  /// Boxes that do not overlap; none: nothing is selected.
+  std::span<const VoxelBox> selection;
+  VoxelRowsPtr selected;  // the selected voxels of `selection`; null: all
   const ToolClipboard& clipboard;
   const MaterialTable& materials;
   bool has_copies = false;  // the symmetry makes copies of the edits

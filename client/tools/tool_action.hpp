@@ -13,6 +13,7 @@
 #include "common/builds/paste_source.hpp"
 #include "common/core/coords.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/sculpt/voxel_rows.hpp"
 
 namespace runstone {
 
@@ -34,6 +35,14 @@ struct BuildPaste {
 
 struct PatternWork;
 
+/// The effect of chosen voxels on the selection.
+enum class SelectMode : std::uint8_t {
+  fresh,   // they become the selection
+  add,     // they are selected as well
+  remove,  // they are not selected any more
+};
+inline constexpr std::int32_t kSelectModeCount = 3;
+
 /// How the edits of a ToolAction belong to an action.
 enum class ActionChain : std::uint8_t {
   closed,   // they are an action
@@ -47,19 +56,24 @@ struct ToolAction {
 
   /// The voxels that become the clipboard, and where they are in the world. No edit is made of them.
   std::optional<BuildPaste> copied;
+  /// The voxels that are selected. Then `copied` only shows them.
+  VoxelRowsPtr chosen;
+  SelectMode chosen_mode = SelectMode::fresh;
   std::vector<BuildPaste> pastes;
   /// A pattern for a box that is too large to be worked out at once (pattern_work.hpp), or null.
   std::shared_ptr<const PatternWork> pattern;
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
+  /// A paste of air that comes last, once everything before it was applied.
+  std::optional<BuildPaste> cleared;
   /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one
   /// is refused, it is left out without a word.
   bool has_followers = false;
   ActionChain chain = ActionChain::closed;
   friend bool operator==(const ToolAction&, const ToolAction&) = default;
 
-  bool empty() const { return pastes.empty() && !pattern && edits.empty(); }
+  bool empty() const { return pastes.empty() && !pattern && edits.empty() && !cleared; }
 };
 
 /// Returns the part of edit i of an action.

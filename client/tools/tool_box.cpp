@@ -1,6 +1,7 @@
 #include "client/tools/tool_box.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iterator>
 #include <limits>
@@ -24,6 +25,7 @@
 #include "common/materials/material_lookup.hpp"
 #include "common/materials/nearest_material.hpp"
 #include "common/mesh_materials/mesh_materials_of.hpp"
+#include "common/sculpt/row_build.hpp"
 #include "common/sculpt/voxel_rows.hpp"
 #include "common/shapes/shape_faces.hpp"
 #include "common/shapes/turned_shape.hpp"
@@ -44,6 +46,10 @@ constexpr const char* kTooManyParts = "the selection would have more than 256 pa
 constexpr unsigned kPlanAgainCalls = 32;
 /// That of a costly tool is planned again after so many calls, if the replica has changed.
 constexpr unsigned kCostlyAgainCalls = 256;
+/// The colour of the ghosts of selected voxels.
+constexpr std::array<std::uint8_t, 3> kSelectedColour = {60, 160, 255};
+/// Selected voxels whose box has more rows along x have no ghosts.
+constexpr std::int64_t kSelectedGhostRowsMax = std::int64_t{1} << 20;
 /// The names of missing materials that a message lists.
 constexpr std::size_t kLackingListed = 8;
 
@@ -94,6 +100,23 @@ bool has_too_many_pieces(std::span<const VoxelBox> boxes, std::int32_t edge) {
     if (pieces > kSelectedPiecesMax) return true;
   }
   return false;
+}
+
+/// Returns a build of one material of these voxels, or null if it would take too much memory.
+BuildPtr build_of_selected(const VoxelRows& rows) {
+  const VoxelBox& box = rows.box();
+  const VoxelPos sides = sides_of(box);
+  // Each row of the box is asked for.
+  if (std::int64_t{sides.y} * sides.z > kSelectedGhostRowsMax || sides.x > kBuildSideMax)
+    return nullptr;
+  const auto row_of = [&](std::int32_t y, std::int32_t z, std::vector<RowStretch>& out) {
+    const auto* const row = rows.row(y + box.min.y, z + box.min.z);
+    if (row == nullptr) return;
+    for (const RowStretch& part : *row)
+      out.push_back({part.low - box.min.x, part.high - box.min.x});
+  };
+  auto made = build_of_rows(sides, Axis::y, Material{1}, row_of);
+  return made ? *std::move(made) : nullptr;
 }
 
 /// Returns a build of one material with the sides of a box, or null if there is no such build.
@@ -168,8 +191,9 @@ Result<VoxelPos, std::string> ToolBox::target_of(const Aim& aim, ToolButton butt
 
 ToolEdits ToolBox::plan(const Replica& replica, const Aim& aim, ToolButton button,
                         std::span<const VoxelPos> points, VoxelPos target) {
-  auto made = tool().plan({replica, aim, button, points, target, boxes_.boxes(), clipboard_,
-                           materials_, symmetry_.kind != SymmetryKind::none});
+  auto made =
+      tool().plan({replica, aim, button, points, target, selected_.boxes.boxes(), selected_.voxels,
+                   clipboard_, materials_, symmetry_.kind != SymmetryKind::none});
   if (!made) return made;
   for (const EditDescriptor& edit : made->edits) {
     // A box may be longer than one descriptor has it: then it is cut.
@@ -283,52 +307,82 @@ bool ToolBox::cancel() {
 
 void ToolBox::select(std::optional<VoxelBox> box) { select(BoxSet(box.value_or(VoxelBox{}))); }
 
-void ToolBox::select(BoxSet boxes) {
-  boxes_ = std::move(boxes);
-  selection_ = boxes_.empty() ? std::nullopt : std::optional(boxes_.around());
+void ToolBox::select(BoxSet boxes) { select(Selected{std::move(boxes), nullptr}); }
+
+void ToolBox::select(Selected selected) {
+  const bool are_others = selected_.voxels != selected.voxels;
+  selected_ = std::move(selected);
+  selection_ = selected_.empty() ? std::nullopt : std::optional(selected_.boxes.around());
   ++revision_;
+  if (!are_others) return;
+  std::vector<ShownBuild> shown;
+  if (BuildPtr build = selected_.voxels ? build_of_selected(*selected_.voxels) : nullptr)
+    shown.push_back({std::move(build), selected_.voxels->box().min});
+  selected_preview_.set(std::move(shown));
 }
 
 Result<void, std::string> ToolBox::select(const VoxelBox& box, SelectMode mode) {
+  if (selected_.voxels && mode != SelectMode::fresh) {
+    // What lies beside the voxels is not removed from them.
+    const VoxelBox part = mode == SelectMode::add ? box : intersect(box, *selection_);
+    if (part.empty()) return {};
+    const auto rows = rows_of({BoxSet(part), nullptr});
+    if (!rows) return failure(rows.error());
+    auto made = combined(selected_, *rows, mode);
+    if (!made) return failure(made.error());
+    select(*std::move(made));
+    return {};
+  }
   std::optional<BoxSet> now(BoxSet{box});
-  if (mode == SelectMode::add) now = BoxSet::united(boxes_, *now);
-  if (mode == SelectMode::remove) now = BoxSet::without(boxes_, *now);
+  if (mode == SelectMode::add) now = BoxSet::united(selected_.boxes, *now);
+  if (mode == SelectMode::remove) now = BoxSet::without(selected_.boxes, *now);
   if (!now) return failure(kTooManyParts);
   select(*std::move(now));
   return {};
 }
 
-Result<BoxSet, std::string> ToolBox::selected() const {
-  if (boxes_.empty()) return failure("nothing is selected");
-  return boxes_;
+Result<void, std::string> ToolBox::narrow(const Replica& replica, const std::string& filter,
+                                          bool is_kept) {
+  if (!replica.opened()) return failure("no world is open");
+  auto made = filtered(replica, selected_, filter, is_kept, materials_);
+  if (!made) return failure(made.error());
+  select(*std::move(made));
+  return {};
+}
+
+Result<BoxSet, std::string> ToolBox::boxes_or_words() const {
+  if (selected_.empty()) return failure("nothing is selected");
+  return selected_.boxes;
 }
 
 Result<BuildPtr, std::string> ToolBox::selected_build(const Replica& replica) const {
-  if (boxes_.boxes().size() == 1) {
-    auto copied = copy_box(replica, boxes_.boxes().front());
+  const std::span<const VoxelBox> boxes = selected_.boxes.boxes();
+  if (boxes.size() == 1 && !selected_.voxels) {
+    auto copied = copy_box(replica, boxes.front());
     if (!copied) return cannot_copy(copied.error());
     return *std::move(copied);
   }
   if (!replica.opened()) return failure("no world is open");
-  if (has_too_many_pieces(boxes_.boxes(), replica.chunk_edge()))
+  if (!selected_.voxels && has_too_many_pieces(boxes, replica.chunk_edge()))
     return failure("too many voxels to copy of several boxes: select one box, or fewer voxels");
-  VoxelRows rows;
-  for (const VoxelBox& box : boxes_.boxes()) {
-    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
-      for (std::int32_t y = box.min.y; y < box.max.y; ++y) rows.add(y, z, {box.min.x, box.max.x});
-    }
-  }
-  rows.join();
+  const VoxelRowsPtr rows =
+      selected_.voxels ? selected_.voxels : std::make_shared<const VoxelRows>(rows_of_boxes(boxes));
   auto placed = build_of_voxels(
-      rows, replica.chunk_edge(), [&](ChunkCoord at) { return replica.shown({0, at}); }, true);
+      *rows, replica.chunk_edge(), [&](ChunkCoord at) { return replica.shown({0, at}); }, true);
   if (!placed) return cannot_copy(placed.error());
   return std::move(placed->build);
 }
 
 Result<void, std::string> ToolBox::grow(Direction side, std::int32_t steps) {
-  const auto now = selected();
+  const auto now = boxes_or_words();
   if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
+  if (selected_.voxels) {
+    auto made = grown_selection(selected_, side, steps);
+    if (!made) return failure(made.error());
+    select(*std::move(made));
+    return {};
+  }
   // One box keeps one voxel.
   if (now->boxes().size() == 1)
     steps = std::max(steps, 1 - side_along(now->around(), axis_of(side)));
@@ -340,7 +394,7 @@ Result<void, std::string> ToolBox::grow(Direction side, std::int32_t steps) {
 }
 
 Result<void, std::string> ToolBox::grow_all(std::int32_t steps) {
-  const BoxSet before = boxes_;
+  const Selected before = selected_;
   for (int side = 0; side < kDirectionCount; ++side) {
     const auto done = grow(static_cast<Direction>(side), steps);
     if (done) continue;
@@ -351,15 +405,19 @@ Result<void, std::string> ToolBox::grow_all(std::int32_t steps) {
 }
 
 Result<void, std::string> ToolBox::shift(Direction direction, std::int32_t steps) {
-  const auto now = selected();
+  const auto now = boxes_or_words();
   if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
-  select(now->moved(direction, steps));
+  if (selected_.voxels) {
+    select(Selected::of(moved(*selected_.voxels, moved(VoxelPos{}, direction, steps))));
+  } else {
+    select(now->moved(direction, steps));
+  }
   return {};
 }
 
 Result<void, std::string> ToolBox::copy(const Replica& replica, bool is_solid) {
-  if (const auto now = selected(); !now) return failure(now.error());
+  if (const auto now = boxes_or_words(); !now) return failure(now.error());
   auto copied = selected_build(replica);
   if (!copied) return failure(copied.error());
   if (is_solid && (*copied)->solid() == 0) return failure("the selection is empty");
@@ -389,8 +447,18 @@ ToolEdits ToolBox::nudge(const Replica& replica, Direction direction) {
   return made;
 }
 
-void ToolBox::hold_copied(const ToolEdits& made) {
-  if (made && made->copied) hold_voxels(made->copied->build, made->copied->empty);
+void ToolBox::hold_copied(ToolEdits& made) {
+  if (!made) return;
+  if (!made->chosen) {
+    if (made->copied) hold_voxels(made->copied->build, made->copied->empty);
+    return;
+  }
+  auto now = combined(selected_, *made->chosen, held_mode_.value_or(made->chosen_mode));
+  if (now) {
+    select(*std::move(now));
+  } else {
+    made = failure(now.error());
+  }
 }
 
 void ToolBox::hold_voxels(BuildPtr build, EmptyCells empty) {
@@ -441,8 +509,13 @@ ToolEdits ToolBox::replace(const Replica& replica, Material from, Material to) c
 
 ToolEdits ToolBox::filled(const Replica& replica, const Mask& mask, Material material) const {
   if (!replica.opened()) return failure("no world is open");
-  const auto now = selected();
+  const auto now = boxes_or_words();
   if (!now) return failure(now.error());
+  if (selected_.voxels) {
+    const bool is_one = mask.kind == MaskKind::only_material;
+    return refilled(replica, *selected_.voxels,
+                    is_one ? std::optional(mask.material) : std::nullopt, material);
+  }
   std::vector<EditDescriptor> edits;
   for (const VoxelBox& box : now->boxes()) edits.push_back({FillBox{box}, mask, material});
   if (edits.size() > 1) return edits;
@@ -451,7 +524,7 @@ ToolEdits ToolBox::filled(const Replica& replica, const Mask& mask, Material mat
 }
 
 ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32_t times) const {
-  const auto now = selected();
+  const auto now = boxes_or_words();
   if (!now) return failure(now.error());
   if (times < 1 || times > kStackMax)
     return failure("a stack has 1 to " + std::to_string(kStackMax) + " copies");
@@ -476,10 +549,16 @@ ToolEdits ToolBox::stack(const Replica& replica, Direction direction, std::int32
 }
 
 ToolEdits ToolBox::move(const Replica& replica, Direction direction, std::int32_t steps) {
-  const auto now = selected();
+  const auto now = boxes_or_words();
   if (!now) return failure(now.error());
   if (std::abs(steps) > kStepsMax) return failure("the selection moves by at most 4096 voxels");
   if (steps == 0) return failure("the selection moves by one voxel or more");
+  if (selected_.voxels) {
+    if (!replica.opened()) return failure("no world is open");
+    auto made = moved_voxels(replica, *selected_.voxels, direction, steps);
+    if (made) select(Selected::of(moved(*selected_.voxels, moved(VoxelPos{}, direction, steps))));
+    return made;
+  }
   const BoxSet target = now->moved(direction, steps);
   if (!is_in_world(target.around().min, sides_of(target.around())))
     return failure("the selection would reach outside the world");
@@ -595,6 +674,7 @@ std::string ToolBox::set_materials(const MaterialTable& materials, const MeshMat
   mirrored_.forget();
   pasted_.reset();
   preview_.set_materials(meshed);
+  selected_preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
   points_.clear();
   typed_.reset();  // an open window gives its places again
@@ -668,15 +748,22 @@ bool ToolBox::step_preview(const Replica& replica, const Aim& aim, std::size_t c
   } else if (is_refusal_due(replica) || preview_.is_outdated(replica)) {
     is_plan_due_ = true;
   }
-  if (is_plan_due_ && (!is_costly || ++rested_calls_ > kRestCalls))
+  const bool is_whole = chunks_max == std::numeric_limits<std::size_t>::max();
+  if (is_plan_due_ && (!is_costly || is_whole || ++rested_calls_ > kRestCalls))
     plan_preview(replica, aim, button, target);
-  step_pattern(chunks_max == std::numeric_limits<std::size_t>::max());
+  step_pattern(is_whole);
   const bool has_edits_changed = preview_.step(replica, chunks_max);
   // A cube of 64 cells is as much work as several chunks.
   const bool has_builds_changed = build_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
-  if (!has_edits_changed && !has_builds_changed) return false;
+  const bool has_selected_changed =
+      selected_preview_.step(std::max<std::size_t>(chunks_max / 8, 1));
+  if (!has_edits_changed && !has_builds_changed && !has_selected_changed) return false;
   ghosts_ = preview_.ghosts();
   ghosts_.insert(ghosts_.end(), build_preview_.ghosts().begin(), build_preview_.ghosts().end());
+  for (GhostChunk ghost : selected_preview_.ghosts()) {
+    ghost.tint = kSelectedColour;
+    ghosts_.push_back(std::move(ghost));
+  }
   return true;
 }
 
@@ -732,6 +819,7 @@ void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
     builds.push_back({paste.build, paste.at, false, paste.is_difference});
   // Voxels that are only copied are shown where they are.
   previews_copy_ = made.copied && made.empty();
+  previews_choice_ = made.chosen != nullptr;
   if (previews_copy_) builds.push_back({made.copied->build, made.copied->at});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {

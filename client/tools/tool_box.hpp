@@ -19,6 +19,7 @@
 #include "client/tools/edit_preview.hpp"
 #include "client/tools/pasted_build.hpp"
 #include "client/tools/pattern_preview.hpp"
+#include "client/tools/selected_voxels.hpp"
 #include "client/tools/symmetry.hpp"
 #include "client/tools/tool.hpp"
 #include "common/builds/rotated_build.hpp"
@@ -76,17 +77,24 @@ class ToolBox {
   const std::optional<VoxelBox>& selection() const { return selection_; }
   /// Returns the selection if it is one box.
   std::optional<VoxelBox> selected_box() const {
-    return boxes_.boxes().size() == 1 ? selection_ : std::nullopt;
+    const bool is_box = selected_.boxes.boxes().size() == 1 && !selected_.voxels;
+    return is_box ? selection_ : std::nullopt;
   }
   /// Returns the selected voxels.
-  const BoxSet& selected_boxes() const { return boxes_; }
+  const Selected& selected() const { return selected_; }
+  /// Returns the boxes of the selection. If it is a set of voxels, the box around them.
+  const BoxSet& selected_boxes() const { return selected_.boxes; }
   /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
   void select(std::optional<VoxelBox> box);
   /// Selects these voxels.
   void select(BoxSet boxes);
+  void select(Selected selected);
   /// Selects a box, adds it to the selection or removes it from there. Fails with words for the
-  /// player if the selection would have too many parts.
+  /// player if the selection would have too many parts or voxels.
   Result<void, std::string> select(const VoxelBox& box, SelectMode mode);
+  /// Keeps those of the selected voxels for which a typed filter holds, or does not hold if `is_kept`
+  /// is false. Fails as filtered() does. Requires an open replica.
+  Result<void, std::string> narrow(const Replica& replica, const std::string& filter, bool is_kept);
   /// Sets the mode that a held key gives; nullopt: the mode of the chosen tool counts.
   void hold_select_mode(std::optional<SelectMode> mode) { held_mode_ = mode; }
   /// Moves the side of the selection that faces `side` by `steps` voxels outward. A negative number
@@ -172,7 +180,8 @@ class ToolBox {
   /// aim, the tool or the chunks changed, EditPreview::step(), and a step of a pattern that is too
   /// large to be worked out at once (all of it if chunks_max is the largest number). The plan of a
   /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls
-  /// calls, and not again while it is refused and the replica is as it was.
+  /// calls, or if chunks_max is the largest number, and not again while it is refused and the replica
+  /// is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.
@@ -180,7 +189,8 @@ class ToolBox {
   const BuildPreview& build_preview() const { return build_preview_; }
   /// Returns true if the preview of the next click shows all of it.
   bool is_preview_complete() const {
-    return preview_.is_complete() && build_preview_.is_complete() && !pattern_.is_under_way();
+    return !is_plan_due_ && preview_.is_complete() && build_preview_.is_complete() &&
+           !pattern_.is_under_way();
   }
   /// Returns true if the next click makes more than a preview can show. It is not refused.
   bool is_preview_too_large() const { return pattern_.is_too_large(); }
@@ -188,6 +198,8 @@ class ToolBox {
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns true if the preview shows voxels that the next click only copies.
   bool previews_copy() const { return previews_copy_; }
+  /// Returns true if these are voxels that the next click selects.
+  bool previews_choice() const { return previews_choice_; }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
@@ -197,8 +209,8 @@ class ToolBox {
   ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
                  std::span<const VoxelPos> points, VoxelPos target);
   ToolEdits plan_typed(const Replica& replica, Material held);
-  /// Returns the selection, or words if there is none.
-  Result<BoxSet, std::string> selected() const;
+  /// Returns the boxes of the selection, or words if there is none.
+  Result<BoxSet, std::string> boxes_or_words() const;
   /// Returns the selected voxels, with the empty ones, as a build whose corner is that of
   /// selection(). Its other cells are untouched. Fails with words for the player.
   Result<BuildPtr, std::string> selected_build(const Replica& replica) const;
@@ -206,8 +218,8 @@ class ToolBox {
   Result<void, std::string> turn(const Orientation& orientation);
   /// Keeps what the paste tool is about to put down, and lets the action go on.
   void keep_pasted(const Replica& replica, ToolEdits& made);
-  /// Makes the voxels that an action copies the clipboard.
-  void hold_copied(const ToolEdits& made);
+  /// Makes the voxels that an action copies the clipboard, or selects those that it chooses.
+  void hold_copied(ToolEdits& made);
   /// Sets clipboard_rows_ to the rows that the materials of a build have in this world.
   void take_rows(const Build& build);
   /// Sets the clipboard to voxels of this world.
@@ -252,8 +264,8 @@ class ToolBox {
   std::vector<VoxelPos> points_;
   ToolButton button_ = ToolButton::place;  // of the first point
   std::optional<TypedPlaces> typed_;
-  BoxSet boxes_;                       // selected
-  std::optional<VoxelBox> selection_;  // around boxes_
+  Selected selected_;
+  std::optional<VoxelBox> selection_;  // around selected_
   std::optional<SelectMode> held_mode_;
   ToolClipboard clipboard_;
   std::optional<PastedBuild> pasted_;        // may be moved by nudge()
@@ -266,9 +278,10 @@ class ToolBox {
   MaterialTable materials_;
   EditPreview preview_;
   BuildPreview build_preview_;
+  BuildPreview selected_preview_;  // of the selected voxels that are no boxes
   PatternPreview pattern_;
   std::vector<GhostChunk> ghosts_;
-  bool previews_copy_ = false;
+  bool previews_copy_ = false, previews_choice_ = false;
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   ReplicaMark planned_on_;      // the replica when the preview was last planned

@@ -58,6 +58,9 @@ struct Carrier {
                                              : box.grow(c.direction, c.count));
       case Kind::shift:
         return without_edits(box.shift(c.direction, c.count));
+      case Kind::keep:
+      case Kind::drop:
+        return without_edits(box.narrow(replica, c.filter, c.kind == Kind::keep));
     }
     return without_edits({});
   }

@@ -36,7 +36,19 @@ struct SelectionChange {
 };
 /// Changes the selection, or the voxels in it.
 struct SelectionCommand {
-  enum class Kind : std::uint8_t { copy, cut, clear, fill, replace, stack, move, grow, shift };
+  enum class Kind : std::uint8_t {
+    copy,
+    cut,
+    clear,
+    fill,
+    replace,
+    stack,
+    move,
+    grow,
+    shift,
+    keep,  // only the voxels for which a filter holds stay selected
+    drop,  // they are not selected any more
+  };
   Kind kind = Kind::copy;
   bool is_solid = false;                   // copy, cut: a paste skips the empty voxels
   Material material = kEmpty;              // fill: the new one; replace: the old one
@@ -44,6 +56,7 @@ struct SelectionCommand {
   Direction direction = Direction::pos_y;  // stack, move, grow, shift
   bool is_all_around = false;              // grow: all sides move
   std::int32_t count = 1;                  // stack, move, grow, shift
+  std::string filter = {};                 // keep, drop
 };
 /// Moves the build that was just pasted by one voxel.
 struct PasteNudge {

@@ -19,10 +19,11 @@ constexpr std::int32_t kGrowMax = 16;
 class WandTool final : public Tool {
  public:
   WandTool()
-      : Tool("wand", "copies connected voxels; the left button cuts them",
+      : Tool("wand", "copies or selects connected voxels",
              {{"grow", "voxels", -kGrowMax, kGrowMax, 0, {}},
               {"reach", "", 0, 1, 0, {"connected", "selection"}},
               {"material", "", 0, 1, 0, {"same", "any"}},
+              {"result", "", 0, kSelectModeCount, 0, {"copy", "select", "add", "remove"}},
               {"voxels", "voxels", 1, 4'000'000, 1'000'000, {}}}) {}
   bool chooses_solid() const override { return true; }
   bool is_costly() const override { return true; }
@@ -42,6 +43,10 @@ Result<VoxelRows, std::string> WandTool::found(const ToolInput& input,
   if (!is_connected && input.selection.empty()) return failure("nothing is selected");
   auto rows = is_connected ? connected_voxels(search, input.target, edge, chunk_at)
                            : voxels_of_boxes(search, input.selection, edge, chunk_at);
+  if (rows && !is_connected && input.selected) {
+    rows = common(*rows, *input.selected);
+    if (rows->empty()) return failure("there is no such voxel");
+  }
   if (rows) return *std::move(rows);
   switch (rows.error()) {
     case FloodFault::blocked:
@@ -65,7 +70,12 @@ ToolEdits WandTool::plan(const ToolInput& input) const {
   const auto placed = build_of_voxels(*rows, input.replica.chunk_edge(), chunk_at);
   if (!placed) return failure(words_of(placed.error()));
   ToolAction out;
-  if (input.button == ToolButton::clear) {
+  if (value("result") != 0) {
+    out.chosen = std::make_shared<const VoxelRows>(*std::move(rows));
+    out.chosen_mode = input.button == ToolButton::clear
+                          ? SelectMode::remove
+                          : static_cast<SelectMode>(value("result") - 1);
+  } else if (input.button == ToolButton::clear) {
     const std::vector<std::optional<Material>> nothing(placed->build->palette().size(), kEmpty);
     auto cleared = with_materials(*placed->build, nothing);
     if (!cleared) return failure(words_of(cleared.error()));

@@ -301,8 +301,12 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   } else if (state.sight) {
     corner = numbers_of(*state.sight);
   }
-  if (const std::size_t parts = box.selected_boxes().boxes().size(); parts > 1)
+  if (const VoxelRowsPtr& voxels = box.selected().voxels) {
+    ImGui::TextDisabled("%llu voxels; the numbers are those of the box around them",
+                        static_cast<unsigned long long>(voxels->count()));
+  } else if (const std::size_t parts = box.selected().boxes.boxes().size(); parts > 1) {
     ImGui::TextDisabled("%zu boxes; the numbers are those of the box around them", parts);
+  }
   bool is_changed = place_fields("lowest corner", corner);
   if (const auto seen = sight_button(state)) {
     corner = numbers_of(*seen);
@@ -340,6 +344,7 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   if (ImGui::Button((label + "###replace").c_str())) add(Kind::replace, *old, held);
   ImGui::EndDisabled();
   build_steps(out);
+  build_narrow(out);
   ImGui::EndDisabled();
   build_clipboard(box, out);
   if (state.has_files && file_.build(state)) add(SelectionCommand::Kind::copy);
@@ -362,6 +367,21 @@ void ToolWindow::build_steps(std::vector<ToolCommand>& out) {
     command.direction = static_cast<Direction>(direction_);
     command.count = count_;
     out.emplace_back(command);
+  }
+}
+
+void ToolWindow::build_narrow(std::vector<ToolCommand>& out) {
+  using Kind = SelectionCommand::Kind;
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 11);
+  ImGui::InputTextWithHint("##narrowed", "is stone and exposed", &narrowed_);
+  constexpr std::array<std::pair<const char*, Kind>, 2> kNarrows = {
+      {{"Keep only these", Kind::keep}, {"Leave them out", Kind::drop}}};
+  for (const auto& [label, kind] : kNarrows) {
+    if (!button_beside(label)) continue;
+    SelectionCommand command;
+    command.kind = kind;
+    command.filter = cut_utf8(narrowed_, kToolTextBytesMax);
+    out.emplace_back(std::move(command));
   }
 }
 

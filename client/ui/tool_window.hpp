@@ -46,6 +46,7 @@ class ToolWindow {
   void build_symmetry(const HudState& state, std::vector<ToolCommand>& out);
   void build_selection(const HudState& state, double scale, std::vector<ToolCommand>& out);
   void build_steps(std::vector<ToolCommand>& out);
+  void build_narrow(std::vector<ToolCommand>& out);
   void build_clipboard(const ToolBox& box, std::vector<ToolCommand>& out);
   void build_reshape(std::vector<ToolCommand>& out);
   TypedPlaces typed_places() const;
@@ -63,6 +64,7 @@ class ToolWindow {
   bool keeps_air_ = false;
   int turn_axis_ = 1, turn_degrees_ = 45, turn_percent_ = 100;  // of the clipboard
   std::string replaced_;  // the name of the material to be replaced, as typed
+  std::string narrowed_;  // the filter of the selected voxels, as typed
   FilePanel file_;
   std::optional<SetTime> time_;
 };

@@ -72,6 +72,21 @@ TEST_CASE_METHOD(ToolScript, "a script adds boxes to the selection and removes t
   CHECK(error_of("select more 0 3 0 2 3 0").find("more") != std::string::npos);
 }
 
+TEST_CASE_METHOD(ToolScript, "a script keeps and drops voxels of the selection by a filter",
+                 "[bots]") {
+  run("select 0 0 0 3 7 3\nselection keep above 1\nselection drop below 3\nselection fill sand");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.edits.size() == 1);
+  const auto* const paste = std::get_if<Paste>(&host.edits[0].edit.shape);
+  REQUIRE(paste != nullptr);
+  CHECK(paste->at == VoxelPos{0, 3, 0});
+  CHECK(paste->clipboard->touched() == 4 * 5 * 4);
+  CHECK(error_of("selection keep").find("expected FILTER") != std::string::npos);
+  run("select 0 0 0 3 7 3\nselection keep is");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures().front().find("where: column 3") != std::string::npos);
+}
+
 TEST_CASE_METHOD(ToolScript, "a script selects, copies, turns and pastes", "[bots]") {
   run("select 0 3 0 2 3 0\nselection grow +z 1\nselection copy\nselection shift +x 4\n"
       "selection fill sand\nselection replace sand stone\nselection stack +y 2\nselection clear\n"

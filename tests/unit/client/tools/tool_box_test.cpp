@@ -1,6 +1,8 @@
 #include "client/tools/tool_box.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "client/tools/action_source.hpp"
 #include "common/materials/material_table.hpp"
@@ -55,6 +57,41 @@ TEST_CASE_METHOD(FlatBench, "a box has two corners, and the other button forgets
   press({3, -2, 3}, ToolButton::clear);
   press({3, -1, 3}, ToolButton::clear);
   CHECK(at({3, -2, 3}) == kEmpty);
+}
+
+TEST_CASE_METHOD(FlatBench, "the box tool fills a box, its shell, or its walls", "[tools]") {
+  const VoxelBox around{{-6, 0, -6}, {7, 9, 7}};
+  for (const std::int32_t fill : {0, 1, 2}) {
+    for (const std::int32_t wall : {1, 2, 4}) {
+      CAPTURE(fill, wall);
+      REQUIRE(box.choose("box"));
+      REQUIRE(box.set_parameter("fill", fill));
+      REQUIRE(box.set_parameter("wall", wall));
+      const VoxelBox target{{-4, 1, -5}, {4, 8, 6}};
+      box.type_places(TypedPlaces{ToolButton::place, {target.min, {3, 7, 5}}, Direction::pos_y});
+      const auto made = box.apply_typed(replica, 2);
+      REQUIRE(made);
+      predict(*made);
+      std::size_t wrong = 0;
+      for (VoxelPos v = around.min; v.z < around.max.z; ++v.z) {
+        for (v.y = around.min.y; v.y < around.max.y; ++v.y) {
+          for (v.x = around.min.x; v.x < around.max.x; ++v.x) {
+            const auto depth = [](std::int32_t at, std::int32_t low, std::int32_t high) {
+              return std::min(at - low, high - 1 - at);
+            };
+            const std::int32_t beside = std::min(depth(v.x, target.min.x, target.max.x),
+                                                 depth(v.z, target.min.z, target.max.z));
+            const std::int32_t upright = depth(v.y, target.min.y, target.max.y);
+            const bool is_shell = beside < wall || (fill == 1 && upright < wall);
+            const bool is_set = target.contains(v) && (fill == 0 || is_shell);
+            wrong += at(v) != (is_set ? Material{2} : kEmpty) ? 1 : 0;
+          }
+        }
+      }
+      CHECK(wrong == 0);
+      predict(std::vector{EditDescriptor{FillBox{around}, {}, kEmpty}});
+    }
+  }
 }
 
 TEST_CASE_METHOD(FlatBench, "the second corner may lie in the air, as far away as the first one",
@@ -132,6 +169,12 @@ TEST_CASE_METHOD(FlatBench, "a costly tool is previewed when the aim rests", "[t
   step({2, -4, 0}, 1);
   CHECK(box.preview().edits().empty());
   CHECK(box.ghosts().empty());
+  CHECK_FALSE(box.is_preview_complete());
+  // A picture does not wait for a resting aim.
+  static_cast<void>(box.step_preview(replica, aim_at({2, -4, 0}, Direction::pos_y),
+                                     std::numeric_limits<std::size_t>::max()));
+  CHECK(box.preview().edits().size() == 1);
+  CHECK(box.is_preview_complete());
   // A refusal stands until the ground changes.
   step({0, -1, 20}, ToolBox::kRestCalls + 1);
   CHECK(box.preview_refusal() == "the hollow reaches ground that is not loaded");

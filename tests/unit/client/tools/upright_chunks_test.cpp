@@ -1,0 +1,39 @@
+#include "client/tools/upright_chunks.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/core/hash.hpp"
+#include "common/runs/reorder.hpp"
+#include "common/runs/run_builder.hpp"
+#include "tests/support/runs/random_chunk.hpp"
+
+namespace runstone::test {
+
+TEST_CASE("chunks with lines along y are made once, and kept for one plan more", "[tools]") {
+  SplitMix64 rng(3);
+  const auto chunk = [&](AxisOrder order) {
+    for (;;) {
+      const RunChunk made = random_chunk(rng, Extent::cube(8), order, 4, ChunkShape::boxes);
+      if (!made.is_uniform()) return std::make_shared<const RunChunk>(made);
+    }
+  };
+  const auto a = chunk(AxisOrder::xyz), b = chunk(AxisOrder::zyx), c = chunk(AxisOrder::yxz);
+  UprightChunks kept;
+  kept.begin_plan();
+  const auto upright = kept.of(a);
+  CHECK(*upright == reorder(*a, AxisOrder::yxz));
+  CHECK(kept.of(a) == upright);
+  CHECK(kept.of(c) == c);
+  CHECK(kept.size() == 1);
+  kept.begin_plan();
+  CHECK(kept.of(b) != upright);
+  CHECK(kept.of(a) == upright);
+  kept.begin_plan();
+  CHECK(kept.of(a) == upright);
+  kept.begin_plan();
+  CHECK(kept.size() == 1);  // b was not read in the last plan
+  kept.begin_plan();
+  CHECK(kept.size() == 0);
+}
+
+}  // namespace runstone::test
