@@ -1,10 +1,7 @@
 // The client of the C interface against a server.
-#include <sys/wait.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -278,15 +275,4 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
           RUNSTONE_NOT_FOUND);
     return true;
   }));
-}
-
-TEST_CASE("the example in C that joins a server sets a voxel", "[c_interface][examples]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder / "world"), flat_creation());
-  const int status = std::system((std::string(EXAMPLE_C_JOIN_PROGRAM) +
-                                  " 127.0.0.1:" + std::to_string(server->port()) + " >/dev/null")
-                                     .c_str());
-  CHECK(WIFEXITED(status));
-  CHECK(WEXITSTATUS(status) == 0);
-  CHECK(server->stop().digests.seq == 1);
 }
