@@ -94,7 +94,7 @@ TEST_CASE("bad backups, boxes and callers are refused with words", "[admin][back
   CHECK(contains(bench.give({}, "restore-box /nowhere box 0 0 0 1 1 1").text, "/nowhere"));
   CHECK(contains(bench.restore("0 0 0 1 1 1").text, "box X Y Z X Y Z comes after the folder"));
   CHECK(contains(bench.restore("box 0 0 0 999 999 999").text, "restore it in parts"));
-  CHECK(contains(bench.restore("box 0 0 0 1 1 1 at 2001-01-01").text, "before its first edit"));
+  CHECK(contains(bench.restore("box 0 0 0 1 1 1 at 1970-01-01").text, "before its first edit"));
   WorldMeta meta = sample_meta();
   meta.world_id[0] ^= 1;
   REQUIRE(create_world(bench.backups / "other", meta).has_value());
