@@ -36,6 +36,18 @@ function(runstone_precompile name flags)
   target_precompile_headers(runstone_precompiled_${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
+# clang 14 makes thread-local variables ordinary ones in WebAssembly without threads, but not with the
+# instructions for bulk memory: then they cannot be linked. So modules with such variables do without these.
+function(runstone_without_threads name)
+  foreach(source ${ARGN})
+    file(STRINGS ${source} thread_local REGEX "thread_local|with_scratch<")
+    if(thread_local)
+      target_compile_options(${name} PRIVATE -mno-bulk-memory)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
 # Lets a module use the precompiled header that fits its libraries.
 function(runstone_use_precompiled target libraries)
   set(kind std)
@@ -120,6 +132,9 @@ function(runstone_module folder)
   endif()
   target_include_directories(${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_compile_features(${name} ${scope} cxx_std_20)
+  if(EMSCRIPTEN)
+    runstone_without_threads(${name} ${sources})
+  endif()
   if(headers AND NOT ARG_SHARED)
     target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
     set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
