@@ -19,9 +19,9 @@ constexpr double kShadowEdges = 1.75;
 /// away.
 constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
 
-/// The growth of a quad that closes pinholes, as a share of the distance: a thirtieth of a pixel of
-/// a picture of 720 lines, or eight times the precision of a rasterizer with 256 steps in a pixel.
-constexpr float kSeam = 0.00006F;
+/// The growth of a quad that closes pinholes, in pixels: eight times the precision of a rasterizer
+/// with 256 steps in a pixel.
+constexpr double kSeam = 1.0 / 32;
 
 /// Returns the voxel that holds a place. Places beyond the limits of the world count as at them.
 VoxelPos voxel_at(const glm::dvec3& at) {
@@ -38,6 +38,7 @@ Terrain::Terrain() : field_(kFieldWidth, kFieldHeight) { set_materials(MaterialT
 
 void Terrain::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   materials_.set(materials);
+  bodies_.set_matt(materials_.matt());
   bodies_.set_shapes(shapes ? std::move(shapes)
                             : std::make_shared<const ShapeTable>(shapes_of(materials)));
   light_codes_ = light_codes(materials);
@@ -156,9 +157,10 @@ TerrainStats Terrain::draw_opaque(const FrameView& view, const NoiseTexture& noi
   TerrainStats stats;
   bodies_.step_fades(view);
   visible_.find(view, bodies_, field_.box(), !textures_.empty(), stats);
-  begin_pass(view, false, [&noise](const GlProgram& program) {
+  begin_pass(view, false, [&](const GlProgram& program) {
     noise.bind(program, kNoiseUnit);
-    glUniform1f(glGetUniformLocation(program.get(), "seam"), kSeam);
+    glUniform1f(glGetUniformLocation(program.get(), "seam"),
+                static_cast<float>(kSeam * view.pixel));
   });
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
