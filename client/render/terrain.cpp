@@ -19,9 +19,9 @@ constexpr double kShadowEdges = 1.75;
 /// away.
 constexpr std::int32_t kFieldWidth = 192, kFieldHeight = 128;
 
-/// The growth of a quad that closes pinholes, in pixels: eight times the precision of a rasterizer
-/// with 256 steps in a pixel.
-constexpr double kSeam = 1.0 / 32;
+/// The growth of a quad that closes pinholes, as a share of the distance: a thirtieth of a pixel of
+/// a picture of 720 lines, or eight times the precision of a rasterizer with 256 steps in a pixel.
+constexpr float kSeam = 0.00006F;
 
 /// Returns the voxel that holds a place. Places beyond the limits of the world count as at them.
 VoxelPos voxel_at(const glm::dvec3& at) {
@@ -157,10 +157,9 @@ TerrainStats Terrain::draw_opaque(const FrameView& view, const NoiseTexture& noi
   TerrainStats stats;
   bodies_.step_fades(view);
   visible_.find(view, bodies_, field_.box(), !textures_.empty(), stats);
-  begin_pass(view, false, [&](const GlProgram& program) {
+  begin_pass(view, false, [&noise](const GlProgram& program) {
     noise.bind(program, kNoiseUnit);
-    glUniform1f(glGetUniformLocation(program.get(), "seam"),
-                static_cast<float>(kSeam * view.pixel));
+    glUniform1f(glGetUniformLocation(program.get(), "seam"), kSeam);
   });
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);

@@ -74,8 +74,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     // The faces on the border of a part are drawn also where the ground of the next part covers
     // them. There the growth would show them as dots: above flat ground, and on cliffs. So walls
     // grow neither upward nor at the ends of the part, and all of these faces lie a little farther
-    // than they are, walls more than the others. Growth towards the eye, as at the edge of a wall
-    // that is seen along it, is taken back in full. Pixels stay, depths change by less than a voxel.
+    // than they are, walls more than the others. Pixels stay, depths change by less than a voxel.
     "  vec3 end = vec3(equal(abs(c.at - 0.5 * edge), vec3(0.5 * edge)));\n"
     "  float on_border = dot(end, abs(c.normal));\n"
     "  float is_wall = on_border * (1.0 - abs(c.normal.y));\n"
@@ -83,7 +82,6 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "  outward.y = min(outward.y, 1.0 - is_wall);\n"
     "  float behind = seam * (10.0 + 1.5 * far / max(abs(relative.y), 0.25));\n"
     "  float bias = (on_border + is_wall) * min(behind, 0.45 * scale / far);\n"
-    "  bias += on_border * max(-dot(outward * growth, relative) / d2, 0.0);\n"
     "#endif\n"
     "  relative += outward * growth;\n"
     "#ifdef RUNSTONE_TILE\n"
