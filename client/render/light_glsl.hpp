@@ -6,15 +6,15 @@
 
 namespace runstone {
 
-// field_lit() is the light of lamps and sky at a place of the light field (RUNSTONE_FIELD_GLSL).
-// display() is the only step from linear light to the picture: the filmic curve of Hejl and
-// Burgess-Dawson (2010), a quotient of polynomials that includes the encoding to sRGB. Its cut of
-// the darkest tones is left out, because caves would be black. At night, dim places lose most of
-// their colour and become bluish, as eyes see them; what lamps light keeps it. In ambient light the
-// walls along x are a little darker and those towards the sun a little brighter, so that hills in
-// the shade and far away keep their shape. fog_share() is the share of the haze between the eye and
-// a place, from 0 to 1. The air is half as thick each 300 voxels higher, so valleys are hazier than
-// peaks.
+// field_lit() is the light of lamps and sky at a place of the light field (RUNSTONE_FIELD_GLSL),
+// and in_field() that of a side whose sky_light() is known. display() is the only step from linear
+// light to the picture: the filmic curve of Hejl and Burgess-Dawson (2010), a quotient of
+// polynomials that includes the encoding to sRGB. Its cut of the darkest tones is left out, because
+// caves would be black. At night, dim places lose most of their colour and become bluish, as eyes
+// see them; what lamps light keeps it. In ambient light the walls along x are a little darker and
+// those towards the sun a little brighter, so that hills in the shade and far away keep their
+// shape. fog_share() is the share of the haze between the eye and a place, from 0 to 1. The air is
+// half as thick each 300 voxels higher, so valleys are hazier than peaks.
 #define RUNSTONE_LIGHT_GLSL                                                          \
   "uniform vec3 sun_direction, sun_colour, zenith, horizon, nadir, glow;\n"          \
   "uniform vec3 ambient_up, ambient_side, ambient_down, dark;\n"                     \
@@ -32,10 +32,11 @@ namespace runstone {
   "  vec3 c = mix(ambient_side, n.y > 0.0 ? ambient_up : ambient_down, abs(n.y));\n" \
   "  return c * (1.0 - 0.10 * abs(n.x) + 0.10 * dot(n.xz, sun_direction.xz));\n"     \
   "}\n"                                                                              \
-  "vec3 field_lit(vec4 around, vec3 n) {\n"                                          \
+  "vec3 in_field(vec4 around, vec3 from_sky) {\n"                                    \
   "  float open = mix(0.08, 1.0, around.a * (0.4 + 0.6 * around.a));\n"              \
-  "  return sky_light(n) * open + dark + around.rgb * lamps;\n"                      \
+  "  return from_sky * open + dark + around.rgb * lamps;\n"                          \
   "}\n"                                                                              \
+  "vec3 field_lit(vec4 around, vec3 n) { return in_field(around, sky_light(n)); }\n" \
   "float fog_share(vec3 relative, float far) {\n"                                    \
   "  float height = max(eye_height + 0.5 * relative.y, 0.0);\n"                      \
   "  float path = max(far - fog.x, 0.0) * fog.w;\n"                                  \

@@ -35,6 +35,7 @@ MaterialTextures::MaterialTextures() : palette_(GlTexture::make()), looks_(GlTex
 void MaterialTextures::set(const MaterialTable& materials) {
   std::vector<float> palette(std::size_t{256} * 256 * 4, 1.0F);
   std::vector<float> looks(std::size_t{256} * 256 * 4, 0.0F);
+  matt_.assign(materials.size(), false);
   for (std::size_t id = 0; id < materials.size(); ++id) {
     const MaterialInfo& row = materials[static_cast<Material>(id)];
     // Light is added in linear space, so the palette is stored in linear space.
@@ -45,6 +46,7 @@ void MaterialTextures::set(const MaterialTable& materials) {
     looks[id * 4 + 1] = share_of(look.grain);
     looks[id * 4 + 2] = share_of(look.emission);
     looks[id * 4 + 3] = surface_code(look, row.body);
+    matt_[id] = look.roughness >= kMattRoughness;
   }
   fill(palette_.get(), palette);
   fill(looks_.get(), looks);

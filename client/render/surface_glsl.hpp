@@ -10,6 +10,8 @@ inline constexpr float kLiquidSurface = 15.0F;
 /// The fraction for roughness 1. It is below 1 by more than the step of a 16-bit float below 16.
 inline constexpr float kRoughnessScale = 0.98F;
 static_assert(kRoughnessScale == 0.98F);  // RUNSTONE_SURFACE_PARTS_GLSL has this number
+/// From this roughness on, in percent, a face mirrors nothing (RUNSTONE_GLOSS_GLSL).
+inline constexpr int kMattRoughness = 70;
 
 /// float hash(ivec3): a number of a place, -0.5 .. 0.5.
 #define RUNSTONE_HASH_GLSL                                                              \

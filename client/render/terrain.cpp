@@ -38,6 +38,7 @@ Terrain::Terrain() : field_(kFieldWidth, kFieldHeight) { set_materials(MaterialT
 
 void Terrain::set_materials(const MaterialTable& materials, ShapeTablePtr shapes) {
   materials_.set(materials);
+  bodies_.set_matt(materials_.matt());
   bodies_.set_shapes(shapes ? std::move(shapes)
                             : std::make_shared<const ShapeTable>(shapes_of(materials)));
   light_codes_ = light_codes(materials);

@@ -1,15 +1,38 @@
 #include "client/render/terrain_bodies.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
 #include "client/far/child_bits.hpp"
+#include "common/mesh/quad.hpp"
 
 namespace runstone {
 
 void TerrainBodies::set_shapes(ShapeTablePtr shapes) {
   shapes_ = std::move(shapes);
   quads_.set_shapes(*shapes_);
+}
+
+void TerrainBodies::set_matt(const std::vector<bool>& materials) {
+  bool has_fewer = false;
+  for (std::size_t i = 0; i < matt_.size(); ++i)
+    has_fewer = has_fewer || (matt_[i] && (i >= materials.size() || !materials[i]));
+  matt_ = materials;
+  if (!has_fewer) return;
+  for (auto& [key, chunk] : chunks_) chunk.is_glossy = true;
+  for (auto& [key, body] : leaving_) body.is_glossy = true;
+  for (auto& [key, tile] : tiles_) {
+    tile.whole.is_glossy = true;
+    for (TerrainBody& octant : tile.octants) octant.is_glossy = true;
+  }
+}
+
+bool TerrainBodies::is_glossy(std::span<const Quad> quads) const {
+  return std::ranges::any_of(quads, [this](Quad quad) {
+    const Material material = unpack(quad).material;
+    return material >= matt_.size() || !matt_[material];
+  });
 }
 
 void TerrainBodies::put_chunk(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) {
@@ -91,6 +114,7 @@ TerrainBody TerrainBodies::add_chunk(std::int32_t edge, const ChunkMesh& mesh) {
                               count_of(mesh.shapes.transparent)};
   }
   out.tree = std::move(tree);
+  out.is_glossy = is_glossy(mesh.opaque.quads) || is_glossy(mesh.shapes.opaque);
   return out;
 }
 
@@ -104,7 +128,7 @@ TerrainTile TerrainBodies::add_tile(std::int32_t edge, const TileMesh& mesh) {
   stage(mesh.whole);
   for (const ChunkMesh& octant : mesh.octants) stage(octant);
   std::uint32_t next = quads_.add(staged_);
-  const auto body_of = [&next](std::int32_t side, const ChunkMesh& body) {
+  const auto body_of = [this, &next](std::int32_t side, const ChunkMesh& body) {
     TerrainBody out;
     const auto opaque_count = static_cast<std::uint32_t>(body.opaque.quads.size());
     const auto transparent_count = static_cast<std::uint32_t>(body.transparent.quads.size());
@@ -113,6 +137,7 @@ TerrainTile TerrainBodies::add_tile(std::int32_t edge, const TileMesh& mesh) {
     out.opaque = QuadSpans(body.opaque, side, next);
     out.transparent = {next + opaque_count, transparent_count};
     out.layers = QuadSpans(body.transparent, side, next + opaque_count);
+    out.is_glossy = is_glossy(body.opaque.quads);
     next += out.quads.count;
     return out;
   };

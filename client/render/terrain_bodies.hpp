@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "client/far/far_cover.hpp"
@@ -22,6 +23,9 @@ class TerrainBodies {
  public:
   /// Sets the shapes of the materials. Requires a table.
   void set_shapes(ShapeTablePtr shapes);
+  /// Sets the materials whose faces mirror nothing, by id. A body that was put before counts as one
+  /// that mirrors if one of them was in the list and is not any more.
+  void set_matt(const std::vector<bool>& materials);
   void put_chunk(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh);
   /// Requires a key of level 1 or more.
   void put_tile(const ChunkKey& key, std::int32_t edge, const TileMesh& mesh);
@@ -59,9 +63,12 @@ class TerrainBodies {
   /// Ends a fade, and removes the quads of what has left.
   void end_fade(const ChunkKey& key);
   bool has_octants(const ChunkKey& tile) const;
+  /// Returns true if a quad has a material that mirrors. Cost: O(quads).
+  bool is_glossy(std::span<const Quad> quads) const;
 
   QuadBuffer quads_;
   ShapeTablePtr shapes_;      // of the materials
+  std::vector<bool> matt_;    // by material; those beyond are not
   std::vector<Quad> staged_;  // on their way to the GPU; kept for its capacity
   std::map<ChunkKey, TerrainBody> chunks_;
   std::map<ChunkKey, TerrainTile> tiles_;

@@ -23,6 +23,7 @@ struct TerrainBody {
   std::optional<TransparentTree> tree;
   QuadSpans layers;             // of the transparent quads of cubes, without a tree
   QuadSpan transparent_shapes;  // without a tree
+  bool is_glossy = true;        // an opaque quad may have a material that mirrors
   /// Appends the spans of the opaque quads whose faces may be seen from `eye`, and all of shapes.
   void append_opaque(const std::array<double, 3>& eye, std::vector<QuadSpan>& out) const {
     opaque.append_facing(eye, out);

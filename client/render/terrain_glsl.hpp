@@ -1,9 +1,10 @@
 // The shaders of terrain, in GLSL 3.30. Their variants are chosen by definitions before the text:
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
-// fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids, and
-// RUNSTONE_FADE draws a part of the pixels. Those of textures stand in texture_glsl.hpp, that of
-// plants in plant_glsl.hpp.
+// fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids,
+// RUNSTONE_FADE draws a part of the pixels, and RUNSTONE_GLOSSY mirrors sun and sky. Those of
+// textures stand in texture_glsl.hpp, that of plants in plant_glsl.hpp. A software driver computes
+// both sides of a branch, so what few chunks need is a variant.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"
@@ -34,7 +35,7 @@ namespace runstone {
   "#endif\n"
 
 inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_TO_SHADOW_GLSL
-    RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_TO_PLANT_GLSL RUNSTONE_LOWERED_GLSL
+    RUNSTONE_TO_TEXTURE_GLSL RUNSTONE_TO_PLANT_GLSL RUNSTONE_LOWERED_GLSL RUNSTONE_LIGHT_GLSL
     "uniform mat4 clip;\n"     // clip space from eye-relative space
     "uniform vec3 origin;\n"   // chunk origin minus eye
     "uniform vec3 pattern;\n"  // chunk origin modulo 8192: coordinates fixed to the world
@@ -49,6 +50,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "flat out vec3 normal;\n"
     "flat out vec4 colour;\n"
     "flat out vec4 look;\n"
+    "flat out vec4 side_light;\n"  // of the sky on this side, and the share of the sun
     "#ifdef RUNSTONE_SHADOWS\n"
     "out vec3 in_shadow;\n"
     "#endif\n"
@@ -87,6 +89,7 @@ inline constexpr const char* kTerrainVertexShader = RUNSTONE_QUAD_GLSL RUNSTONE_
     "#endif\n"
     "  voxel = pattern + c.at - c.normal * c.inside;\n"
     "  normal = c.normal;\n"
+    "  side_light = vec4(sky_light(normal), max(dot(normal, sun_direction), 0.0));\n"
     "  ivec2 row = ivec2(c.material & 255u, c.material >> 8);\n"
     "  colour = texelFetch(palette, row, 0);\n"
     "  look = plant_look(c, texelFetch(looks, row, 0));\n"
@@ -108,6 +111,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "flat in vec3 normal;\n"
     "flat in vec4 colour;\n"
     "flat in vec4 look;\n"  // variation, grain, emission, surface
+    "flat in vec4 side_light;\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "in vec3 in_shadow;\n"
     "#endif\n"
@@ -136,7 +140,7 @@ inline constexpr const char* kTerrainFragmentShader =
     "  tint *= mix(1.0, shade(st, face.y), fine);\n"
     "#endif\n"
     "  if (is_textured()) tint = 1.0;\n"
-    "  float sun = max(dot(normal, sun_direction), 0.0);\n"
+    "  float sun = side_light.a;\n"
     "#ifdef RUNSTONE_SHADOWS\n"
     "  sun *= sunlit(in_shadow);\n"
     "#endif\n"
@@ -146,12 +150,14 @@ inline constexpr const char* kTerrainFragmentShader =
     // corners are wider than they are deep; otherwise they would flicker.
     "  vec4 around = field_light(relative + normal * (0.5 + min(pixel, 1.0)));\n"
     "  open = around.a;\n"
-    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * open)) + field_lit(around, normal);\n"
+    "  vec3 light = sun_colour * (sun * (0.5 + 0.5 * open)) + in_field(around, side_light.rgb);\n"
     "#else\n"
-    "  vec3 light = sun_colour * sun + field_lit(vec4(0.0, 0.0, 0.0, 1.0), normal);\n"
+    "  vec3 light = sun_colour * sun + side_light.rgb + dark;\n"
     "#endif\n"
     "  vec3 lit = colour.rgb * by_place() * tint * (light + look.b * lamps * 1.1);\n"
+    "#ifdef RUNSTONE_GLOSSY\n"
     "  lit = gloss(lit, colour.rgb, normal, relative, sun, open);\n"
+    "#endif\n"
     "#ifdef RUNSTONE_FOG\n"
     "  lit = in_fog(lit, relative);\n"
     "#endif\n"

@@ -16,6 +16,7 @@ std::string definitions_of(Quality quality, bool is_transparent, unsigned varian
   if (has(TerrainVariant::kFine)) out += "#define RUNSTONE_FINE\n";
   if (has(TerrainVariant::kInFog)) out += "#define RUNSTONE_FOG\n";
   if (has(TerrainVariant::kFade)) out += "#define RUNSTONE_FADE\n";
+  if (has(TerrainVariant::kGlossy)) out += "#define RUNSTONE_GLOSSY\n";
   const bool is_textured = has(TerrainVariant::kTextured);
   return texture_definitions(is_textured, has(TerrainVariant::kHoles),
                              is_textured && is_transparent) +

@@ -19,7 +19,8 @@ struct TerrainVariant {
   static constexpr unsigned kFade = 16;      // it appears or dissolves
   static constexpr unsigned kTextured = 32;  // the world has textures
   static constexpr unsigned kHoles = 64;     // shapes, whose faces may have holes
-  static constexpr std::size_t kCount = 128;
+  static constexpr unsigned kGlossy = 128;   // some of its faces mirror sun and sky
+  static constexpr std::size_t kCount = 256;
 };
 
 struct TerrainProgram {

@@ -31,8 +31,10 @@ namespace runstone {
   "}\n"                                                                                     \
   "#endif\n"
 
-/// For fragment shaders. Requires `colour`, that of the material. surface_colour() is the linear
-/// colour and the alpha at the fragment; is_textured() is true if they are those of a picture.
+/// For fragment shaders. Requires `colour`, that of the material, and with RUNSTONE_ALL_HOLES
+/// `look`. surface_colour() is the linear colour and the alpha at the fragment; is_textured() is
+/// true if they are those of a picture. The picture of a pane says alone where it is opaque. A
+/// liquid stays as clear as its material.
 #define RUNSTONE_TEXTURE_GLSL                                                 \
   "#ifdef RUNSTONE_TEXTURES\n"                                                \
   "uniform sampler2DArray textures;\n"                                        \
@@ -48,8 +50,9 @@ namespace runstone {
   "#endif\n"                                                                  \
   "#ifdef RUNSTONE_ALL_HOLES\n"                                               \
   "  if (texel.a < 0.5 || (texture_layer < 0 && !gl_FrontFacing)) discard;\n" \
+  "  if (look.a >= 15.0) texel.a *= colour.a;\n"                              \
   "#endif\n"                                                                  \
-  "  return vec4(texel.rgb, colour.a * texel.a);\n"                           \
+  "  return texel;\n"                                                         \
   "}\n"                                                                       \
   "#else\n"                                                                   \
   "bool is_textured() { return false; }\n"                                    \

@@ -78,6 +78,7 @@ void VisibleBodies::add(VisibleBody body, unsigned variant, float gone) {
     body.drawn = {0, bodies_->fades().octant_gone(body.key)};
   }
   if (body.body->shapes.count != 0) body.variants[0] |= TerrainVariant::kHoles;
+  if (body.body->is_glossy) body.variants[0] |= TerrainVariant::kGlossy;
   if (is_textured_) {
     body.variants[0] |= TerrainVariant::kTextured;
     body.variants[1] |= TerrainVariant::kTextured;

@@ -30,18 +30,21 @@ class Floor {
   bool can_draw() const { return context_ != nullptr; }
 
   Image draw(const MaterialLook& look, const Camera& camera, double time_of_day = 0.4) const {
-    MaterialTable table;
-    const auto added =
-        table.add({"m", {150, 140, 130, 255}, Visibility::opaque, {}, MaterialBody::solid, look});
-    REQUIRE(added.has_value());
+    return draw_after(look, look, camera, time_of_day);
+  }
+  /// Draws with another look than the material had when the floor was uploaded.
+  Image draw_after(const MaterialLook& before, const MaterialLook& look, const Camera& camera,
+                   double time_of_day) const {
+    const MaterialTable table = table_of(look);
     RunChunk chunk = uniform_chunk(Extent::cube(kSurfaceEdge), kEmpty, AxisOrder::xzy);
-    REQUIRE(fill(chunk, 0, kSurfaceEdge * kSurfaceEdge * 4, *added));
+    REQUIRE(fill(chunk, 0, kSurfaceEdge * kSurfaceEdge * 4, 1));
     RdmScratch scratch;
     ChunkMesh mesh;
     mesh_rdm(chunk, {}, VisibilityTable(visibilities(table)), scratch, mesh);
     Renderer renderer(context_->loader());
-    renderer.set_materials(table);
+    renderer.set_materials(table_of(before));
     renderer.upload({0, {0, 0, 0}}, kSurfaceEdge, mesh, &chunk);
+    renderer.set_materials(table);
     FrameContents contents;
     contents.look.time_of_day = time_of_day;
     renderer.draw(camera, 160, 120, contents);
@@ -50,6 +53,16 @@ class Floor {
   }
 
  private:
+  /// Returns a table with one material, whose id is 1.
+  static MaterialTable table_of(const MaterialLook& look) {
+    MaterialTable table;
+    const auto added =
+        table.add({"m", {150, 140, 130, 255}, Visibility::opaque, {}, MaterialBody::solid, look});
+    REQUIRE(added.has_value());
+    REQUIRE(*added == 1);
+    return table;
+  }
+
   std::unique_ptr<GlContext> context_;
 };
 
@@ -132,6 +145,8 @@ TEST_CASE("a smooth material mirrors the sun, and a matt one does not", "[render
   CHECK(middle(floor.draw({0, 0, 70, 0}, camera, kMorning)) == matt);
   const int smooth = middle(floor.draw({0, 0, 20, 0}, camera, kMorning));
   CHECK(smooth > matt + 60);
+  // A chunk that is there follows the material.
+  CHECK(middle(floor.draw_after({0, 0, 100, 0}, {0, 0, 20, 0}, camera, kMorning)) == smooth);
   // Away from the mirrored sun the floor is much darker than in it.
   Camera away = camera;
   away.yaw += 1.2;
