@@ -12,7 +12,7 @@
 namespace runstone::test {
 namespace {
 
-using Voxels = std::set<VoxelPos>;
+using ChosenVoxels = std::set<VoxelPos>;
 
 /// The voxels that the tests look at lie from -kSeen to kSeen - 1 along each axis.
 constexpr std::int32_t kSeen = 14;
@@ -33,8 +33,8 @@ struct VoxelsBench : ToolBench {
     box.set_materials(default_material_table());
     for (Material m = 1; m < 4; ++m) name[m] = default_material_table()[m].name;
   }
-  Voxels selected() const {
-    Voxels out;
+  ChosenVoxels selected() const {
+    ChosenVoxels out;
     for_each_seen([&](VoxelPos v) {
       const Selected& now = box.selected();
       if (now.voxels ? now.voxels->contains(v) : now.boxes.contains(v)) out.insert(v);
@@ -75,7 +75,7 @@ TEST_CASE_METHOD(VoxelsBench, "voxels are selected by material, added, left out 
                  "[tools][property]") {
   using Kind = SelectionCommand::Kind;
   box.select(kChosen);
-  Voxels wanted = selected();
+  ChosenVoxels wanted = selected();
   REQUIRE(narrow(Kind::keep, "is " + name[1] + " or " + name[2]));
   std::erase_if(wanted, [&](VoxelPos v) { return at(v) != 1 && at(v) != 2; });
   REQUIRE_FALSE(wanted.empty());
@@ -99,7 +99,7 @@ TEST_CASE_METHOD(VoxelsBench, "voxels are selected by material, added, left out 
   grow.direction = Direction::neg_z;
   grow.count = 2;
   REQUIRE(run(grow));
-  const Voxels before = wanted;
+  const ChosenVoxels before = wanted;
   for (const VoxelPos v : before) {
     wanted.insert({v.x, v.y, v.z - 1});
     wanted.insert({v.x, v.y, v.z - 2});
@@ -120,7 +120,7 @@ TEST_CASE_METHOD(VoxelsBench, "the commands of a selection change exactly its si
   CAPTURE(what);
   box.select(kChosen);
   REQUIRE(narrow(Kind::keep, "is " + name[1] + " or not exposed"));
-  const Voxels chosen = selected();
+  const ChosenVoxels chosen = selected();
   const std::map<VoxelPos, Material> before = world();
   std::map<VoxelPos, Material> wanted = before;
   SelectionCommand command;
@@ -169,7 +169,7 @@ TEST_CASE_METHOD(VoxelsBench, "the commands of a selection change exactly its si
     CHECK(wrong == 0);
   }
   if (what > 2) {
-    Voxels moved_there;
+    ChosenVoxels moved_there;
     for (const VoxelPos v : chosen) moved_there.insert(moved(v, command.direction, 2));
     CHECK(selected() == moved_there);
   }
@@ -180,7 +180,7 @@ TEST_CASE_METHOD(VoxelsBench, "the tools that work in the selection change its s
   using Kind = SelectionCommand::Kind;
   box.select(kChosen);
   REQUIRE(narrow(Kind::keep, "is " + name[1]));
-  const Voxels chosen = selected();
+  const ChosenVoxels chosen = selected();
   std::map<VoxelPos, Material> wanted = world();
   for (const VoxelPos v : chosen) wanted[v] = 3;
   REQUIRE(box.choose("mix"));
