@@ -58,6 +58,7 @@ constexpr std::int32_t kCheapRadiusMax = 32;
 class GroundTool : public Tool {
  public:
   using Tool::Tool;
+  void forget_plan() final { upright_.clear(); }
   bool is_drawn() const final { return true; }
   bool chooses_solid() const final { return true; }
   std::string_view place_name(std::size_t) const final { return "place"; }

@@ -121,6 +121,8 @@ class Tool {
   /// Returns what the click makes that completes an action. Fails with words for the player. The
   /// edits are valid, but the world's limits are not checked.
   virtual Result<ToolAction, std::string> plan(const ToolInput& input) const = 0;
+  /// Frees what plan() has kept for the next plan. It changes no result.
+  virtual void forget_plan() {}
 
  protected:
   /// Returns the value of a parameter. Requires a parameter of this tool.

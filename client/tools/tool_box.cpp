@@ -150,9 +150,11 @@ Result<void, std::string> ToolBox::choose(std::string_view name) {
   const auto it = std::find_if(tools_.begin(), tools_.end(),
                                [&](const auto& tool) { return tool->name() == name; });
   if (it == tools_.end()) return failure("there is no tool " + std::string(name));
+  // The chunks of the last plan are kept no longer.
+  tools_[chosen_]->forget_plan();
+  pattern_.set(nullptr);
   chosen_ = static_cast<std::size_t>(it - tools_.begin());
   points_.clear();
-  pattern_.set(nullptr);  // its chunks are kept no longer
   ++revision_;
   return {};
 }
@@ -307,7 +309,7 @@ bool ToolBox::cancel() {
 
 void ToolBox::select(std::optional<VoxelBox> box) { select(BoxSet(box.value_or(VoxelBox{}))); }
 
-void ToolBox::select(BoxSet boxes) { select(Selected{std::move(boxes), nullptr}); }
+void ToolBox::select(BoxSet boxes) { select(Selected{std::move(boxes), nullptr, 0}); }
 
 void ToolBox::select(Selected selected) {
   const bool are_others = selected_.voxels != selected.voxels;
@@ -326,7 +328,7 @@ Result<void, std::string> ToolBox::select(const VoxelBox& box, SelectMode mode) 
     // What lies beside the voxels is not removed from them.
     const VoxelBox part = mode == SelectMode::add ? box : intersect(box, *selection_);
     if (part.empty()) return {};
-    const auto rows = rows_of({BoxSet(part), nullptr});
+    const auto rows = rows_of({BoxSet(part), nullptr, 0});
     if (!rows) return failure(rows.error());
     auto made = combined(selected_, *rows, mode);
     if (!made) return failure(made.error());
@@ -676,6 +678,7 @@ std::string ToolBox::set_materials(const MaterialTable& materials, const MeshMat
   preview_.set_materials(meshed);
   selected_preview_.set_materials(meshed);
   build_preview_.set_materials(meshed);
+  tools_[chosen_]->forget_plan();  // the chunks may be those of another world
   points_.clear();
   typed_.reset();  // an open window gives its places again
   ++revision_;

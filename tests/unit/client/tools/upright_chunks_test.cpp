@@ -34,6 +34,24 @@ TEST_CASE("chunks with lines along y are made once, and kept for one plan more",
   CHECK(kept.size() == 1);  // b was not read in the last plan
   kept.begin_plan();
   CHECK(kept.size() == 0);
+
+  // The runs of both orders are bounded. A chunk without room is made each time.
+  const auto runs_of = [](const RunChunk& made) {
+    return made.runs.size() + reorder(made, AxisOrder::yxz).runs.size();
+  };
+  UprightChunks few(runs_of(*a) + runs_of(*b) - 1);
+  few.begin_plan();
+  const auto first = few.of(a);
+  CHECK(*few.of(b) == reorder(*b, AxisOrder::yxz));
+  CHECK(few.size() == 1);
+  CHECK(few.of(a) == first);
+  few.begin_plan();
+  few.begin_plan();
+  CHECK(few.size() == 0);
+  CHECK(few.of(b) == few.of(b));
+  few.clear();
+  CHECK(few.size() == 0);
+  CHECK(few.of(a) == few.of(a));
 }
 
 }  // namespace runstone::test
