@@ -54,6 +54,7 @@ Selected Selected::of(VoxelRows rows) {
     around = bounding_box(around, {{row.front().low, y, z}, {row.back().high, y + 1, z + 1}});
   }
   out.boxes = BoxSet(around);
+  out.voxel_count = rows.count();
   out.voxels = std::make_shared<const VoxelRows>(std::move(rows));
   return out;
 }

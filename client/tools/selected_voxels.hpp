@@ -19,6 +19,8 @@ namespace runstone {
 struct Selected {
   BoxSet boxes;         // with `voxels`, the box around them
   VoxelRowsPtr voxels;  // never empty; null: the voxels of the boxes are selected
+  /// The number of `voxels`, which is counted once because windows show it in each frame.
+  std::uint64_t voxel_count = 0;
 
   /// Returns the voxels as a selection; an empty set selects nothing.
   static Selected of(VoxelRows rows);

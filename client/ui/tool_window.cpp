@@ -301,9 +301,9 @@ void ToolWindow::build_selection(const HudState& state, double scale,
   } else if (state.sight) {
     corner = numbers_of(*state.sight);
   }
-  if (const VoxelRowsPtr& voxels = box.selected().voxels) {
+  if (box.selected().voxels) {
     ImGui::TextDisabled("%llu voxels; the numbers are those of the box around them",
-                        static_cast<unsigned long long>(voxels->count()));
+                        static_cast<unsigned long long>(box.selected().voxel_count));
   } else if (const std::size_t parts = box.selected().boxes.boxes().size(); parts > 1) {
     ImGui::TextDisabled("%zu boxes; the numbers are those of the box around them", parts);
   }

@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 
+#include "client/tools/action_source.hpp"
 #include "client/tools/tool_command.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/materials/material_table.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
@@ -175,6 +177,32 @@ TEST_CASE_METHOD(VoxelsBench, "the commands of a selection change exactly its si
   }
 }
 
+TEST_CASE_METHOD(VoxelsBench, "the place that single voxels leave is cleared after all was placed",
+                 "[tools]") {
+  box.select(kChosen);
+  REQUIRE(narrow(SelectionCommand::Kind::keep, "is " + name[1]));
+  const auto made = box.move(replica, Direction::pos_x, 2);
+  REQUIRE(made);
+  REQUIRE(made->cleared);
+  CHECK_FALSE(is_small(*made, replica.edit_limits()));
+  CHECK(clears_at_end(*made));
+  const auto source = source_of(*made, replica.edit_limits());
+  std::uint64_t before = 0, behind = 0;
+  int barriers = 0;
+  for (SourceStep step = source->next(); step.kind != SourceStep::Kind::end;
+       step = source->next()) {
+    if (step.kind == SourceStep::Kind::barrier) {
+      ++barriers;
+    } else {
+      REQUIRE(step.kind == SourceStep::Kind::edit);
+      (barriers == 0 ? before : behind) += counted_voxels(step.edit);
+    }
+  }
+  CHECK(barriers == 1);
+  CHECK(before > 0);
+  CHECK(behind == made->cleared->build->touched());
+}
+
 TEST_CASE_METHOD(VoxelsBench, "the tools that work in the selection change its single voxels",
                  "[tools]") {
   using Kind = SelectionCommand::Kind;
@@ -216,7 +244,9 @@ TEST_CASE_METHOD(ToolBench, "the wand selects connected voxels, adds some and ta
     const auto made = box.press(replica, aim_at(at, Direction::pos_y), button);
     REQUIRE(made);
     CHECK(made->empty());
-    return box.selected().voxels ? box.selected().voxels->count() : 0;
+    const Selected& now = box.selected();
+    CHECK(now.voxel_count == (now.voxels ? now.voxels->count() : 0));
+    return now.voxel_count;
   };
   CHECK(click({1, 1, 0}, 1) == 6);
   CHECK_FALSE(box.clipboard().build);
