@@ -18,6 +18,7 @@
 #include <set>
 #include <string>
 
+#include "client/replica/local_edits.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "client/session/client_session.hpp"
 #include "client/stream/message_stream.hpp"
@@ -99,7 +100,8 @@ class CarriedSession final : private MessageSink {
   const ClientSession& session() const { return session_; }
   std::size_t unmeshed_count() const { return planner_.dirty_count() + gone_.size(); }
 
-  static constexpr std::size_t kNoticesMax = 1024;  // the oldest are dropped
+  /// The oldest are dropped. All edits that are kept may become durable at once.
+  static constexpr std::size_t kNoticesMax = 2 * kLocalEditsMax;
 
  private:
   void on_received(LinkReceived received) override;
