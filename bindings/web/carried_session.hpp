@@ -13,6 +13,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -48,6 +49,7 @@ enum class CarriedNoticeKind : std::uint8_t {
   chat = 5,       // text: "name: line", or a line of the server
   materials = 6,  // there are more materials, or materials of another world
   durable = 7,    // number: an edit that is on disk
+  unseen = 8,     // number: an edit whose answer was lost; the chunks show whether it was applied
 };
 
 struct CarriedNotice {
@@ -107,6 +109,9 @@ class CarriedSession final : private MessageSink {
   void on_received(LinkReceived received) override;
   void queue_outgoing();
   void take_changes();
+  /// Returns the number of an edit: the sequence with which it was offered first.
+  ClientSequence number_of(ClientSequence seq) const;
+  void note_outcomes(const ReplicaChanges& changes);
   void note(CarriedNoticeKind kind, std::uint32_t number, std::string text);
   /// Requires an open world. Does nothing if the materials are those of the last call.
   void update_materials();
@@ -132,6 +137,9 @@ class CarriedSession final : private MessageSink {
   std::set<ChunkKey> drawn_;   // chunks for which next_mesh() returned a mesh
   std::deque<ChunkKey> gone_;  // those of them that left since
   std::deque<CarriedNotice> notices_;
+  // Edits that the session offers again, as new ones. Bound: those that it keeps.
+  std::set<ClientSequence> waiting_again_;            // numbers of those that were not offered yet
+  std::map<ClientSequence, ClientSequence> numbers_;  // of the others, by their new sequence
 };
 
 }  // namespace runstone

@@ -3,7 +3,7 @@
 import { Chunk, Edits, Mesh, ray } from "./chunks.js";
 import { bytesAt, call, Handle, memory, pointer, readPos, readVec, RunstoneError, textAt, use, whole } from "./wasm.js";
 
-const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable" };
+const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable", 8: "unseen" };
 const PAUSES_MS = { first: 250, most: 5000 };
 const CONNECT_MS_MAX = 10_000;
 const RECEIVED_BYTES_MAX = 64 << 20; // wait for step(); with more the connection ends
