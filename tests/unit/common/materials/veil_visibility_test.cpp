@@ -24,7 +24,7 @@ TEST_CASE("nothing hides behind an opaque material that a body or light enters, 
   MaterialInfo slab = opaque_with_body("slab", MaterialBody::solid);
   slab.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
   REQUIRE(table.add(slab));
-  REQUIRE(table.add(opaque_with_body("oak leaves", MaterialBody::solid)));
+  REQUIRE(table.add(opaque_with_body("oak_leaves", MaterialBody::solid)));
   using enum Visibility;
   CHECK(cube_visibilities(table) ==
         std::vector<Visibility>{empty, opaque, opaque, opaque, empty, opaque});
