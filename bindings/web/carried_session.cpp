@@ -67,6 +67,8 @@ void CarriedSession::on_received(LinkReceived received) {
   if (world_ && *world_ != welcome.world_id) {
     material_count_ = 0;
     has_moved_ = false;
+    waiting_again_.clear();
+    numbers_.clear();
   }
   world_ = welcome.world_id;
   update_materials();
@@ -126,13 +128,45 @@ void CarriedSession::take_changes() {
   for (const ChunkChange& change : changes.chunks) {
     if (change.removed && drawn_.erase(change.key) != 0) gone_.push_back(change.key);
   }
-  for (const RejectedEdit& reject : changes.rejects)
-    note(CarriedNoticeKind::rejected, static_cast<std::uint32_t>(reject.seq),
-         words_of_reject(reject));
-  for (const ClientSequence seq : changes.durable)
-    note(CarriedNoticeKind::durable, static_cast<std::uint32_t>(seq), "");
+  note_outcomes(changes);
   for (const ChatLine& line : session_.drain_chat())
     note(CarriedNoticeKind::chat, 0, line.name.empty() ? line.text : line.name + ": " + line.text);
+}
+
+ClientSequence CarriedSession::number_of(ClientSequence seq) const {
+  const auto found = numbers_.find(seq);
+  return found == numbers_.end() ? seq : found->second;
+}
+
+void CarriedSession::note_outcomes(const ReplicaChanges& changes) {
+  const auto end = [&](CarriedNoticeKind kind, ClientSequence seq, std::string text) {
+    note(kind, static_cast<std::uint32_t>(number_of(seq)), std::move(text));
+    numbers_.erase(seq);
+  };
+  for (const RejectedEdit& reject : changes.rejects) {
+    if (reject.is_offered_again) {
+      waiting_again_.insert(number_of(reject.seq));
+      numbers_.erase(reject.seq);
+    } else {
+      end(CarriedNoticeKind::rejected, reject.seq, words_of_reject(reject));
+    }
+  }
+  for (const ClientSequence seq : changes.durable) end(CarriedNoticeKind::durable, seq, "");
+  for (const ClientSequence seq : changes.unseen) end(CarriedNoticeKind::unseen, seq, "");
+  if (waiting_again_.empty()) return;
+  for (const auto& [seq, local] : session_.replica().local_edits().all()) {
+    if (local.again_of != 0 && waiting_again_.erase(local.again_of) != 0)
+      numbers_[seq] = local.again_of;
+  }
+  for (auto it = waiting_again_.begin(); it != waiting_again_.end();) {
+    if (session_.keeps_lost_edit(*it)) {
+      ++it;
+      continue;
+    }
+    note(CarriedNoticeKind::rejected, static_cast<std::uint32_t>(*it),
+         "the edit was lost and cannot be offered again");
+    it = waiting_again_.erase(it);
+  }
 }
 
 void CarriedSession::note(CarriedNoticeKind kind, std::uint32_t number, std::string text) {

@@ -13,11 +13,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "client/replica/local_edits.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "client/session/client_session.hpp"
 #include "client/stream/message_stream.hpp"
@@ -47,6 +49,7 @@ enum class CarriedNoticeKind : std::uint8_t {
   chat = 5,       // text: "name: line", or a line of the server
   materials = 6,  // there are more materials, or materials of another world
   durable = 7,    // number: an edit that is on disk
+  unseen = 8,     // number: an edit whose answer was lost; the chunks show whether it was applied
 };
 
 struct CarriedNotice {
@@ -99,12 +102,16 @@ class CarriedSession final : private MessageSink {
   const ClientSession& session() const { return session_; }
   std::size_t unmeshed_count() const { return planner_.dirty_count() + gone_.size(); }
 
-  static constexpr std::size_t kNoticesMax = 1024;  // the oldest are dropped
+  /// The oldest are dropped. All edits that are kept may become durable at once.
+  static constexpr std::size_t kNoticesMax = 2 * kLocalEditsMax;
 
  private:
   void on_received(LinkReceived received) override;
   void queue_outgoing();
   void take_changes();
+  /// Returns the number of an edit: the sequence with which it was offered first.
+  ClientSequence number_of(ClientSequence seq) const;
+  void note_outcomes(const ReplicaChanges& changes);
   void note(CarriedNoticeKind kind, std::uint32_t number, std::string text);
   /// Requires an open world. Does nothing if the materials are those of the last call.
   void update_materials();
@@ -130,6 +137,9 @@ class CarriedSession final : private MessageSink {
   std::set<ChunkKey> drawn_;   // chunks for which next_mesh() returned a mesh
   std::deque<ChunkKey> gone_;  // those of them that left since
   std::deque<CarriedNotice> notices_;
+  // Edits that the session offers again, as new ones. Bound: those that it keeps.
+  std::set<ClientSequence> waiting_again_;            // numbers of those that were not offered yet
+  std::map<ClientSequence, ClientSequence> numbers_;  // of the others, by their new sequence
 };
 
 }  // namespace runstone

@@ -39,7 +39,8 @@ typedef struct runstone_session_material {
 } runstone_session_material;
 
 /* Makes a session of a player. `seed` is the secret key of the player, 32 bytes. `instance` is
- * random. Names and tickets are UTF-8. The radii are chunks, 0 .. 32. */
+ * random. Names and tickets are UTF-8. Refuses names and tickets that no server accepts; an empty
+ * ticket is none. The radii are chunks, 0 .. 32. */
 RUNSTONE_API runstone_status runstone_session_create(const uint8_t seed[32], const char* name,
                                                      const char* ticket, uint32_t instance,
                                                      uint32_t radius_h, uint32_t radius_v,

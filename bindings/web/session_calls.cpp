@@ -10,6 +10,7 @@
 #include "bindings/c/versioned.hpp"
 #include "bindings/web/carried_session.hpp"
 #include "bindings/web/runstone_session.h"
+#include "client/session/join_check.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 
@@ -57,6 +58,11 @@ runstone_status runstone_session_create(const uint8_t seed[32], const char* name
     std::memcpy(player.seed.data(), &given(seed, "seed"), player.seed.size());
     player.name = &given(name, "name");
     player.ticket = &given(ticket, "ticket");
+    // The encoder of messages requires that they pass.
+    if (const auto right = check_player_name(player.name); !right)
+      refuse_with(RUNSTONE_BAD_ARGUMENT, "name: " + right.error());
+    if (const auto right = check_ticket(player.ticket); !right)
+      refuse_with(RUNSTONE_BAD_ARGUMENT, "ticket: " + right.error());
     if (instance == 0) refuse(RUNSTONE_BAD_ARGUMENT, "instance", "is 0");
     player.instance = instance;
     check_at_most(std::max(radius_h, radius_v), std::uint32_t{kCarriedRadiusMax}, "radius",
@@ -227,6 +233,7 @@ runstone_status runstone_session_next_mesh(runstone_session* session, runstone_m
     if (!next) return;
     // The quads are those of no handle of a chunk.
     to.of_chunk = 0;
+    to.has_occlusion = false;
     *at = {next->at.x, next->at.y, next->at.z};
     if (next->mesh)
       to.quads = *next->mesh;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/materials/default_look.hpp"
+#include "common/materials/foliage.hpp"
 
 namespace runstone {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 LightPass light_pass(const MaterialInfo& material) {
   if (material.body == MaterialBody::liquid) return LightPass::liquid;
   // Leaves are often opaque to the mesher, but a wood is not as dark as a cave.
-  if (material.name.find("leaves") != std::string::npos) return LightPass::leaves;
+  if (is_foliage(material)) return LightPass::leaves;
   // A shape hides no face of the cubes beside it, which would be black without light.
   if (!material.shape.is_cube()) return LightPass::open;
   return material.visibility == Visibility::opaque ? LightPass::opaque : LightPass::open;

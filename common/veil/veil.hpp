@@ -3,7 +3,8 @@
 //
 // A material *covers* if `covers` says opaque (for chunks: veil_visibilities() in common/materials).
 // A voxel is *enclosed* if it covers and its six neighbours cover. The veil replaces enclosed voxels
-// and no others, by materials that cover. So no drawn face, ray, collision or light changes.
+// and no others, by materials that cover. So no drawn face, ray or collision changes, and light
+// spreads as before (docs/veil.md names what lamps inside of walls do to corners).
 //
 // The rule: the enclosed voxels between two voxels that keep their material, in index order, show
 //   1. the material of the voxel before them, if it covers;

@@ -108,6 +108,15 @@ export class Chunk extends Handle {
   }
 }
 
+// Puts two structs of this size side by side. Views are taken after the last allocation, because memory that
+// grows detaches the earlier ones.
+function joined(room, bytes, first, second) {
+  const at = room.take(2 * bytes);
+  bytesAt(at, bytes).set(bytesAt(first, bytes));
+  bytesAt(at + bytes, bytes).set(bytesAt(second, bytes));
+  return at;
+}
+
 // Edits, in the order in which they are applied. A brush is a material, or {material, mask, only}.
 export class Edits extends Handle {
   constructor() {
@@ -130,12 +139,7 @@ export class Edits extends Handle {
   }
   // Half-open: max lies outside.
   box(min, max, brush) {
-    return this.#add("box", brush, (room) => {
-      const both = room.take(24);
-      bytesAt(both, 12).set(bytesAt(room.pos(min), 12));
-      bytesAt(both + 12, 12).set(bytesAt(room.pos(max), 12));
-      return [both];
-    });
+    return this.#add("box", brush, (room) => [joined(room, 12, room.pos(min), room.pos(max))]);
   }
   sphere(centre, radius, brush) {
     return this.#add("sphere", brush, (room) => [room.pos(centre), whole(radius, "radius")]);
@@ -282,10 +286,7 @@ export class Space extends Handle {
     use((room) => call("space_set_solid", this.at, room.put(Uint8Array.from(solid, Number)), solid.length, others ? 1 : 0));
   }
   #body(room, { min, max }) {
-    const at = room.take(48);
-    bytesAt(at, 24).set(bytesAt(room.vec(min), 24));
-    bytesAt(at + 24, 24).set(bytesAt(room.vec(max), 24));
-    return at;
+    return joined(room, 24, room.vec(min), room.vec(max));
   }
   sweep(body, move) {
     return use((room) => {

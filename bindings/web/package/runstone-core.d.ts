@@ -167,11 +167,12 @@ export interface SessionInfo {
 }
 /**
  * open: the world is open, for the first time or again. closed: the connection ended, and another one follows.
- * refused: no other one follows. rejected and durable: `number` is that of an edit. chat: a line.
+ * refused: no other one follows. rejected, durable and unseen: `number` is that of an edit; the answer to an
+ * unseen one was lost, and the chunks show whether it was made. chat: a line.
  * materials: Session.materials has changed.
  */
 export interface SessionEvent {
-  type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unknown";
+  type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unseen" | "unknown";
   number: number;
   text: string;
 }
@@ -190,7 +191,10 @@ export class Session {
   move(eye: Vec, yaw?: number, pitch?: number): void;
   /** Makes meshes that are out of date. `mesh` is valid until the next one; null: remove that of the chunk. */
   meshes(ms?: number): Generator<{ at: Pos; mesh: Mesh | null }, void, void>;
-  /** Shows edits at once and sends them. Returns their numbers. Fails for an edit that the player may not make. */
+  /**
+   * Shows edits at once and sends them. Returns their numbers. Fails for an edit that the player may not make; those
+   * before it are made.
+   */
   edit(edits: Edits): number[];
   chat(line: string): void;
   /** A copy of a chunk as it is shown. */
@@ -198,6 +202,6 @@ export class Session {
   /** The material of a voxel, or null where no chunk is held. */
   get(place: Pos): number | null;
   pick(eye: Vec, direction: Vec, reach?: number): RayHit | null;
-  /** Says goodbye and frees the memory. */
+  /** Says goodbye and frees the memory. Further calls do nothing. */
   close(): void;
 }

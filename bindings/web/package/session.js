@@ -3,7 +3,7 @@
 import { Chunk, Edits, Mesh, ray } from "./chunks.js";
 import { bytesAt, call, Handle, memory, pointer, readPos, readVec, RunstoneError, textAt, use, whole } from "./wasm.js";
 
-const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable" };
+const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable", 8: "unseen" };
 const PAUSES_MS = { first: 250, most: 5000 };
 const CONNECT_MS_MAX = 10_000;
 const RECEIVED_BYTES_MAX = 64 << 20; // wait for step(); with more the connection ends
@@ -21,6 +21,7 @@ export class Session {
   #url;
   #WebSocket;
   #socket = null;
+  #isClosed = false; // by close()
   #isOpen = false;
   #received = [];
   #receivedBytes = 0;
@@ -42,7 +43,14 @@ export class Session {
 
   #connect(nowMs) {
     this.#nextMs = nowMs;
-    const socket = new this.#WebSocket(this.#url);
+    let socket;
+    try {
+      socket = new this.#WebSocket(this.#url);
+    } catch (error) {
+      // The address is none, or this page may not connect to it.
+      this.#events.push({ type: "refused", number: 0, text: `${this.#url}: ${error.message}` });
+      return;
+    }
     this.#socket = socket;
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
@@ -61,6 +69,7 @@ export class Session {
     socket.onclose = () => {
       if (socket === this.#socket) this.#lost = true;
     };
+    socket.onerror = () => {}; // onclose() follows; some classes end the program without it
   }
 
   #lose() {
@@ -233,8 +242,11 @@ export class Session {
     return ray("session_pick", this.#handle.at, eye, direction, reach);
   }
 
-  // Says goodbye, closes the connection and frees the memory. The session cannot be used any more.
+  // Says goodbye, closes the connection and frees the memory. The session cannot be used any more. Further calls
+  // do nothing.
   close() {
+    if (this.#isClosed) return;
+    this.#isClosed = true;
     call("session_leave", this.#handle.at);
     this.#send();
     this.#isOver = true;

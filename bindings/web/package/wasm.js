@@ -158,6 +158,7 @@ function imports() {
   const none = () => 52; // ENOSYS of WASI
   const known = {
     random_get: fill,
+    getentropy: fill, // Emscripten 3.1.6 imports it in place of random_get
     proc_exit: (code) => {
       throw new Error(`the WebAssembly of @runstone/core ended (${code})`);
     },

@@ -156,6 +156,42 @@ TEST_CASE("an edit of a carried session is shown, sent, rejected and taken back"
   CHECK_FALSE(refused.error().empty());
 }
 
+TEST_CASE("an edit that is offered again keeps its number in the notices", "[web_core]") {
+  CarriedBench bench;
+  bench.open();
+  bench.load();
+  bench.session.disconnected();
+  const auto number = bench.session.edit(session_bench::set({3, 0, 3}, 1), bench.now);
+  REQUIRE(number.has_value());
+  bench.from_client = FrameReader(Sender::client);
+  bench.to_client = FrameWriter();
+  bench.now += 10'000;
+  bench.open();
+  bench.load();
+  bench.notices();
+  bench.session.step(bench.now += 2'000'000);  // edits wait for the clock of the server
+  auto requests = session_bench::take<EditRequest>(bench.sent());
+  REQUIRE(requests.size() == 1);
+  CHECK(requests[0].client_seq == *number);
+
+  REQUIRE(bench.give(Reject{*number, RejectReason::busy, "the log is full"}).has_value());
+  bench.session.step(bench.now += 10'000);
+  CHECK(bench.notices().empty());
+  bench.session.step(bench.now += 2'000'000);
+  requests = session_bench::take<EditRequest>(bench.sent());
+  REQUIRE(requests.size() == 1);
+  CHECK(requests[0].client_seq != *number);
+
+  const Reject second{requests[0].client_seq, RejectReason::not_permitted, "not here"};
+  REQUIRE(bench.give(second).has_value());
+  bench.session.step(bench.now += 10'000);
+  const auto notices = bench.notices();
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].kind == CarriedNoticeKind::rejected);
+  CHECK(notices[0].number == *number);
+  CHECK(notices[0].text == "not here");
+}
+
 TEST_CASE("a carried session drops the meshes of chunks that leave its view", "[web_core]") {
   CarriedBench bench;
   bench.open();

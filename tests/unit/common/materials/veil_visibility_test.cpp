@@ -15,7 +15,7 @@ MaterialInfo opaque_with_body(const std::string& name, MaterialBody body) {
 
 }  // namespace
 
-TEST_CASE("nothing hides behind an opaque material that a body enters, or behind a shape",
+TEST_CASE("nothing hides behind an opaque material that a body or light enters, or behind a shape",
           "[materials]") {
   MaterialTable table;
   REQUIRE(table.add(opaque_with_body("lava", MaterialBody::liquid)));
@@ -24,10 +24,12 @@ TEST_CASE("nothing hides behind an opaque material that a body enters, or behind
   MaterialInfo slab = opaque_with_body("slab", MaterialBody::solid);
   slab.shape = {ShapeForm::boxes, {{{0, 0, 0}, {16, 8, 16}}}};
   REQUIRE(table.add(slab));
+  REQUIRE(table.add(opaque_with_body("oak_leaves", MaterialBody::solid)));
   using enum Visibility;
-  CHECK(cube_visibilities(table) == std::vector<Visibility>{empty, opaque, opaque, opaque, empty});
+  CHECK(cube_visibilities(table) ==
+        std::vector<Visibility>{empty, opaque, opaque, opaque, empty, opaque});
   CHECK(veil_visibilities(table) ==
-        std::vector<Visibility>{empty, transparent, transparent, opaque, empty});
+        std::vector<Visibility>{empty, transparent, transparent, opaque, empty, transparent});
 }
 
 }  // namespace runstone::test

@@ -1,0 +1,14 @@
+// Foliage: materials through which light passes, although they may hide the faces behind them.
+#pragma once
+#include <string>
+
+#include "common/materials/material_table.hpp"
+
+namespace runstone {
+
+/// Returns true for leaves. Rows do not say through what light passes, so their names do.
+inline bool is_foliage(const MaterialInfo& material) {
+  return material.name.find("leaves") != std::string::npos;
+}
+
+}  // namespace runstone
