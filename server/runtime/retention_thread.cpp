@@ -111,7 +111,7 @@ bool RetentionThread::may_go_on() {
   bool has_waited = false;
   while (is_held_.load()) {
     if (!std::exchange(has_waited, true))
-      note_wait("rollbacks or undos are under way, which read the log");
+      note_wait("rollbacks, their previews or undos are under way, which read the log");
     if (!rest(pace_.pause)) return false;
   }
   if (has_waited) note_wait("");

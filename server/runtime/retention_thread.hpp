@@ -6,7 +6,8 @@
 //     takes longer.
 //   - After each part the thread rests 9 times as long as the part took, reading included. Then the
 //     records that were queued meanwhile are on disk.
-//   - It pauses while rollbacks and undos are under way: they read the log that it would shorten.
+//   - It pauses while rollbacks, their previews and undos are under way: they read the log that it would
+//     shorten.
 //   - It removes nothing behind the checkpoint.
 //   - At the end of a run it returns free space to the disk, in small parts too.
 //   - A failure ends the run, not the server: the next run goes on where it ended.

@@ -327,7 +327,7 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   if (commands_) commands_->tick(now);
-  if (log_ && commands_) log_->retention().hold(!commands_->is_idle());
+  if (log_ && commands_) log_->retention().hold(commands_->reads_log());
   if (const auto successor = world_->cluster().take_better_owner()) hand_over_to(*successor);
 }
 
