@@ -177,6 +177,20 @@ TEST_CASE("nothing behind the checkpoint is folded", "[store][retention]") {
   CHECK(done.error().what == "lies outside the log, or behind the checkpoint seq=0");
 }
 
+TEST_CASE("a log does not begin with an edit that is lost", "[store][retention]") {
+  SplitMix64 rng(8);
+  const TempFolder folder;
+  make_retention_world(folder.path(), rng, {});
+  const auto store = opened_retention_world(folder.path(), StoreAccess::read_write);
+  REQUIRE(raw_sql(folder / "world.sqlite",
+                  "DELETE FROM edit_log WHERE seq = 51; SELECT changes()") == "1");
+  const auto folded = fold_up_to(*store, 50, {});
+  REQUIRE_FALSE(folded.has_value());
+  CHECK(folded.error().where == "edit_log seq=51");
+  REQUIRE(store->log_range().has_value());
+  CHECK(store->log_head()->version.seq < 50);
+}
+
 TEST_CASE("what reads the past says that retention removed it", "[store][retention]") {
   SplitMix64 rng(7);
   const TempFolder folder;
