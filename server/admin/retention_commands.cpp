@@ -117,7 +117,11 @@ void stop_retention(const CommandCall& call) {
   const auto& action = call.services.actions.stop_retention;
   if (!action) return call.refuse(kNoRetention);
   if (!action()) return call.refuse("retention stop: none is under way");
-  call.answer("it ends after its present part; what is removed stays removed");
+  const std::uint64_t days = configured_days(call).value_or(0);
+  call.answer("it ends after its present part; what is removed stays removed" +
+              std::string(days == 0 ? ""
+                                    : "; the policy goes on in an hour, unless retention_days "
+                                      "becomes another one (`reload`)"));
 }
 
 constexpr CommandRule kLookAtRetention = needs(Right::administer);

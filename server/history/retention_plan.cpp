@@ -39,16 +39,16 @@ StoreResult<Sequence> before_actions(WorldReader& reader, Sequence head, Sequenc
   return cut;
 }
 
-/// Returns the doubt about a cut behind which the time of the log steps ahead: a clock that was wrong
-/// makes such a step, and then all edits before it look old.
-StoreResult<std::string> doubt_of(WorldReader& reader, const LogEnd& cut, std::uint64_t days) {
+/// Returns the doubt about an edit behind which the time of the log steps ahead: a clock that was wrong
+/// makes such a step, and then all edits before it look old. `old`: the newest edit that looks old.
+StoreResult<std::string> doubt_of(WorldReader& reader, const LogEnd& old, std::uint64_t days) {
   std::string doubt;
   const auto read =
-      reader.read_log(cut.version.seq + 1, cut.version.seq + 1, [&](const EditRecord& next) {
-        const TimeUs step_us = next.time_us - cut.time_us;
+      reader.read_log(old.version.seq + 1, old.version.seq + 1, [&](const EditRecord& next) {
+        const TimeUs step_us = next.time_us - old.time_us;
         if (step_us < static_cast<TimeUs>(days) * kDayUs) return false;
         doubt = "the time of the log steps ahead by " + std::to_string(step_us / kDayUs) +
-                " days, from " + removed_place(cut) + " to " + utc_text(next.time_us) +
+                " days, from " + removed_place(old) + " to " + utc_text(next.time_us) +
                 ": nobody built for so long, or the clock of the "
                 "machine was wrong";
         return false;
@@ -101,7 +101,10 @@ StoreResult<RetentionPlan> plan_retention(WorldReader& reader, std::uint64_t day
   const auto volume = reader.log_volume(*cut);
   if (!volume) return failure(volume.error());
   plan.volume = *volume;
-  auto doubt = doubt_of(reader, plan.cut, days);
+  // The cut may have moved back from it, for the sake of actions.
+  const auto old = reader.edit_at(wanted);
+  if (!old) return failure(old.error());
+  auto doubt = doubt_of(reader, old->value_or(plan.cut), days);
   if (!doubt) return failure(doubt.error());
   plan.doubt = *std::move(doubt);
   return plan;

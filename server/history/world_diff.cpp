@@ -45,6 +45,10 @@ StoreResult<Between> read_between(WorldReader& reader, Sequence from, Sequence t
   });
   if (!read) return failure(read.error());
   if (is_cancelled) return failure(cancelled(reader));
+  if (between.edits.size() != to - from) {
+    return failure(StoreError{StoreError::Kind::bad_request, reader.file(), "edit_log",
+                              "was shortened by retention while it was read; begin again"});
+  }
   return between;
 }
 

@@ -59,15 +59,18 @@ class File {
   int descriptor_;
 };
 
-Result<RlogWorld, std::string> world_of(ChunkReader& store, const LogEnd& head) {
+Result<RlogWorld, std::string> world_of(WorldReader& store, const LogEnd& head) {
   const auto has_base = store.has_base();
   if (!has_base) return failure(has_base.error().message());
+  // meta() is of the moment when the world was opened: retention may have moved materials into it.
+  const auto materials = store.materials(head.version.seq);
+  if (!materials) return failure(materials.error().message());
   const WorldMeta& meta = store.meta();
   RlogWorld world;
   world.world_id = meta.world_id;
   world.chunk_edge = meta.chunk_edge;
   world.generator = meta.generator;
-  world.materials = to_toml(meta.materials);
+  world.materials = to_toml(*materials);
   world.spawn = {meta.spawn.x, meta.spawn.y, meta.spawn.z};
   world.has_base = *has_base;
   world.head = head.version;

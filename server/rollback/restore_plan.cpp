@@ -35,9 +35,15 @@ std::vector<Difference> inside(const std::vector<Difference>& all,
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
                                               std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
-  auto stored = stored_form(reader_, key, selected.front() - 1);
-  if (!stored) return failure(stored.error());
-  return plan_from(*std::move(stored), {key, selected}, box, end);
+  // Stored form and log are read at one moment: retention moves edits from one to the other.
+  if (const auto begun = reader_.begin_reads(); !begun) return failure(begun.error());
+  auto made = [&]() -> StoreResult<RestorePlan> {
+    auto stored = stored_form(reader_, key, selected.front() - 1);
+    if (!stored) return failure(stored.error());
+    return plan_from(*std::move(stored), {key, selected}, box, end);
+  }();
+  if (const auto ended = reader_.end_reads(); !ended && made) return failure(ended.error());
+  return made;
 }
 
 void RestorePlanner::in_batches(
@@ -75,6 +81,11 @@ void RestorePlanner::in_batches(
       batch_max = batch.size() / 2;
       continue;
     }
+    if (read && !*read) {
+      if (!one_at_one_moment(batch.front(), each)) return;
+      items = items.subspan(1);
+      continue;
+    }
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const bool goes_on = each(
           batch[i], read ? std::move(stored[i]) : StoreResult<StoredForm>(failure(read.error())));
@@ -82,6 +93,15 @@ void RestorePlanner::in_batches(
     }
     items = items.subspan(batch.size());
   }
+}
+
+bool RestorePlanner::one_at_one_moment(
+    const Item& item, const std::function<bool(const Item&, StoreResult<StoredForm>)>& each) {
+  if (const auto begun = reader_.begin_reads(); !begun) return each(item, failure(begun.error()));
+  const bool goes_on = each(item, stored_form(reader_, item.key, item.selected.front() - 1));
+  // If the transaction cannot be ended, the next read fails.
+  static_cast<void>(reader_.end_reads());
+  return goes_on;
 }
 
 void RestorePlanner::plan_all(std::span<const Item> items, const std::optional<VoxelBox>& box,

@@ -3,6 +3,7 @@
 #include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
 #include "server/rollback/count_text.hpp"
+#include "server/store/removed_history.hpp"
 
 namespace runstone {
 namespace {
@@ -18,6 +19,10 @@ void RollbackPreview::compute(WorldReader& reader, const Generator& generator,
                               const SelectionFilter& filter, Sequence end, const PlanViewer& viewer,
                               const Summary& summarise) {
   const auto should_continue = [this] { return is_wanted->load(); };
+  const auto head = reader.log_head();
+  if (!head) return fail_with(head.error());
+  if (filter.first <= head->version.seq && filter.from_us <= head->time_us)
+    removed = "older edits were " + removed_up_to(*head) + ": they stay as they are";
   auto selected = select_edits(reader, filter, should_continue);
   if (!selected) return fail_with(selected.error());
   selection = std::make_shared<const Selection>(*std::move(selected));
@@ -74,7 +79,7 @@ std::string RollbackPreview::text_of_nothing() const {
                               : counted(selection->edits, "edit") +
                                     " match, but nothing of them is left: others have built there, "
                                     "or it was taken back before";
-  return "rollback preview: nothing to do: " + why;
+  return "rollback preview: nothing to do: " + why + (removed.empty() ? "" : "\n" + removed);
 }
 
 std::string RollbackPreview::text() const {
@@ -84,6 +89,7 @@ std::string RollbackPreview::text() const {
                      "): " + counted(voxels, "voxel") + " in " + counted(chunks, "chunk") +
                      " would change\n";
   text += "area " + text_of_box(*s.area()) + "\n";
+  if (!removed.empty()) text += removed + "\n";
   if (!summary.empty()) text += summary + "\n";
   text += "nothing has changed yet: `rollback apply " + id() + "` does it, `rollback cancel " +
           id() + "` forgets it";

@@ -56,7 +56,9 @@ struct RollbackPreview {
   // answered.
   std::shared_ptr<const Selection> selection;
   std::uint64_t voxels = 0, chunks = 0;  // that would change
-  std::string summary, error;            // `error` is empty if the preview could be computed
+  /// The line about edits that may match and are no longer in the log. Empty: there are none.
+  std::string removed;
+  std::string summary, error;  // `error` is empty if the preview could be computed
 
   /// Returns the id: "p1".
   std::string id() const { return "p" + std::to_string(number); }

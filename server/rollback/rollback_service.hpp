@@ -91,6 +91,8 @@ class RollbackService {
   std::size_t running() const { return jobs_.size(); }
   /// Returns true if no job runs, none waits for the disk, and none is looked for in the log.
   bool is_idle() const { return jobs_.empty() && waiting_.empty() && player_changes_.empty(); }
+  /// Returns true while a job, a search or a preview reads the log of the past.
+  bool reads_log() const { return !is_idle() || !computing_.empty(); }
 
   /// Returns a function for workers, which returns false when the server stops. It may outlive the
   /// service.

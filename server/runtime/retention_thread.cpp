@@ -51,9 +51,15 @@ RetentionThread::RetentionThread(std::string place, const Generator& generator, 
 }
 
 void RetentionThread::set_days(std::uint64_t days) {
-  const std::lock_guard guard(mutex_);
-  if (state_.days != days) state_.doubt.clear();
-  state_.days = days;
+  {
+    const std::lock_guard guard(mutex_);
+    if (state_.days == days) return;
+    state_.doubt.clear();
+    state_.days = days;
+    if (state_.is_running && !is_confirmed_) is_cancelled_ = true;
+    has_new_days_ = true;
+  }
+  changed_.notify_all();
 }
 
 bool RetentionThread::run_now(std::uint64_t days) {
@@ -111,7 +117,7 @@ bool RetentionThread::may_go_on() {
   bool has_waited = false;
   while (is_held_.load()) {
     if (!std::exchange(has_waited, true))
-      note_wait("rollbacks or undos are under way, which read the log");
+      note_wait("rollbacks, their previews or undos are under way, which read the log");
     if (!rest(pace_.pause)) return false;
   }
   if (has_waited) note_wait("");
@@ -197,12 +203,17 @@ std::optional<RetentionThread::Order> RetentionThread::await_order() {
   std::unique_lock lock(mutex_);
   const auto pause = state_.runs == 0 ? pace_.first_run : pace_.between_runs;
   for (auto due = RetentionClock::now() + pause;;) {
-    changed_.wait_until(lock, due, [this] { return stopping_ || ordered_; });
+    changed_.wait_until(lock, due, [this] { return stopping_ || ordered_ || has_new_days_; });
     if (stopping_) return std::nullopt;
+    if (std::exchange(has_new_days_, false) && !ordered_) {
+      due = RetentionClock::now() + pace_.between_runs;
+      continue;
+    }
     if (!ordered_ && state_.days > 0) ordered_ = Order{state_.days, false};
     if (ordered_) {
       const Order order = *std::exchange(ordered_, std::nullopt);
       state_.is_running = true;
+      is_confirmed_ = order.is_confirmed;
       is_cancelled_ = false;
       return order;
     }

@@ -6,7 +6,8 @@
 //     takes longer.
 //   - After each part the thread rests 9 times as long as the part took, reading included. Then the
 //     records that were queued meanwhile are on disk.
-//   - It pauses while rollbacks and undos are under way: they read the log that it would shorten.
+//   - It pauses while rollbacks, their previews and undos are under way: they read the log that it would
+//     shorten.
 //   - It removes nothing behind the checkpoint.
 //   - At the end of a run it returns free space to the disk, in small parts too.
 //   - A failure ends the run, not the server: the next run goes on where it ended.
@@ -50,7 +51,9 @@ class RetentionThread {
   RetentionThread(const RetentionThread&) = delete;
   RetentionThread& operator=(const RetentionThread&) = delete;
 
-  /// Changes the policy. A run under way goes on with its own days.
+  /// Changes the policy. Ends a run of the policy before after its present part. The first run of a new
+  /// policy begins after RetentionPace::between_runs, so that a typing error can be corrected. A run of
+  /// run_now() goes on.
   void set_days(std::uint64_t days);
   /// Begins a run now, which keeps the edits of so many days, and plans again what it removes. It does
   /// not wait for a person's word. Returns false if a run is under way.
@@ -96,6 +99,8 @@ class RetentionThread {
   std::condition_variable changed_;
   std::optional<Order> ordered_;
   RetentionState state_;
+  bool is_confirmed_ = false;  // the run under way is of run_now()
+  bool has_new_days_ = false;  // since await_order() has looked
   bool is_cancelled_ = false, stopping_ = false;
   std::thread thread_;  // starts last, because it uses the members above
 };

@@ -327,7 +327,7 @@ void ServerCore::tick() {
   const Clocks now = read_clocks();
   world_->tick(now);
   if (commands_) commands_->tick(now);
-  if (log_ && commands_) log_->retention().hold(!commands_->is_idle());
+  if (log_ && commands_) log_->retention().hold(commands_->reads_log());
   if (const auto successor = world_->cluster().take_better_owner()) hand_over_to(*successor);
 }
 
@@ -440,14 +440,19 @@ void ServerCore::reload(Result<ServerConfig, std::string> read, CommandReply rep
       return refuse(reply, "reload: " + read.error() + ": all settings stay as they were");
     }
     ConfigReload reloaded = reload_config(running_, *read);
+    const bool has_new_retention = reloaded.config.retention_days != running_.retention_days &&
+                                   reloaded.config.retention_days > 0;
     running_ = std::move(reloaded.config);
     start_logging(running_.log_level, running_.log_format);
     world_->reconfigure(world_config_of(running_, store_.meta(), port()));
     if (commands_) commands_->set_operators(running_.operators);
     if (log_) log_->retention().set_days(running_.retention_days);
     if (commands_) commands_->set_announcements(running_.announcements);
-    logger("app").info("reload: {}", reloaded.text());
-    reply(CommandAnswer::last(reloaded.text()));
+    std::string text = reloaded.text();
+    if (has_new_retention)
+      text += ". Retention begins in an hour: `retention preview` says what it removes";
+    logger("app").info("reload: {}", text);
+    reply(CommandAnswer::last(std::move(text)));
   });
 }
 

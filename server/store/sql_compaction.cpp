@@ -66,10 +66,28 @@ StoreResult<void> SqlStore::complete_base(const StoredMoment& moment) {
   return meta_table_.put_fold(snapshots_.fold_key(), *snapshot_fold);
 }
 
-StoreResult<void> SqlStore::move_head(const LogEnd& head) {
+StoreResult<void> SqlStore::check_new_beginning(Sequence last) {
+  const auto head = meta_table_.log_head();
+  if (!head) return failed(head.error());
+  const auto range = log_.range(*head);
+  if (!range) return failed(range.error());
+  if (last >= range->last.version.seq) return {};
+  auto next = database().prepare("SELECT count(*) FROM edit_log WHERE log = 0 AND seq = ?1");
+  if (!next) return failed(next.error());
+  const sql::ResetAtEnd reset_at_end(*next);
+  const auto row = next->bind(1, static_cast<std::int64_t>(last + 1)).step();
+  if (!row) return failed(row.error());
+  if (next->integer(0) != 0) return {};
+  return failure(StoreError{StoreError::Kind::corrupt, file(),
+                            "edit_log seq=" + std::to_string(last + 1),
+                            "is missing, so the log cannot begin with it"});
+}
+
+StoreResult<void> SqlStore::move_head(const LogEnd& head, bool lacks_none) {
   const Sequence last = head.version.seq;
   const auto counts = meta_table_.row_counts();  // before the head moves
   if (!counts) return failed(counts.error());
+  if (auto there = check_new_beginning(last); !there) return there;
   if (auto put = meta_table_.put_log_head(head); !put) return put;
   auto eras = meta_table_.log_eras();
   if (!eras) return failed(eras.error());
@@ -87,7 +105,7 @@ StoreResult<void> SqlStore::move_head(const LogEnd& head) {
   counted.head = last;
   counted.keyframes -= std::min(counted.keyframes, *keyframes);
   counted.segments -= std::min(counted.segments, *segments);
-  if (counted.lost_edits > 0) {
+  if (counted.lost_edits > 0 && !lacks_none) {
     const auto lost = count_lost_edits();
     if (!lost) return failed(lost.error());
     counted.lost_edits = std::min(counted.lost_edits, *lost);
@@ -121,7 +139,7 @@ StoreResult<void> SqlStore::compact(Sequence keyframe) {
     auto kept_materials = keep_materials(keyframe);
     if (!kept_materials) return failed(kept_materials.error());
     materials = *std::move(kept_materials);
-    return move_head(moment->at);
+    return move_head(moment->at, false);
   });
   segments_.forget();
   if (compacted) meta_.materials = std::move(materials);
@@ -186,7 +204,7 @@ StoreResult<void> SqlStore::fold_log(const LogFold& fold) {
     if (*has_materials) {
       if (const auto kept = keep_materials(last); !kept) return failed(kept.error());
     }
-    return move_head(fold.to);
+    return move_head(fold.to, true);  // check_fold_chunks() has read them
   });
 }
 

@@ -202,9 +202,13 @@ class SqlStore final : public Store {
   /// Checks that the chunks of a fold are those that its edits touch. Returns true if an edit changes
   /// the material table.
   StoreResult<bool> check_fold_chunks(const LogFold& fold, const LogRange& range);
+  /// Fails (corrupt) if the log has edits behind `last` and lacks the first of them. Nothing could read
+  /// a log that begins with a lost edit.
+  StoreResult<void> check_new_beginning(Sequence last);
   /// Moves the head of the log, in the caller's transaction, and deletes what lies up to there:
-  /// edits, eras, segments and keyframes.
-  StoreResult<void> move_head(const LogEnd& head);
+  /// edits, eras, segments and keyframes. `lacks_none`: the log has each of these edits, so no lost
+  /// edit is counted again, which would cost O(edits of the log).
+  StoreResult<void> move_head(const LogEnd& head, bool lacks_none);
   /// Calls `each` for the records of this cause that compactions kept, then for those of the log.
   StoreResult<void> read_kept(Cause cause, const EachRecord& each);
   /// Copies the records of this cause that the log holds up to `last` to the table of those that

@@ -11,6 +11,7 @@
 
 #include "server/history/moments.hpp"
 #include "server/history/retention_plan.hpp"
+#include "server/rollback/rollback_preview.hpp"
 #include "tests/support/core/temp_folder.hpp"
 #include "tests/support/edits/builder_session.hpp"
 #include "tests/support/sql/power_loss_vfs.hpp"
@@ -176,6 +177,20 @@ TEST_CASE("nothing behind the checkpoint is folded", "[store][retention]") {
   CHECK(done.error().what == "lies outside the log, or behind the checkpoint seq=0");
 }
 
+TEST_CASE("a log does not begin with an edit that is lost", "[store][retention]") {
+  SplitMix64 rng(8);
+  const TempFolder folder;
+  make_retention_world(folder.path(), rng, {});
+  const auto store = opened_retention_world(folder.path(), StoreAccess::read_write);
+  REQUIRE(raw_sql(folder / "world.sqlite",
+                  "DELETE FROM edit_log WHERE seq = 51; SELECT changes()") == "1");
+  const auto folded = fold_up_to(*store, 50, {});
+  REQUIRE_FALSE(folded.has_value());
+  CHECK(folded.error().where == "edit_log seq=51");
+  REQUIRE(store->log_range().has_value());
+  CHECK(store->log_head()->version.seq < 50);
+}
+
 TEST_CASE("what reads the past says that retention removed it", "[store][retention]") {
   SplitMix64 rng(7);
   const TempFolder folder;
@@ -189,6 +204,27 @@ TEST_CASE("what reads the past says that retention removed it", "[store][retenti
         "begins at seq=51: what was before that time was removed by retention up to seq=50 "
         "(2023-11-17T00:13:20Z)");
   CHECK(*store->sequence_at(retention_time(50)) == 50);
+}
+
+TEST_CASE("a preview of a rollback says which edits retention removed", "[rollback][retention]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  make_retention_world(folder.path(), rng, {40});
+  const auto store = opened_retention_world(folder.path(), StoreAccess::read_write);
+  REQUIRE(fold_up_to(*store, 50, {}).has_value());
+  const auto generator = retention_generator(*store);
+  const auto removed_in = [&](const SelectionFilter& filter) {
+    RollbackPreview preview;
+    preview.compute(*store, *generator, filter, kRetentionEdits, {}, {});
+    CHECK(preview.error.empty());
+    CHECK((preview.is_empty() ? preview.text_of_nothing() : preview.text()).find(preview.removed) !=
+          std::string::npos);
+    return preview.removed;
+  };
+  SelectionFilter filter;
+  CHECK(removed_in(filter).find("older edits were removed by retention up to seq=50 (") == 0);
+  filter.from_us = retention_time(51);
+  CHECK(removed_in(filter).empty());
 }
 
 TEST_CASE("a moment that was opened before goes on while the log is folded", "[store][retention]") {

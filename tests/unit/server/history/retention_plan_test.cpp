@@ -114,6 +114,18 @@ TEST_CASE("a step of the time that is as long as the policy waits for a person",
   CHECK(plan_retention(*store, 500, records.back().time_us)->removes_nothing());
 }
 
+TEST_CASE("a step of the time inside of an action waits for a person, too", "[retention]") {
+  auto records = hourly_records(20);
+  for (std::size_t i = 10; i < 20; ++i) records[i].time_us += 400 * kRetentionDay;
+  records[10].subject = 8;  // 11 belongs to the action that began with 8, before the step
+  const TempFolder folder;
+  const auto store = world_of(folder.path(), records);
+  const auto plan = plan_retention(*store, 30, records.back().time_us);
+  REQUIRE(plan.has_value());
+  CHECK(plan->cut.version.seq == 7);
+  CHECK(plan->doubt.find("the time of the log steps ahead by 400 days, from seq=10 ") == 0);
+}
+
 TEST_CASE("edits that a wrong clock dated into the future stay until their era is old",
           "[retention][clock]") {
   auto records = hourly_records(60);

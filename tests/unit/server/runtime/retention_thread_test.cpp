@@ -95,6 +95,37 @@ TEST_CASE("a run waits while it is held, and ends when it is cancelled", "[serve
   CHECK(bench.stopped_head() == 0);
 }
 
+TEST_CASE("new days end a run of the policy, and the next one does not begin at once",
+          "[server][retention]") {
+  RetentionBench bench;
+  bench.begin(
+      2, {0, std::chrono::milliseconds(500), std::chrono::hours(24), std::chrono::milliseconds(5)});
+  bench.retention->hold(true);
+  bench.await([](const RetentionState& state) { return !state.waits_for.empty(); });
+  bench.retention->set_days(1);
+  bench.await([](const RetentionState& state) { return state.runs == 1; });
+  bench.retention->hold(false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  CHECK_FALSE(bench.retention->state().is_running);
+  CHECK(bench.retention->state().days == 1);
+  // An order of a person does not wait.
+  REQUIRE(bench.retention->run_now(3));
+  bench.await([](const RetentionState& state) { return state.runs == 2; });
+  CHECK(bench.stopped_head() == 48);
+}
+
+TEST_CASE("new days do not end a run that a person ordered", "[server][retention]") {
+  RetentionBench bench;
+  bench.begin(0, kQuick);
+  bench.retention->hold(true);
+  REQUIRE(bench.retention->run_now(2));
+  bench.await([](const RetentionState& state) { return !state.waits_for.empty(); });
+  bench.retention->set_days(1);
+  bench.retention->hold(false);
+  bench.await([](const RetentionState& state) { return state.runs == 1; });
+  CHECK(bench.stopped_head() == 72);
+}
+
 TEST_CASE("records are written between the parts of a run", "[server][retention]") {
   RetentionBench bench;
   bench.begin(0, {9, std::chrono::hours(24), std::chrono::hours(24), std::chrono::milliseconds(5)});
