@@ -1,6 +1,7 @@
 #include "common/rights/change_rules.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace runstone {
 namespace {
@@ -81,6 +82,11 @@ class Outlook {
 bool is_wide(const AddressRange& range) {
   const bool is_v4 = range.bits >= 32 && static_cast<std::uint64_t>(range.first) >> 32 == 0xffff;
   return range.bits < (is_v4 ? 32 + 24 : 48);
+}
+
+/// Returns the role that counts for a player when no role for some time does.
+const Role& lasting_role_of(const RightsState& state, const PublicKey& key) {
+  return state.role_of(key, std::numeric_limits<TimeUs>::max());
 }
 
 /// Checks one change of one actor.
@@ -374,8 +380,14 @@ class ChangeCheck {
     if (actor_.key == target)
       return "You cannot do this to yourself: another administrator can, or the host at the console.";
     if (has_all_ || rights_.has(Right::administer)) return std::nullopt;
-    const RightSet theirs = state_.role_of(target, now_us_).rights;
-    if (rights_.includes(theirs) && theirs != rights_) return std::nullopt;
+    // A role for some time protects nobody less than the role that counts again afterwards.
+    const auto has_fewer = [this](RightSet theirs) {
+      return rights_.includes(theirs) && theirs != rights_;
+    };
+    if (has_fewer(state_.role_of(target, now_us_).rights) &&
+        has_fewer(lasting_role_of(state_, target).rights)) {
+      return std::nullopt;
+    }
     return "You can do this only to players who have fewer rights than you: ask an administrator, or "
            "the host.";
   }
@@ -396,7 +408,8 @@ class ChangeCheck {
 /// Returns true if the change may take the right `administer` from a key.
 bool may_take_administer(const RightsState& state, const RightsChange& change, TimeUs now_us) {
   const auto administers = [&](const PublicKey& key) {
-    return state.role_of(key, now_us).rights.has(Right::administer);
+    return state.role_of(key, now_us).rights.has(Right::administer) ||
+           lasting_role_of(state, key).rights.has(Right::administer);
   };
   if (const auto* grant = std::get_if<GrantRole>(&change)) return administers(grant->key);
   if (const auto* restricted = std::get_if<Restrict>(&change)) {

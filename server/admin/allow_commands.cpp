@@ -84,6 +84,10 @@ class AllowImport : public std::enable_shared_from_this<AllowImport> {
     const auto grant = call_.rights().grants().find(key);
     if (grant != call_.rights().grants().end())
       return note(entry, known_, "already there: the player has the role " + grant->second.value);
+    if (const auto* timed = call_.rights().timed_grant(key, call_.rights_time()))
+      return note(entry, refused_,
+                  "refused: the player has the role " + timed->value.role +
+                      " for some time, which this would end (grant does it)");
     if (call_.rights().restriction(RestrictionKind::ban, key, call_.rights_time()) != nullptr)
       return note(entry, refused_, "refused: the player is banned (unban lifts it)");
     const auto seq = change(GrantRole{key, command_.role});

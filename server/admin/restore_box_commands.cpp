@@ -1,11 +1,16 @@
 #include "server/admin/restore_box_commands.hpp"
 
 #include <array>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "common/core/utc_text.hpp"
+#include "common/formats/material_match.hpp"
 #include "common/rights/protected_box.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/place_words.hpp"
@@ -56,6 +61,12 @@ Result<FileBuild, std::string> read_box(WorldReader& reader, const Generator& ge
                   [&](std::uint64_t, std::uint64_t) { return should_continue(); });
 }
 
+/// Returns what tells restored materials apart: place_build() goes by names, and a material may have got
+/// a shape since the backup. It is empty for an empty material.
+std::string restored_name(const BuildMaterial& material) {
+  return material.row.visibility == Visibility::empty ? "" : world_name_of(material);
+}
+
 /// Returns how many cells of two builds with the same cuts differ. Cost: O(cells log runs) for the
 /// sections that are not the same.
 std::uint64_t differing_cells(const FileBuild& then, const FileBuild& now) {
@@ -63,10 +74,12 @@ std::uint64_t differing_cells(const FileBuild& then, const FileBuild& now) {
   std::vector<std::int32_t> numbers(then.materials.size() + 1, kNone);  // by number then
   numbers[0] = 0;
   bool is_same_palette = then.materials.size() == now.materials.size();
+  std::map<std::string, std::int32_t> now_numbers;  // by name
+  for (std::size_t j = 0; j < now.materials.size(); ++j)
+    now_numbers.emplace(restored_name(now.materials[j]), static_cast<std::int32_t>(j + 1));
   for (std::size_t i = 0; i < then.materials.size(); ++i) {
-    for (std::size_t j = 0; j < now.materials.size(); ++j) {
-      if (then.materials[i] == now.materials[j]) numbers[i + 1] = static_cast<std::int32_t>(j + 1);
-    }
+    const auto found = now_numbers.find(restored_name(then.materials[i]));
+    if (found != now_numbers.end()) numbers[i + 1] = found->second;
     is_same_palette = is_same_palette && numbers[i + 1] == static_cast<std::int32_t>(i + 1);
   }
   std::uint64_t count = 0;
@@ -100,18 +113,28 @@ std::uint64_t differing_cells(const FileBuild& then, const FileBuild& now) {
 Result<BackupBox, std::string> read_backup_box(WorldReader& live, const Generator& generator,
                                                const RestoreBoxCommand& wanted, Sequence durable,
                                                const ShouldContinue& should_continue) {
+  const std::string place = place_name(wanted.backup);  // without a password
+  // To open a FIFO would hold up this worker for ever.
+  std::error_code unreadable;
+  const std::string file = wanted.backup + "/world.sqlite";
+  if (!is_database(wanted.backup) && std::filesystem::exists(file, unreadable) &&
+      !std::filesystem::is_regular_file(file, unreadable))
+    return failure(file + ": is no regular file");
   const auto opened = open_world(wanted.backup, StoreAccess::read_only);
   if (!opened) return failure(opened.error().message());
   Store& backup = **opened;
   if (backup.meta().world_id != live.meta().world_id)
-    return failure(wanted.backup + ": is a backup of another world");
+    return failure(place + ": is a backup of another world");
+  if (backup.meta().chunk_edge != live.meta().chunk_edge ||
+      backup.meta().generator != live.meta().generator)
+    return failure(place + ": has the id of this world, but other chunks or another generator");
   const NamedMoment moment =
       wanted.at_us ? NamedMoment(AtTime{*wanted.at_us}) : NamedMoment(BeforeEnd{0});
   const auto at = sequence_of(backup, moment);
   if (!at) return failure(at.error().message());
   BackupBox out;
   auto then = read_box(backup, generator, *at, wanted.box, out.end, should_continue);
-  if (!then) return failure(wanted.backup + ": " + then.error());
+  if (!then) return failure(place + ": " + then.error());
   LogEnd ignored;
   const auto now = read_box(live, generator, durable, wanted.box, ignored, should_continue);
   if (!now) return failure(now.error());
@@ -132,9 +155,14 @@ void place_backup_box(const CommandCall& call, const RestoreBoxCommand& wanted,
   const std::string what = place + " would become as it was in the backup " + moment + ": " +
                            counted(box.differing, "voxel") +
                            " would change, also where players have built since";
-  if (call.refuse_unless_confirmed(what)) return;
+  const std::size_t missing =
+      match_by_name(box.then->materials, call.world().order().materials()).missing.size();
+  const std::string added =
+      missing == 0 ? "" : "; this world would get " + counted(missing, "material") + " for ever";
+  if (call.refuse_unless_confirmed(what + added)) return;
   PlaceWords words;
   words.at = wanted.box.min;
+  words.missing = MissingMaterials::added;
   place_build(call, "restore-box", place, box.then, words);
 }
 

@@ -1,6 +1,7 @@
 #include "server/chat/chat_log.hpp"
 
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -134,10 +135,7 @@ void ChatLog::carry_out(Work& work) {
       missing_ += work.lines.size();
     }
   }
-  for (const Withdrawal& each : work.withdrawals) {
-    static_cast<void>(with_database(
-        [&](ChatDatabase& database) { return database.withdraw(each.key, each.times); }));
-  }
+  carry_out(std::move(work.withdrawals));
   for (const Search& search : work.searches) {
     Found found = std::vector<ChatEntry>();
     const bool is_read = with_database([&](ChatDatabase& database) -> sql::Result<void> {
@@ -147,6 +145,35 @@ void ChatLog::carry_out(Work& work) {
       return {};
     });
     search.done(is_read ? found : Found(failure(file_ + ": " + failure_)));
+  }
+}
+
+void ChatLog::carry_out(std::vector<Withdrawal>&& withdrawals) {
+  std::vector<Withdrawal> left;
+  for (Withdrawal& each : withdrawals) {
+    const bool is_written = with_database(
+        [&](ChatDatabase& database) { return database.withdraw(each.key, each.times); });
+    if (!is_written) left.push_back(std::move(each));
+  }
+  if (left.empty()) return;
+  written_ = Clock::now();  // the next attempt waits as long as a commit
+  std::size_t lost = 0;
+  {
+    const std::lock_guard guard(mutex_);
+    // A stop does not wait until the disk has space.
+    if (stopping_) {
+      lost = left.size();
+    } else {
+      left.insert(left.end(), std::make_move_iterator(waiting_.withdrawals.begin()),
+                  std::make_move_iterator(waiting_.withdrawals.end()));
+      waiting_.withdrawals = std::move(left);
+    }
+  }
+  if (lost != 0) {
+    on_warning_(
+        "the log of the chat could not mark lines as withdrawn: players get them again "
+        "after the restart (" +
+        file_ + ": " + failure_ + ")");
   }
 }
 

@@ -321,12 +321,16 @@ const OwnGround* RollbackService::own_ground(const std::string& id, AuthorId aut
   return preview == nullptr ? nullptr : &*preview->own;
 }
 
+bool RollbackService::has_own_job(AuthorId author) const {
+  return std::ranges::any_of(jobs_, [&](const auto& job) {
+    return !job->player_change_of && job->job.order().payer == author;
+  });
+}
+
 void RollbackService::apply(const std::string& id, AuthorId author, CommandReply reply,
                             Scope scope) {
-  const bool is_busy = scope == Scope::own && std::ranges::any_of(jobs_, [&](const auto& job) {
-                         return !job->player_change_of && job->job.order().payer == author;
-                       });
-  if (is_busy) return refuse(reply, "rollback apply: one of yours is still under way");
+  if (scope == Scope::own && has_own_job(author))
+    return refuse(reply, "rollback apply: one of yours is still under way");
   RollbackPreview* const preview = find_preview(id, author, scope);
   if (preview == nullptr) {
     return refuse(reply,
@@ -423,6 +427,8 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
           if (*is_foreign)
             return refuse(reply, "rollback undo: " + std::to_string(seq) + " is not one of yours");
           if (!*found) return refuse(reply, "rollback undo: " + found->error().message());
+          if (scope == Scope::own && has_own_job(author))
+            return refuse(reply, "rollback undo: one of yours is still under way");
           RestoreOrder order;
           order.author = author;
           order.payer = scope == Scope::own ? author : 0;

@@ -159,6 +159,8 @@ class RollbackService {
   /// players with the right.
   bool make_room_for_own(AuthorId author);
   void discard(std::uint64_t number);
+  /// Returns true if a rollback that this player pays for, or the undo of one, is being applied.
+  bool has_own_job(AuthorId author) const;
   ClientInstance new_instance();
   WorldServer& world_;
   Workers& workers_;

@@ -54,7 +54,7 @@ struct WorldServer::Rooms {
   TextureSending textures;
   SavedState saved;     // what was queued last for the store, or was there at the start
   TimeUs saved_us = 0;  // when save_state() was called last; steady clock
-  std::optional<WorldPos> set_spawn;  // since the start
+  std::optional<WorldPos> set_spawn;  // since the start, or since another server owned the world
 };
 
 namespace {
@@ -319,6 +319,8 @@ void WorldServer::tick(const Clocks& now) {
     ground.rights_changed({});
     if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
   }
+  // Another server may set the spawn now. A state that this one saves later must not set it back.
+  if (cluster.is_following()) rooms_->set_spawn.reset();
   people.forget_gone_authors();
   people.close_silent(now);
   cluster.check_connections(now);

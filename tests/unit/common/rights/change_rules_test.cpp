@@ -184,6 +184,22 @@ TEST_CASE("the last administrator stays, whoever asks", "[rights]") {
   CHECK(world.why(kConsole, GrantRole{kChief, kBuilderRole}) == last);
 }
 
+TEST_CASE("a lower role for some time takes no protection from a player", "[rights]") {
+  RulesWorld world;
+  world.make(GrantRole{kChief, kAdministratorRole});
+  world.make(GrantRole{kRoot, kVisitorRole, 100});
+  // The role of an administrator counts again at 100.
+  CHECK_FALSE(world.allows(player(kGranter), GrantRole{kRoot, kBuilderRole}));
+  CHECK_FALSE(world.allows(player(kMod), Restrict{RestrictionKind::ban, kRoot, 0, ""}));
+  // Without it kRoot would be the last administrator, who must stay.
+  world.make(GrantRole{kChief, kBuilderRole});
+  CHECK_FALSE(world.allows(kConsole, GrantRole{kRoot, ""}));
+  CHECK_FALSE(world.allows(kConsole, Restrict{RestrictionKind::ban, kRoot, 0, ""}));
+  // A higher role for some time protects while it is in force.
+  world.make(GrantRole{kMason, kAdministratorRole, 100});
+  CHECK_FALSE(world.allows(player(kMod), Restrict{RestrictionKind::mute, kMason, 0, ""}));
+}
+
 TEST_CASE("the default role and a changed role can hold the last administrators", "[rights]") {
   RulesWorld world;
   Role all{"all", RightSet::all(), 0, 0, 0};

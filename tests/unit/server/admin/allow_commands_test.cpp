@@ -150,6 +150,17 @@ TEST_CASE("a long list is taken in parts, and a banned player is refused", "[adm
   CHECK(bench.bench.server.rights().state().grants().size() == AllowBench::kFriends);
 }
 
+TEST_CASE("a list ends no role for some time", "[admin][allow]") {
+  AllowBench bench;
+  const PublicKey key = AllowBench::key_of(1);
+  const TimeUs until_us = bench.bench.now().utc_us + 3'600'000'000;
+  REQUIRE(bench.bench.server.changes().change_rights(GrantRole{key, "moderator", until_us}, {}, 0,
+                                                     bench.bench.now()));
+  const std::string answer = bench.import("ana\n").text;
+  CHECK(contains(answer, "\nline 1 ana: refused: the player has the role moderator for some time"));
+  CHECK(bench.bench.server.rights().state().timed_grants().contains(key));
+}
+
 TEST_CASE("only the console and control import lists, and powers are asked for", "[admin][allow]") {
   AllowBench bench;
   const PublicKey key = AllowBench::key_of(1);

@@ -80,7 +80,17 @@ TEST_CASE("the owner of ground takes edits of others back there, and nothing bes
 
   const std::string id = std::to_string(newest.version.seq);
   CHECK(contains(bench.player(kGriefer, "rollback undo " + id).text, "is not one of yours"));
-  CHECK(bench.player(kBuilder, "rollback undo " + id).is_ok);
+  // Of two undos at once the second one is refused.
+  bench.answers.clear();
+  for (int i = 0; i < 2; ++i) {
+    const CommandCaller caller{kBuilder, {OwnGroundBench::key_of(kBuilder), false}};
+    give_command({bench.services, caller, bench.bench.now(), bench.reply()}, "rollback undo " + id);
+  }
+  REQUIRE(bench.work());
+  REQUIRE(bench.work());
+  CHECK(bench.answer().text == "rollback undo: one of yours is still under way");
+  bench.run_all();
+  CHECK(bench.answer().is_ok);
   CHECK(bench.at({3, 0, 0}) == 3);
 }
 

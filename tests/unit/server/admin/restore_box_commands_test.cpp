@@ -1,7 +1,10 @@
 // The command that makes a box of the running world as it was in a backup.
 #include "server/admin/restore_box_commands.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <string>
 
 #include "common/core/utc_text.hpp"
@@ -101,6 +104,17 @@ TEST_CASE("bad backups, boxes and callers are refused with words", "[admin][back
   CHECK(
       contains(bench.give({}, "restore-box " + (bench.backups / "other") + " box 0 0 0 1 1 1").text,
                "is a backup of another world"));
+  meta = sample_meta();
+  meta.chunk_edge = meta.chunk_edge == 16 ? 32 : 16;
+  REQUIRE(create_world(bench.backups / "edges", meta).has_value());
+  CHECK(
+      contains(bench.give({}, "restore-box " + (bench.backups / "edges") + " box 0 0 0 1 1 1").text,
+               "has the id of this world, but other chunks"));
+  std::filesystem::create_directory(bench.backups / "fifo");
+  REQUIRE(::mkfifo((bench.backups / "fifo/world.sqlite").c_str(), 0600) == 0);
+  CHECK(
+      contains(bench.give({}, "restore-box " + (bench.backups / "fifo") + " box 0 0 0 1 1 1").text,
+               "is no regular file"));
   const PublicKey key = key_pair_of(seed_of(kBuilder)).public_key;
   CHECK_FALSE(
       bench.give({kBuilder, {key, true}}, "restore-box " + bench.backup + " box 0 0 0 1 1 1")

@@ -299,6 +299,27 @@ TEST_CASE("on a full disk lines are not logged, and later ones are when there is
   bench.log.reset();
 }
 
+TEST_CASE("on a full disk lines are withdrawn when there is space", "[chat]") {
+  FullDiskVfs disk;
+  LogBench bench;
+  const ChatEntry entry = entry_by(1, "rude");
+  bench.log->append(entry);
+  CHECK(bench.texts().size() == 1);
+  disk.fill();
+  bench.log->withdraw(entry.key, {entry.line.utc_us});
+  static_cast<void>(bench.find({}));  // the withdrawal is tried before
+  disk.make_room();
+  bool is_withdrawn = false;
+  while (!is_withdrawn) {
+    const auto found = bench.find({});
+    REQUIRE(found.has_value());
+    REQUIRE(found->size() == 1);
+    is_withdrawn = found->front().is_withdrawn;
+  }
+  CHECK(bench.warnings().empty());
+  bench.log.reset();
+}
+
 TEST_CASE("a file that cannot be opened is a warning, and searches say why", "[chat]") {
   LogBench bench;
   bench.log.reset();

@@ -160,6 +160,22 @@ TEST_CASE(
   check_once(bench, author, 6);
 }
 
+TEST_CASE("a former owner that owns the world again does not save the spawn that it set before",
+          "[world][servers]") {
+  ClusterBench bench(1);
+  bench.join(0, 1, 1);
+  bench.world(0).set_spawn({1, 2, 3}, bench.now());
+  REQUIRE_FALSE(bench.environment(0).states.empty());
+  CHECK(bench.environment(0).states.back().spawn == WorldPos{1, 2, 3});
+  begin_handover(bench, 1);
+  end_handover(bench, 1);
+  bench.world(1).set_spawn({4, 5, 6}, bench.now());
+  begin_handover(bench, 0);
+  end_handover(bench, 0);
+  bench.world(0).save_state(bench.now());
+  CHECK(bench.environment(0).states.back().spawn == std::nullopt);
+}
+
 TEST_CASE("an owner refuses to hand the world over when nobody can take it, and says why",
           "[world][servers]") {
   ClusterBench alone(0);
