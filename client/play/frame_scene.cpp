@@ -9,6 +9,7 @@
 #include "client/display/player_body.hpp"
 #include "client/far/far_reach.hpp"
 #include "common/materials/liquids.hpp"
+#include "common/mesh/shapes/liquid_steps.hpp"
 
 namespace runstone {
 namespace {

@@ -55,12 +55,7 @@ if(has_client)
     endif()
   endforeach()
   foreach(program ${WORK}/build/example-join-and-edit ${WORK}/join_and_edit)
-    file(REMOVE_RECURSE ${WORK}/world ${WORK}/port)
-    run(bash -c "'${BUILD}/bin/runstone-server' --world '${WORK}/world' --create --generator flat --listen 127.0.0.1:0 \
-      --port-file '${WORK}/port' > /dev/null 2>&1 & server=$!
-      for i in $(seq 200); do [ -s '${WORK}/port' ] && break; sleep 0.1; done
-      timeout 60 '${program}' 127.0.0.1:$(cat '${WORK}/port'); result=$?
-      kill $server; wait $server; exit $result")
+    run(${CMAKE_CURRENT_LIST_DIR}/join_server.sh ${BUILD}/bin/runstone-server ${program} ${WORK})
     expect("quads" "the edit is number ")
   endforeach()
 endif()

@@ -1,8 +1,7 @@
-#include "common/mesh_materials/mesh_materials_of.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "client/body/body_materials.hpp"
+#include "common/mesh_materials/mesh_materials_of.hpp"
 
 namespace runstone::test {
 
