@@ -282,17 +282,24 @@ Result<WorldClient, std::string> WorldClient::connect(WorldClientOptions options
 
 WorldClient::WorldClient(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-WorldClient::~WorldClient() {
-  if (state_) close();
-}
+WorldClient::~WorldClient() { close_if_any(); }
 
 WorldClient::WorldClient(WorldClient&&) noexcept = default;
 
 WorldClient& WorldClient::operator=(WorldClient&& other) noexcept {
   if (this == &other) return *this;
-  if (state_) close();
+  close_if_any();
   state_ = std::move(other.state_);
   return *this;
+}
+
+void WorldClient::close_if_any() noexcept {
+  if (!state_) return;
+  try {
+    close();
+  } catch (const std::exception&) {
+    // Memory ran out before the goodbye. The threads end with the state.
+  }
 }
 
 void WorldClient::step() {

@@ -183,6 +183,7 @@ class WorldClient {
  private:
   struct State;
   explicit WorldClient(std::unique_ptr<State> state);
+  void close_if_any() noexcept;
   std::unique_ptr<State> state_;
 };
 
