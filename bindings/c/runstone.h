@@ -651,8 +651,8 @@ RUNSTONE_API runstone_status runstone_client_wait(runstone_client* client, uint3
  * sizeof(runstone_event), and their number to *count. Events that do not fit are kept, so a program
  * calls again while *count is the capacity. At most `chunks_max` of them are new chunks that
  * changed, the most important ones; the others stay outdated until a later call. Events that were
- * kept come first, whatever `chunks_max` is then. Events are named by
- * their index until the next call. Requires a capacity of at least 1. */
+ * kept come first, whatever `chunks_max` is then. Events are named by their index until the next
+ * call. Requires a capacity of at least 1. */
 RUNSTONE_API runstone_status runstone_client_drain(runstone_client* client, size_t chunks_max,
                                                    runstone_event* out, size_t event_size,
                                                    size_t capacity, size_t* count);
@@ -692,10 +692,10 @@ RUNSTONE_API runstone_status runstone_client_place(runstone_client* client, runs
 RUNSTONE_API runstone_status runstone_client_set_view(runstone_client* client, uint32_t radius,
                                                       uint32_t radius_vertical);
 /* Shows edit `index` of a list at once and sends it. An event tells the outcome of the edit with
- * this `number`, also after a lost connection, unless the client ends before. Edits with one action are undone as one: pass
- * RUNSTONE_NEW_ACTION with the first, and the number of the first with the others; with 0 the edit
- * is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of the player does not
- * suffice yet. `number` may be NULL. */
+ * this `number`, also after a lost connection, unless the client ends before. Edits with one action
+ * are undone as one: pass RUNSTONE_NEW_ACTION with the first, and the number of the first with the
+ * others; with 0 the edit is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of
+ * the player does not suffice yet. `number` may be NULL. */
 RUNSTONE_API runstone_status runstone_client_submit(runstone_client* client,
                                                     const runstone_edits* edits, size_t index,
                                                     uint64_t action, uint64_t* number);
