@@ -212,12 +212,12 @@ runstone_status runstone_client_mesh(runstone_client* client, size_t index, runs
   return answer([&] {
     const MeshSource& source = source_at(client, index);
     runstone_mesh& made = live(mesh, "mesh");
-    // The chunks have no handles, so that the next runstone_mesh_update() makes the mesh anew.
-    made.of_chunk = 0;
-    made.has_occlusion = false;
     const auto materials = client->client.mesh_materials();
-    with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
-      mesh_chunk(*source.chunk, source.beside(), {}, *materials, scratch, made.quads);
+    // The chunks have no handles, so that the next runstone_mesh_update() makes the mesh anew.
+    made.change_quads([&] {
+      with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
+        mesh_chunk(*source.chunk, source.beside(), {}, *materials, scratch, made.quads);
+      });
     });
     made.materials = materials;
   });

@@ -8,6 +8,7 @@
 
 #include "bindings/c/handle.hpp"
 #include "client/api/world_client.hpp"
+#include "common/core/text.hpp"
 
 struct runstone_client : runstone::c_interface::Handle<0x746e6c63> {
   explicit runstone_client(runstone::WorldClient of) : client(std::move(of)) {}
@@ -22,10 +23,10 @@ namespace runstone::c_interface {
 /// Refuses a call with the words of the client.
 [[noreturn]] void refuse_as(const ClientRefusal& refusal);
 
-/// Copies a text to a field, cut to its size, with a zero at the end.
+/// Copies a text in UTF-8 to a field, cut to its size between two characters, with a zero at the end.
 template <std::size_t kSize>
 void write_text(const std::string& from, char (&out)[kSize]) {
-  out[from.copy(out, kSize - 1)] = '\0';
+  out[cut_utf8(from, kSize - 1).copy(out, kSize - 1)] = '\0';
 }
 
 }  // namespace runstone::c_interface

@@ -102,11 +102,11 @@ void note_made_of(runstone_mesh& mesh, const MeshInput& in) {
 }
 
 void make_whole(runstone_mesh& mesh, const MeshInput& in) {
-  mesh.of_chunk = 0;  // so that a mesh that memory ran out for is made anew
-  mesh.has_occlusion = false;
-  with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
-    mesh_chunk(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials, scratch,
-               mesh.quads);
+  mesh.change_quads([&] {
+    with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
+      mesh_chunk(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials, scratch,
+                 mesh.quads);
+    });
   });
 }
 
@@ -146,10 +146,12 @@ runstone_status runstone_mesh_update(runstone_mesh* mesh, const runstone_chunk* 
     if (!outdated) {
       make_whole(made, in);
     } else if (outdated->any()) {
-      made.of_chunk = 0;
-      in_part = with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
-        return mesh_chunk_layers(in.chunk.runs, in.neighbours, in.borders, *in.visibility.materials,
-                                 outdated->inside, outdated->beyond, scratch, made.quads);
+      in_part = made.change_quads([&] {
+        return with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
+          return mesh_chunk_layers(in.chunk.runs, in.neighbours, in.borders,
+                                   *in.visibility.materials, outdated->inside, outdated->beyond,
+                                   scratch, made.quads);
+        });
       });
     }
     note_made_of(made, in);

@@ -18,4 +18,20 @@ struct runstone_mesh : runstone::c_interface::Handle<0x6873656d> {
   /// By pass. Valid if the mesh has occlusion: its quads are then these, and not `quads`.
   std::array<runstone::OccludedQuads, 2> occluded;
   bool has_occlusion = false;
+
+  /// Does `work`, which changes the quads. If it throws, the mesh becomes empty, and the next update
+  /// makes it anew: half of it could name faces of shapes that `materials` does not have.
+  template <class F>
+  auto change_quads(F&& work) {
+    of_chunk = 0;
+    has_occlusion = false;
+    try {
+      return work();
+    } catch (...) {
+      quads.opaque = {};
+      quads.transparent = {};
+      quads.shapes.clear();
+      throw;
+    }
+  }
 };

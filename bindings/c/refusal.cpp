@@ -9,13 +9,24 @@ namespace {
 
 thread_local std::array<char, 256> words{};
 
+/// Removes the last character of full words unless it is one byte, because it may lack its end.
+void cut_last_character() {
+  std::size_t end = words.size() - 1;
+  const auto is_ascii = [&] { return static_cast<unsigned char>(words[end - 1]) < 0x80; };
+  if (is_ascii()) return;
+  while (end > 1 && (static_cast<unsigned char>(words[end - 1]) & 0xc0) == 0x80) --end;
+  if (!is_ascii()) --end;  // the first byte of the character
+  words[end] = '\0';
+}
+
 }  // namespace
 
 runstone_status keep_words(runstone_status status, const char* format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  std::vsnprintf(words.data(), words.size(), format, arguments);
+  const int bytes = std::vsnprintf(words.data(), words.size(), format, arguments);
   va_end(arguments);
+  if (bytes >= static_cast<int>(words.size())) cut_last_character();
   return status;
 }
 

@@ -490,7 +490,8 @@ RUNSTONE_API runstone_status runstone_chunk_boxes(const runstone_chunk* chunk, c
  * chunks that they name: no mesh is then out of date for longer than that.
  *
  * Threads. The calls of one client are made by one thread at a time, also those that only read. No
- * call waits for the network or a disk but _connect() with files, _wait(), _close() and _free().
+ * call waits for the network or a disk but _connect() with files, _wait(), _close() and _free(), and
+ * the _step() that meets a server for the first time and keeps its key in a file.
  *
  * A build of the library without the client has these functions, too. runstone_client_connect()
  * then returns RUNSTONE_UNSUPPORTED. */
@@ -577,8 +578,8 @@ typedef struct runstone_client_options {
   uint32_t view_radius_vertical; /* (4) */
   uint64_t memory_mib;           /* of chunks and edits, 16 to 65536 (1024) */
   uint64_t cache_mib;            /* 1 to 1048576 (256) */
-  /* Called when there is something to step, by a thread of the library. It must not call the client
-   * (NULL). */
+  /* Called when there is something to step, by a thread of the library. It must not call the client,
+   * nor wait for a thread that may be in a call of the client, such as for a mutex (NULL). */
   void (*wake)(void* context);
   void* wake_context;
 } runstone_client_options;
@@ -637,19 +638,21 @@ RUNSTONE_API runstone_status runstone_client_connect(const runstone_client_optio
                                                      runstone_client** out);
 /* Closes and frees. */
 RUNSTONE_API runstone_status runstone_client_free(runstone_client* client);
-/* Sends what is queued and a goodbye, and ends the threads, in about a second at most. Chunks and
- * events stay readable. Does nothing the second time. */
+/* Sends what is queued and a goodbye, and ends the threads. Waits a second at most for the network,
+ * and until the cache is written. Chunks and events stay readable. Does nothing the second time. */
 RUNSTONE_API runstone_status runstone_client_close(runstone_client* client);
 /* Handles what has arrived and sends what is due. Call it every frame, or every 10 ms. Takes a few
- * milliseconds at most; `has_more`, if not NULL, becomes 1 if something is left. */
+ * milliseconds at most, with a password a quarter of a second when it joins; `has_more`, if not NULL,
+ * becomes 1 if something is left. */
 RUNSTONE_API runstone_status runstone_client_step(runstone_client* client, uint32_t* has_more);
 /* Waits until there is something to step, `milliseconds` at most. */
 RUNSTONE_API runstone_status runstone_client_wait(runstone_client* client, uint32_t milliseconds);
 /* Writes the next events to an array of `capacity` elements of `event_size` bytes, which is
  * sizeof(runstone_event), and their number to *count. Events that do not fit are kept, so a program
  * calls again while *count is the capacity. At most `chunks_max` of them are new chunks that
- * changed, the most important ones; the others stay outdated until a later call. Events are named by
- * their index until the next call. Requires a capacity of at least 1. */
+ * changed, the most important ones; the others stay outdated until a later call. Events that were
+ * kept come first, whatever `chunks_max` is then. Events are named by their index until the next
+ * call. Requires a capacity of at least 1. */
 RUNSTONE_API runstone_status runstone_client_drain(runstone_client* client, size_t chunks_max,
                                                    runstone_event* out, size_t event_size,
                                                    size_t capacity, size_t* count);
@@ -689,10 +692,10 @@ RUNSTONE_API runstone_status runstone_client_place(runstone_client* client, runs
 RUNSTONE_API runstone_status runstone_client_set_view(runstone_client* client, uint32_t radius,
                                                       uint32_t radius_vertical);
 /* Shows edit `index` of a list at once and sends it. An event tells the outcome of the edit with
- * this `number`, also after a lost connection. Edits with one action are undone as one: pass
- * RUNSTONE_NEW_ACTION with the first, and the number of the first with the others; with 0 the edit
- * is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of the player does not
- * suffice yet. `number` may be NULL. */
+ * this `number`, also after a lost connection, unless the client ends before. Edits with one action
+ * are undone as one: pass RUNSTONE_NEW_ACTION with the first, and the number of the first with the
+ * others; with 0 the edit is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of
+ * the player does not suffice yet. `number` may be NULL. */
 RUNSTONE_API runstone_status runstone_client_submit(runstone_client* client,
                                                     const runstone_edits* edits, size_t index,
                                                     uint64_t action, uint64_t* number);
@@ -702,7 +705,8 @@ RUNSTONE_API runstone_status runstone_client_submit_delay(runstone_client* clien
                                                           int64_t* wait_us);
 /* Sends a line to everybody. */
 RUNSTONE_API runstone_status runstone_client_chat(runstone_client* client, const char* line);
-/* Sends a command, such as "undo". RUNSTONE_EVENT_COMMAND_DONE has the answer. */
+/* Sends a command, such as "undo". RUNSTONE_EVENT_COMMAND_DONE has the answer. Refuses another
+ * command before that event was drained. */
 RUNSTONE_API runstone_status runstone_client_command(runstone_client* client, const char* text);
 /* Makes a handle of a chunk that is shown. The caller frees it. */
 RUNSTONE_API runstone_status runstone_client_chunk(runstone_client* client, runstone_pos at,

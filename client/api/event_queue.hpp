@@ -1,6 +1,7 @@
 // EventQueue: the events of a WorldClient that were not drained yet. Full: the oldest event of the
 // same kind is dropped, except of edits of this client, which the caller bounds, and of removed
-// chunks, of which there are no more than were reported. One thread.
+// chunks, of which there are no more than were reported. The chunks that edits of others name are
+// bounded together, because a server may let one edit name all chunks of the view. One thread.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,17 +19,18 @@ namespace runstone {
 class EventQueue {
  public:
   static constexpr std::size_t kEventsMax = 4'096;  // of a kind
+  /// The chunks that all events of edits of others name, 12 MiB. The newest event is kept, whatever
+  /// it names.
+  static constexpr std::size_t kNamedChunksMax = std::size_t{1} << 20;
 
   void push(WorldEvent event) {
     const std::size_t kind = event.index();
     if (counts_[kind] >= kEventsMax && !is_of_edit(event) &&
-        !std::holds_alternative<ChunkRemoved>(event)) {
-      const auto oldest =
-          std::find_if(events_.begin(), events_.end(),
-                       [&](const WorldEvent& other) { return other.index() == kind; });
-      events_.erase(oldest);
-      --counts_[kind];
-    }
+        !std::holds_alternative<ChunkRemoved>(event))
+      drop_oldest(kind);
+    named_chunks_ += named_by(event);
+    while (named_by(event) != 0 && named_chunks_ > kNamedChunksMax && counts_[kind] != 0)
+      drop_oldest(kind);
     if (is_of_edit(event)) ++edit_events_;
     ++counts_[kind];
     events_.push_back(std::move(event));
@@ -40,11 +42,24 @@ class EventQueue {
                                 std::make_move_iterator(events_.end()));
     events_.clear();
     counts_ = {};
-    edit_events_ = 0;
+    edit_events_ = named_chunks_ = 0;
     return out;
   }
 
  private:
+  /// Requires an event of the kind.
+  void drop_oldest(std::size_t kind) {
+    const auto oldest = std::find_if(events_.begin(), events_.end(), [&](const WorldEvent& event) {
+      return event.index() == kind;
+    });
+    named_chunks_ -= named_by(*oldest);
+    events_.erase(oldest);
+    --counts_[kind];
+  }
+  static std::size_t named_by(const WorldEvent& event) {
+    const auto* const edit = std::get_if<OthersEdit>(&event);
+    return edit == nullptr ? 0 : edit->chunks.size();
+  }
   static bool is_of_edit(const WorldEvent& event) {
     return std::holds_alternative<EditConfirmed>(event) ||
            std::holds_alternative<EditRejected>(event) ||
@@ -54,6 +69,7 @@ class EventQueue {
   std::deque<WorldEvent> events_;
   std::array<std::size_t, std::variant_size_v<WorldEvent>> counts_{};
   std::size_t edit_events_ = 0;
+  std::size_t named_chunks_ = 0;  // by events of edits of others
 };
 
 }  // namespace runstone

@@ -133,9 +133,10 @@ struct WorldClient::State {
   std::uint64_t shapes_number = 0;  // of the session, when `materials` was made
   std::uint64_t players_serial = 0;
   bool has_new_materials = false, has_other_players = false;  // not drained
-  bool is_commanding = false;             // CommandDone is to come, or not drained
-  std::unique_ptr<JoinedSession> joined;  // set by connect()
-  std::optional<ChunkReports> chunks;     // set by connect()
+  bool is_commanding = false;                                 // CommandDone is to come
+  bool has_answer = false;                                    // CommandDone was not drained
+  std::unique_ptr<JoinedSession> joined;                      // set by connect()
+  std::optional<ChunkReports> chunks;                         // set by connect()
 };
 
 void WorldClient::State::step() {
@@ -215,6 +216,7 @@ void WorldClient::State::take_news() {
         ChatReceived{from_of(line.kind), std::move(line.name), std::move(line.text), line.utc_us});
   if (!is_commanding || session().commanding()) return;
   is_commanding = false;
+  has_answer = true;
   events.push(
       CommandDone{session().command_ok(), session().is_answer_lost(), session().command_lines()});
 }
@@ -282,17 +284,24 @@ Result<WorldClient, std::string> WorldClient::connect(WorldClientOptions options
 
 WorldClient::WorldClient(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-WorldClient::~WorldClient() {
-  if (state_) close();
-}
+WorldClient::~WorldClient() { close_if_any(); }
 
 WorldClient::WorldClient(WorldClient&&) noexcept = default;
 
 WorldClient& WorldClient::operator=(WorldClient&& other) noexcept {
   if (this == &other) return *this;
-  if (state_) close();
+  close_if_any();
   state_ = std::move(other.state_);
   return *this;
+}
+
+void WorldClient::close_if_any() noexcept {
+  if (!state_) return;
+  try {
+    close();
+  } catch (const std::exception&) {
+    // Memory ran out before the goodbye. The threads end with the state.
+  }
 }
 
 void WorldClient::step() {
@@ -309,6 +318,7 @@ std::vector<WorldEvent> WorldClient::drain(std::size_t chunks_max) {
   State& state = *state_;
   state.take_changes();
   std::vector<WorldEvent> out = state.events.drain();
+  state.has_answer = false;
   if (std::exchange(state.has_new_materials, false)) out.emplace_back(MaterialsChanged{});
   if (std::exchange(state.has_other_players, false)) out.emplace_back(PlayersChanged{});
   for (; chunks_max != 0; --chunks_max) {
@@ -392,6 +402,8 @@ Result<void, ClientRefusal> WorldClient::command(std::string_view text) {
   if (state_->joined->is_ended()) return refused(ErrorCode::bad_value, "no world is open");
   if (state_->is_commanding)
     return refused(ErrorCode::bad_value, "the previous command is still running");
+  if (state_->has_answer)
+    return refused(ErrorCode::bad_value, "the answer of the previous command was not drained");
   auto sent = state_->session().command(std::string(text));
   if (!sent) return refused(sent.error().code, sent.error().what);
   state_->is_commanding = true;

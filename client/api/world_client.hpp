@@ -17,14 +17,18 @@
 //   - The library has a thread for the network, and one for the cache if there is one. They call
 //     WorldClientOptions::wake and nothing else of the program.
 //   - What MeshSource, chunk() and mesh_materials() return may be read by any thread.
-//   - No call waits for the network or a disk, except connect() with files, wait() and close().
+//   - No call waits for the network or a disk, except connect() with files, wait() and close(), and
+//     the step() that meets a server for the first time and keeps its key in a file.
+//   - step() and close() wait for the threads of the library when they end. So wake must not wait
+//     for a thread that may be in a call of the client, for example for a mutex that it holds.
 //
 // Errors are results with words. No input of a server, of files or of the caller aborts the
 // program, and no call throws, except std::bad_alloc. The library writes no log.
 //
 // Bounds: chunks and edits by WorldClientOptions::memory_mib; events of the network by 16 MiB,
-// beyond which the server is held back; edits of others and lines of the chat that were not drained
-// by the newest 4,096 and 256; edits of this client by kEditsWaitingMax.
+// beyond which the server is held back; events that were not drained by the newest 4,096 of each
+// kind, and those of edits of others by 1,048,576 chunks that they name; edits of this client by
+// kEditsWaitingMax. Events of edits of this client and of removed chunks are never dropped.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -105,8 +109,8 @@ class WorldClient {
   WorldClient& operator=(WorldClient&&) noexcept;
 
   /// Handles what has arrived and sends what is due. Call it every frame, and every 10 ms where
-  /// there are no frames. Takes a few milliseconds at most; has_more() returns true if something is
-  /// left.
+  /// there are no frames. Takes a few milliseconds at most, with a password a quarter of a second
+  /// when it joins; has_more() returns true if something is left.
   void step();
   /// Returns true if another step() has something to do at once.
   bool has_more() const;
@@ -136,9 +140,9 @@ class WorldClient {
   Result<void, ClientRefusal> set_view_radii(std::uint8_t horizontal, std::uint8_t vertical);
 
   /// Shows an edit at once and sends it to the server. EditConfirmed or EditRejected tells the
-  /// outcome, also after a lost connection. Edits with the same `action` are undone as one: pass
-  /// kNewAction with the first, and the number of the first with the others. 0: the edit is an
-  /// action by itself. Fails
+  /// outcome, also after a lost connection. There is none for edits that are open when the client
+  /// ends. Edits with the same `action` are undone as one: pass kNewAction with the first, and the
+  /// number of the first with the others. 0: the edit is an action by itself. Fails
   ///   - with bad_value before the first WorldOpened and after the end;
   ///   - with the error of validate() for an invalid edit, and with not_found for a material that the
   ///     world lacks or a chunk that the server cannot send;
@@ -155,8 +159,8 @@ class WorldClient {
   /// line is empty, too long or not UTF-8.
   Result<void, ClientRefusal> chat(std::string_view line);
   /// Sends a command, such as "undo". CommandDone has the answer. Fails unless a world is open,
-  /// while another command runs, if the text is empty, too long or not UTF-8, and if the server
-  /// accepts no commands.
+  /// while another command runs or its answer was not drained, if the text is empty, too long or
+  /// not UTF-8, and if the server accepts no commands.
   Result<void, ClientRefusal> command(std::string_view text);
 
   /// Return null or nullopt if the chunk is not shown.
@@ -183,6 +187,7 @@ class WorldClient {
  private:
   struct State;
   explicit WorldClient(std::unique_ptr<State> state);
+  void close_if_any() noexcept;
   std::unique_ptr<State> state_;
 };
 

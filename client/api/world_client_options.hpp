@@ -55,7 +55,7 @@ struct WorldClientOptions {
   std::uint64_t cache_mib = 256;
 
   /// Called when step() has something to do. Thread: one of the library. It must not call the
-  /// client.
+  /// client, nor wait for a thread that may be in a call of the client.
   std::function<void()> wake = {};
 };
 

@@ -32,7 +32,7 @@ class Client:
                          (view_radius, view_radius_vertical), memory_mib, os.fspath(cache_folder), cache_mib)
         self._core = None
         self._closed = False
-        self._events = deque(maxlen=_EVENTS_MAX)
+        self._events = deque()
         self._edits = {}
         self._outcomes = {}
         self._command = None
@@ -70,10 +70,7 @@ class Client:
         self._loop.remove_reader(self._core.fileno())
         self._task.cancel()
         await asyncio.gather(self._task, return_exceptions=True)
-        for waiter in [*self._edits.values(), self._command]:
-            if waiter is not None and not waiter.done():
-                waiter.set_exception(ValueError(_CLOSED))
-                waiter.exception()  # asyncio would warn of one that nobody awaits
+        self._end_waiters(ValueError(_CLOSED))
         self._progress.set()
         await self._loop.run_in_executor(None, self._core.close)
 
@@ -120,9 +117,10 @@ class Client:
                 self._take(self._core.drain(0))
             except Exception as error:  # such as MemoryError: nobody awaits this task
                 self._fault = error
-                self._progress.set()
-                return
             self._progress.set()
+            if self._fault is not None:  # the client has ended
+                self._end_waiters(self._fault)
+                return
             if has_more:
                 await asyncio.sleep(0)
                 continue
@@ -132,9 +130,25 @@ class Client:
                 pass
             self._woken.clear()
 
+    def _end_waiters(self, error):
+        """Raise an error where edit() and command() wait: their events will not come."""
+        for waiter in [*self._edits.values(), self._command]:
+            if waiter is not None and not waiter.done():
+                waiter.set_exception(error)
+                waiter.exception()  # asyncio would warn of one that nobody awaits
+
+    def _append(self, event):
+        # Removed chunks are kept, so that a program removes their meshes. There are no more of them than it took.
+        if len(self._events) >= _EVENTS_MAX:
+            for index, oldest in enumerate(self._events):
+                if oldest.kind != "chunk removed":
+                    del self._events[index]
+                    break
+        self._events.append(event)
+
     def _take(self, events):
         for event in events:
-            self._events.append(event)
+            self._append(event)
             kind = event.kind
             if kind == "opened":
                 self._opened_once = True
@@ -147,7 +161,12 @@ class Client:
                 if waiter is not None and not waiter.done():
                     waiter.set_result(event)
 
+    def _check_fault(self):
+        if self._fault is not None:
+            raise self._fault
+
     async def _next_progress(self):
+        self._check_fault()
         self._progress.clear()
         await self._progress.wait()
 
@@ -155,8 +174,6 @@ class Client:
         while not is_reached():
             if self._closed:
                 raise ValueError(_CLOSED)
-            if self._fault is not None:
-                raise self._fault
             await self._next_progress()
 
     def _joined(self):
@@ -292,12 +309,14 @@ class Client:
     async def edit(self, edit, action=None):
         """Submit an edit as soon as the budget suffices, and return its sequence in the log of the world.
 
-        Raise Error if the edit is rejected. Return None if the answer was lost with a connection.
+        Raise Error if the edit is rejected, and if the client ends before the answer. Return None if the answer was
+        lost with a connection.
         """
         core = self._open()
         while (wait := core.wait_us(edit)) > 0:
             await asyncio.sleep(wait / 1e6)
             core = self._open()
+        self._check_fault()
         number = core.submit(edit, action)
         waiter = self._edits[number] = self._loop.create_future()
         try:
@@ -314,7 +333,9 @@ class Client:
 
     async def command(self, text):
         """Send a command, such as "undo", and return the lines of its answer. Raise Error if it fails."""
-        self._open().command(text)
+        core = self._open()
+        self._check_fault()
+        core.command(text)
         self._command = self._loop.create_future()
         event = await self._command
         if not event.is_ok:

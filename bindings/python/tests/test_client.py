@@ -167,6 +167,39 @@ def test_a_client_that_was_closed_raises_clear_errors(server):
     within(play())
 
 
+def test_a_client_that_ends_ends_what_waits_for_it(server):
+    async def play():
+        async with client_of(server, "mallory") as client:
+            await client.loaded()
+            # An edit that was sent and whose answer does not come.
+            waiter = client._edits[1 << 40] = asyncio.get_running_loop().create_future()
+            server.control("ban", "mallory")
+            with pytest.raises(runstone.Error):
+                await waiter
+            assert client.state == "ended"
+            for call in [client.edit(runstone.SetVoxel((0, 9, 0), 1)), client.command("undo"), client.loaded()]:
+                with pytest.raises(runstone.Error):
+                    await call
+            lost = [event.is_final async for event in client if event.kind == "lost"]
+            assert lost and lost[-1] and not any(lost[:-1])
+    within(play())
+
+
+def test_removed_chunks_are_kept_when_other_events_are_dropped():
+    class Event:
+        def __init__(self, kind, number):
+            self.kind, self.number = kind, number
+
+    client = runstone.Client("127.0.0.1:1")
+    client._take([Event("chunk removed", 0)])
+    client._take([Event("chat", number) for number in range(5000)])
+    assert len(client._events) == 4096
+    assert client._events[0].kind == "chunk removed"
+    assert [client._events[1].number, client._events[-1].number] == [5000 - 4095, 4999]
+    client._take([Event("chunk removed", number) for number in range(5000)])
+    assert [event.number for event in client._events if event.kind == "chunk removed"] == [0, *range(5000)]
+
+
 @pytest.mark.parametrize("options, kind", [
     ({"encryption": "some"}, ValueError), ({"view_radius": 65}, ValueError), ({"name": ""}, ValueError),
     ({"memory_mib": 0}, ValueError), ({"key_file": "/no/such/folder/key"}, ValueError), ({"server": ""}, ValueError),

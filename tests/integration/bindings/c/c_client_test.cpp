@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/text.hpp"
 #include "tests/integration/server/app/server_bench.hpp"
 #include "tests/unit/bindings/c/owned_handle.hpp"
 
@@ -251,6 +252,16 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
   options = default_options(nobody);
   options.key_file = "/no/such/folder/key";
   CHECK(refused(options));
+  // Words that are too long are cut between two characters, wherever they begin.
+  for (const std::string begin : {"/no/", "/nos/"}) {
+    std::string folder = begin;
+    for (int i = 0; i < 200; ++i) folder += "\u00e9";
+    const std::string key_file = folder + "/key";
+    options.key_file = key_file.c_str();
+    CHECK(refused(options));
+    CHECK(std::strlen(runstone_last_error()) >= 254);
+    CHECK(is_printable_utf8(runstone_last_error()));
+  }
 
   // Nobody listens: the calls that need a world are refused, and the event says why.
   CPlayer player(default_options(nobody));

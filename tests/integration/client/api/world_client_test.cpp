@@ -135,6 +135,17 @@ TEST_CASE("chat, commands and players reach a program as events", "[integration]
   CHECK(done.is_ok);
   CHECK_FALSE(done.lines.empty());
   ada.until([&] { return ada->material_at({2, 20, 2}) == kEmpty; });
+  // Answers do not gather: the next command waits until the program has drained the last one.
+  REQUIRE(ben->command("no-such-command").has_value());
+  std::string why = "the previous command is still running";
+  for (int i = 0; i < 6'000 && why == "the previous command is still running"; ++i) {
+    ben->wait(10);
+    ben->step();
+    const auto again = ben->command("undo");
+    why = again ? "" : again.error().text;
+  }
+  CHECK(why == "the answer of the previous command was not drained");
+  CHECK_FALSE(ben.await<CommandDone>().is_ok);
   ben->close();
   CHECK(ben->state() == ConnectionState::ended);
   CHECK(ben->command("undo").error().text == "no world is open");
