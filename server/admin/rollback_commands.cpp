@@ -186,9 +186,9 @@ Result<std::string, std::string> read_log_lines(WorldReader& reader, const Selec
 
 void list_log(const CommandCall& call, const LogCommand& command) {
   call.world().commit(call.now);
-  CommandFilter filter = command.filter;
-  if (auto why = place_filter(call, filter)) return call.refuse("log " + *why);
-  with_selection(call, filter, "log", false, [call, limit = command.limit](SelectionFilter filter) {
+  CommandFilter wanted = command.filter;
+  if (auto why = place_filter(call, wanted)) return call.refuse("log " + *why);
+  with_selection(call, wanted, "log", false, [call, limit = command.limit](SelectionFilter filter) {
     filter.last = call.world().order().durable();
     call.on_worker(
         "log: ",
