@@ -115,7 +115,7 @@ TEST_CASE("a world is of format 10 from the first clock on, and so is a copy",
   CHECK(stored_format(copy) == std::to_string(kWorldFormatOfClock));
 }
 
-TEST_CASE("a world is of format 13 from the first role for some time on, and so is a copy",
+TEST_CASE("a world is of format 12 from the first role for some time on, and so is a copy",
           "[store][rights]") {
   TempPlace place;
   const std::string world = place / "w", copy = place / "copy";

@@ -67,14 +67,14 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
   const TempFolder folder;
   create(folder.path());
   const std::string file = folder / "world.sqlite";
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 14").empty());
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 13").empty());
   const auto before = bytes_of(file);
   for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
     const auto store = open_world(folder.path(), access);
     REQUIRE_FALSE(store.has_value());
     CHECK(store.error().kind == StoreError::Kind::newer_version);
     CHECK(store.error().message() ==
-          file + ": is of world format 14; this program knows format 13. Nothing was changed.");
+          file + ": is of world format 13; this program knows format 12. Nothing was changed.");
   }
   CHECK(bytes_of(file) == before);
   CHECK_FALSE(std::filesystem::exists(file + "-wal"));
