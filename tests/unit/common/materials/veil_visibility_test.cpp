@@ -8,7 +8,9 @@ namespace runstone::test {
 namespace {
 
 MaterialInfo opaque_with_body(const std::string& name, MaterialBody body) {
-  MaterialInfo info{name, {1, 2, 3, 255}};
+  MaterialInfo info;
+  info.name = name;
+  info.colour = {1, 2, 3, 255};
   info.body = body;
   return info;
 }
