@@ -267,12 +267,18 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
     for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | (*header)[i];
     return value;
   };
-  if (!header ||
-      !std::equal(kMagic.begin(), kMagic.end(), header->begin(),
-                  [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }) ||
-      big_endian(68) != kApplicationId) {
-    return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
+  const bool is_sqlite = header && std::equal(kMagic.begin(), kMagic.end(), header->begin(),
+                                              [](char a, std::uint8_t b) {
+                                                return static_cast<std::uint8_t>(a) == b;
+                                              });
+  // SQLite writes the first page when the creation of a world sets how free pages are given back,
+  // before the transaction that writes tables and marks. A database of one page has no table.
+  if (is_sqlite && big_endian(68) == 0 && big_endian(28) == 1) {
+    return fail_as(StoreError::Kind::not_a_world,
+                   "its creation was interrupted; delete it and create the world again");
   }
+  if (!is_sqlite || big_endian(68) != kApplicationId)
+    return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
   return check_format(file, big_endian(60));
 }
 

@@ -40,7 +40,7 @@ TEST_CASE("the line of counters shows each part of the server", "[server]") {
                             " chunk_bytes_out=0 ",
                             " memory_bytes=13 ",
                             " log_lines_dropped=14 ",
-                            " row_faults=15 ",
+                            " row_faults=15 retention_days=0 ",
                             " edit_wait_count=0 ",
                             " edit_wait_ms_le_1000=0 ",
                             " uptime_s=7 read_only=0 durable_lag_us=25 disk_free_bytes=21 ",
@@ -58,7 +58,7 @@ TEST_CASE("the line of counters shows each part of the server", "[server]") {
   with_backups.backups = BackupState{};
   with_backups.backups->failures = 16;
   const std::string longer = counters_line(world, net, log, with_backups);
-  CHECK(longer.find(" row_faults=15 backup_next_s=0 backup_failures=16 uptime_s=0 ") !=
+  CHECK(longer.find(" retention_failures=0 backup_next_s=0 backup_failures=16 uptime_s=0 ") !=
         std::string::npos);
 }
 
