@@ -259,7 +259,7 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
     const std::string key_file = folder + "/key";
     options.key_file = key_file.c_str();
     CHECK(refused(options));
-    CHECK(std::strlen(runstone_last_error()) >= 254);
+    CHECK(std::strlen(runstone_last_error()) >= 252);
     CHECK(is_printable_utf8(runstone_last_error()));
   }
 
