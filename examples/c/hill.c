@@ -39,7 +39,7 @@ int main(void) {
   check(runstone_mesh_quads(mesh, RUNSTONE_PASS_OPAQUE, quads, count, &count));
   printf("%u voxels of stone, %u quads\n", (unsigned)changes.voxels, (unsigned)count);
   for (i = 0; i < count && i < 3; ++i) {
-    runstone_quad_fields quad = {sizeof quad, 0, 0, 0, 0, 0, 0, 0};
+    runstone_quad_fields quad = {sizeof quad, 0, 0, 0, 0, 0, 0, 0, 0};
     check(runstone_quad_unpack(quads[i], &quad));
     printf("%u x %u faces at %u %u %u\n", (unsigned)quad.width, (unsigned)quad.height,
            (unsigned)quad.x, (unsigned)quad.y, (unsigned)quad.z);
