@@ -2,14 +2,11 @@
 
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include "client/net/key_file.hpp"
-#include "client/session/cache_exchange.hpp"
 #include "client/session/failure_words.hpp"
 #include "client/session/join_check.hpp"
 #include "common/os/host_port.hpp"
-#include "common/os/steady_clock.hpp"
 #include "protocol/codec/server_link.hpp"
 #include "protocol/default_port.hpp"
 #include "protocol/limits.hpp"
@@ -104,11 +101,10 @@ Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
   config.view.radius_v = options.view_radius_vertical;
   config.ticket = std::move(address->ticket);
   if (!options.password.empty()) config.password = std::make_shared<PasswordKeys>(options.password);
-  config.has_cache = !options.cache_folder.empty();
 
   std::unique_ptr<CacheThread> cache;
   std::string warning;
-  if (config.has_cache) {
+  if (!options.cache_folder.empty()) {
     auto opened = ChunkCache::open(options.cache_folder, options.cache_mib << 20);
     if (!opened) return failure(opened.error());
     warning = (*opened)->take_warning();
@@ -120,71 +116,39 @@ Result<std::unique_ptr<JoinedSession>, std::string> JoinedSession::start(
   net.port = address->servers.front().port;
   net.more.assign(address->servers.begin() + 1, address->servers.end());
   net.tls = *std::move(tls);
-  std::unique_ptr<JoinedSession> joined(new JoinedSession(
-      options.key_file, std::move(config), std::move(cache), std::move(net), std::move(wake)));
-  if (!warning.empty()) joined->reports_.emplace_back(ClientWarning{std::move(warning)});
+  std::unique_ptr<JoinedSession> joined(
+      new JoinedSession(options.key_file, std::move(config), std::move(cache)));
+  if (!warning.empty()) joined->on_cache_warning(std::move(warning));
+  joined->threads_.connect(std::move(net), std::move(wake));
   return joined;
 }
 
 JoinedSession::JoinedSession(std::string key_file, SessionConfig config,
-                             std::unique_ptr<CacheThread> cache, LinkConfig net,
-                             std::function<void()> wake)
+                             std::unique_ptr<CacheThread> cache)
     : key_file_(std::move(key_file)),
-      cache_(std::move(cache)),
-      session_(std::move(config)),
-      pins_kept_(session_.pinned().size()),
-      net_(std::make_unique<NetClient>(std::move(net), std::move(wake))) {}
+      pins_kept_(config.pinned.size()),
+      threads_(std::move(config), std::move(cache), *this) {}
 
 JoinedSession::~JoinedSession() = default;
 
 void JoinedSession::receive() {
-  if (is_ended_) return;
-  if (events_.empty()) {
-    for (LinkEvent& event : net_->take_events()) events_.push_back(std::move(event));
-  }
-  for (const TimeUs until_us = steady_now_us() + kReceiveUsMax;
-       !events_.empty() && steady_now_us() < until_us && !is_ended_;) {
-    LinkEvent event = std::move(events_.front());
-    events_.pop_front();
-    handle(std::move(event));
-  }
-}
-
-void JoinedSession::handle(LinkEvent event) {
-  if (const auto* connected = std::get_if<LinkConnected>(&event)) on_connected(*connected);
-  if (const auto* gone = std::get_if<LinkDisconnected>(&event)) on_disconnected(*gone);
-  if (auto* received = std::get_if<LinkReceived>(&event)) on_received(*received);
-}
-
-void JoinedSession::on_connected(const LinkConnected& event) {
-  connection_ = event.connection;
-  session_.connected(random_nonce(), event.binding, steady_now_us(), event.is_listed);
-  flush();
-}
-
-void JoinedSession::on_received(LinkReceived& event) {
-  if (event.connection != connection_) return;
-  session_.receive(std::move(event.message),
-                   {event.received_us, event.unpacked_us, steady_now_us()});
-  if (std::exchange(servers_seen_, session_.servers_number()) != session_.servers_number())
-    net_->set_servers(session_.servers());
-  if (session_.connect_count() != connects_handled_) on_world_opened();
+  if (!is_ended_) threads_.receive();
 }
 
 void JoinedSession::on_world_opened() {
-  connects_handled_ = session_.connect_count();
   loss_.reset();
-  const WorldId& world = session_.welcome()->world_id;
+  const WorldId& world = session().welcome()->world_id;
   const bool is_another = std::exchange(world_, world) != world;
   reports_.emplace_back(WorldOpened{is_another, keep_first_contact()});
 }
 
 bool JoinedSession::keep_first_contact() {
-  if (session_.pinned().size() == pins_kept_) return false;
-  pins_kept_ = session_.pinned().size();
+  const auto& pinned = session().pinned();
+  if (pinned.size() == pins_kept_) return false;
+  pins_kept_ = pinned.size();
   if (key_file_.empty()) return true;
   try {
-    save_pinned_servers(key_file_, session_.pinned());
+    save_pinned_servers(key_file_, pinned);
   } catch (const std::runtime_error& error) {
     reports_.emplace_back(
         ClientWarning{std::string("the key of the server is not kept: ") + error.what()});
@@ -192,24 +156,15 @@ bool JoinedSession::keep_first_contact() {
   return true;
 }
 
-void JoinedSession::on_disconnected(const LinkDisconnected& event) {
-  if (event.connection != 0 && event.connection != connection_) return;
-  connection_ = 0;
-  step_cache(steady_now_us(), 0);
-  keep_all_chunks();
-  session_.disconnected();
-  report_loss(event);
-  if (!session_.end() || !session_.end()->final) return;
-  net_->stop(0);
-  events_.clear();
-  is_ended_ = true;
-}
-
-void JoinedSession::report_loss(const LinkDisconnected& event) {
-  const auto& end = session_.end();
+void JoinedSession::on_connection_lost(const LinkDisconnected& event) {
+  const auto& end = session().end();
   FailureWords words = end ? words_of(*end) : words_of_link(event.why, to_string(event.server));
   ConnectionLost loss{std::move(words.headline), std::move(words.detail), end && end->final,
-                      session_.lacks_password()};
+                      session().lacks_password()};
+  if (loss.is_final) {
+    threads_.disconnect();
+    is_ended_ = true;
+  }
   const bool is_known = loss_ && loss_->headline == loss.headline && loss_->detail == loss.detail &&
                         loss_->is_final == loss.is_final;
   if (is_known) return;
@@ -218,51 +173,27 @@ void JoinedSession::report_loss(const LinkDisconnected& event) {
   if (reports_.size() > kReportsMax) reports_.erase(reports_.begin());
 }
 
+void JoinedSession::on_cache_warning(std::string warning) {
+  reports_.emplace_back(ClientWarning{std::move(warning)});
+}
+
 std::vector<WorldEvent> JoinedSession::take_events() { return std::exchange(reports_, {}); }
 
 void JoinedSession::flush() {
-  if (is_ended_) return;
-  for (const Message& message : session_.take_outgoing())
-    net_->send(connection_, encode_message(message));
-  if (session_.wants_close() && connection_ != 0) net_->close(connection_);
+  if (!is_ended_) threads_.flush();
 }
 
 void JoinedSession::step_cache(TimeUs now_us, std::size_t room_bytes) {
-  if (!cache_ || is_ended_) return;
-  exchange_lookups(session_, *cache_, room_bytes, now_us);
-  if (now_us - kept_us_ >= kKeepUs) {
-    kept_us_ = now_us;
-    static_cast<void>(keep_chunks(cache_->room()));
-  }
-  if (std::string warning = cache_->take_warning(); !warning.empty())
-    reports_.emplace_back(ClientWarning{std::move(warning)});
-}
-
-bool JoinedSession::keep_chunks(std::size_t count_max) {
-  const auto world = session_.cached_world();
-  if (!cache_ || !world) return false;
-  std::vector<KeyedChunk> batch = session_.replica().take_for_cache(count_max);
-  if (batch.empty()) return false;
-  cache_->keep(*world, std::move(batch));
-  return true;
-}
-
-void JoinedSession::keep_all_chunks() {
-  while (keep_chunks(SIZE_MAX)) {
-  }
+  if (!is_ended_) threads_.step_cache(now_us, room_bytes);
 }
 
 void JoinedSession::stop() {
   if (!is_ended_) {
-    step_cache(steady_now_us(), 0);
-    keep_all_chunks();
-    session_.close(GoodbyeReason::closing, "");
-    flush();
+    threads_.finish();
+    session().disconnected();
     is_ended_ = true;
   }
-  cache_.reset();  // writes what waits, and lets other clients use the cache
-  net_->stop(kGoodbyeMs);
-  session_.disconnected();
+  threads_.release_cache();
 }
 
 }  // namespace runstone
