@@ -22,7 +22,7 @@ void check_fits(const RunChunk& beyond, const RunChunk& chunk, std::size_t place
   }
 }
 
-/// The places of the six neighbours by Direction.
+/// The places of the six neighbours in the 27 chunks, by Direction.
 constexpr std::array<std::size_t, kDirectionCount> kNeighbourPlaces = {
     around_place(-1, 0, 0), around_place(1, 0, 0),  around_place(0, -1, 0),
     around_place(0, 1, 0),  around_place(0, 0, -1), around_place(0, 0, 1)};

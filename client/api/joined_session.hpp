@@ -23,7 +23,7 @@ namespace runstone {
 class JoinedSession {
  public:
   /// Starts connecting. `wake` is called from the other threads when there is something to handle.
-  /// Fails with words as WorldClient::connect() does. May throw what the system throws.
+  /// Fails with words as WorldClient::connect() does. Throws the exceptions of the system.
   static Result<std::unique_ptr<JoinedSession>, std::string> start(
       const WorldClientOptions& options, std::function<void()> wake);
   ~JoinedSession();
@@ -33,8 +33,8 @@ class JoinedSession {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
 
-  /// Handles what the network thread received, for kReceiveUsMax at most. Ends the network thread
-  /// if the server has refused this client for good.
+  /// Handles the messages that the network thread received, for at most kReceiveUsMax. Ends the
+  /// network thread if the server has refused this client for good.
   void receive();
   /// Returns true if receive() left something for the next call.
   bool has_more() const { return !events_.empty(); }
@@ -65,9 +65,10 @@ class JoinedSession {
   void on_received(LinkReceived& event);
   void on_disconnected(const LinkDisconnected& event);
   void on_world_opened();
-  /// Reports in words why there is no connection, unless it was reported last.
+  /// Reports in words the reason why there is no connection, unless the last report has the same
+  /// reason.
   void report_loss(const LinkDisconnected& event);
-  /// Keeps the key of a server that is new to this player. Returns true if it is.
+  /// Keeps the key of a server that is new to this player. Returns true if the server is new.
   bool keep_first_contact();
   /// Gives the cache a batch of chunks. Returns false if there was none.
   bool keep_chunks(std::size_t count_max);
