@@ -29,8 +29,9 @@ struct RemoveRole {
   std::string role;
   friend bool operator==(const RemoveRole&, const RemoveRole&) = default;
 };
-/// Gives a player a role. With an end, the role counts until then, in place of the one that the player
-/// has without it, which counts again afterwards. A grant without an end replaces both.
+/// Gives a player a role. A grant with an end counts until this end, in place of the grant without
+/// an end. Afterwards the grant without an end counts again. A new grant without an end replaces
+/// both.
 struct GrantRole {
   PublicKey key{};
   std::string role;     // empty: the default role of the world; only without an end
