@@ -1,8 +1,9 @@
-# runstone::client: one archive with the code of client/api and of all rooms below it that are not installed
-# as libraries of their own. Its headers are those of client/api that include no other room of the client.
+# runstone::client: one archive with the code of client/api and of all rooms below it that are not
+# installed as libraries of their own. Its headers are those of client/api that include no other
+# room of the client.
 
-# Sets `out` to the static libraries of this project that a target links, itself included, but those that are
-# installed.
+# Sets `out` to the static libraries of this project that a target links, itself included, but those
+# that are installed.
 function(runstone_library_parts target out)
   set(parts "")
   set(waiting ${target})

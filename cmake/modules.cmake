@@ -36,8 +36,9 @@ function(runstone_precompile name flags)
   target_precompile_headers(runstone_precompiled_${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
-# clang 14 makes thread-local variables ordinary ones in WebAssembly without threads, but not with the
-# instructions for bulk memory: then they cannot be linked. So modules with such variables do without these.
+# clang 14 makes thread-local variables ordinary ones in WebAssembly without threads, but not with
+# the instructions for bulk memory: then they cannot be linked. So modules with such variables do
+# without these.
 function(runstone_without_threads name)
   foreach(source ${ARGN})
     file(STRINGS ${source} thread_local REGEX "thread_local|with_scratch<")

@@ -81,8 +81,8 @@ void veil_all(std::vector<VeilChunk>& chunks, const VeilMaterials& materials,
   }
 }
 
-/// Digs a voxel out of each chunk, the first one that covers at or behind the middle, and finds what
-/// that uncovers. The shown chunk has the axis order of the true one, as a server keeps it.
+/// Digs a voxel out of each chunk, the first one that covers at or behind the middle, and finds
+/// what that uncovers. The shown chunk has the axis order of the true one, as a server keeps it.
 void dig_all(std::vector<VeilChunk>& chunks, const VeilMaterials& materials, VeilScratch& scratch) {
   VeilPatch patch;
   for (VeilChunk& chunk : chunks) {

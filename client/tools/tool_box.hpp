@@ -92,8 +92,8 @@ class ToolBox {
   /// Selects a box, adds it to the selection or removes it from there. Fails with words for the
   /// player if the selection would have too many parts or voxels.
   Result<void, std::string> select(const VoxelBox& box, SelectMode mode);
-  /// Keeps those of the selected voxels for which a typed filter holds, or does not hold if `is_kept`
-  /// is false. Fails as filtered() does. Requires an open replica.
+  /// Keeps those of the selected voxels for which a typed filter holds, or does not hold if
+  /// `is_kept` is false. Fails as filtered() does. Requires an open replica.
   Result<void, std::string> narrow(const Replica& replica, const std::string& filter, bool is_kept);
   /// Sets the mode that a held key gives; nullopt: the mode of the chosen tool counts.
   void hold_select_mode(std::optional<SelectMode> mode) { held_mode_ = mode; }
@@ -179,9 +179,9 @@ class ToolBox {
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
   /// aim, the tool or the chunks changed, EditPreview::step(), and a step of a pattern that is too
   /// large to be worked out at once (all of it if chunks_max is the largest number). The plan of a
-  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls
-  /// calls, or if chunks_max is the largest number, and not again while it is refused and the replica
-  /// is as it was.
+  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than
+  /// kRestCalls calls, or if chunks_max is the largest number, and not again while it is refused
+  /// and the replica is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.

@@ -1,5 +1,5 @@
-// UprightChunks: shown chunks with lines along y, as brushes read them, kept from one plan of a brush to
-// the next. While the aim moves, most chunks of two plans are the same. One thread.
+// UprightChunks: shown chunks with lines along y, as brushes read them, kept from one plan of a
+// brush to the next. While the aim moves, most chunks of two plans are the same. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,9 +19,9 @@ class UprightChunks {
 
   /// Forgets the chunks that of() has not returned since the last call. Call it before each plan.
   void begin_plan();
-  /// Returns the chunk with lines along y, or the chunk itself if it is uniform or has them already.
-  /// A chunk whose runs have no room is not kept. Requires a chunk. Cost: that of reorder() for a
-  /// chunk that is not kept, otherwise O(log chunks).
+  /// Returns the chunk with lines along y, or the chunk itself if it is uniform or has them
+  /// already. A chunk whose runs have no room is not kept. Requires a chunk. Cost: that of
+  /// reorder() for a chunk that is not kept, otherwise O(log chunks).
   std::shared_ptr<const RunChunk> of(const std::shared_ptr<const RunChunk>& chunk);
   /// Forgets all chunks.
   void clear() {

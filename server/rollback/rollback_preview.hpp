@@ -16,7 +16,7 @@
 
 namespace runstone {
 
-/// The protected ground of a player without the right `roll_back`, who takes edits back there.
+/// The protected ground on which a player without the right `roll_back` takes edits back.
 struct OwnGround {
   AuthorId author = 0;  // of the player
   std::string name;     // of the protected box
@@ -56,7 +56,7 @@ struct RollbackPreview {
   // answered.
   std::shared_ptr<const Selection> selection;
   std::uint64_t voxels = 0, chunks = 0;  // that would change
-  /// The line about edits that may match and are no longer in the log. Empty: there are none.
+  /// The line about edits that may match but are no longer in the log. Empty: there are none.
   std::string removed;
   std::string summary, error;  // `error` is empty if the preview could be computed
 

@@ -319,7 +319,8 @@ void WorldServer::tick(const Clocks& now) {
     ground.rights_changed({});
     if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
   }
-  // Another server may set the spawn now. A state that this one saves later must not set it back.
+  // Another server may set the spawn from now on. A state that this server saves later must not
+  // overwrite it.
   if (cluster.is_following()) rooms_->set_spawn.reset();
   people.forget_gone_authors();
   people.close_silent(now);

@@ -1,8 +1,9 @@
-// Tests of the package @runstone/core: alone in node, and in pages of a headless Chromium that join a real
-// server through its gateway.
+// Tests of the package @runstone/core: alone in node, and in pages of a headless Chromium that join
+// a real server through its gateway.
 //   node core_test.mjs PROGRAMS PACKAGE EXAMPLES [OUT]
-// PROGRAMS is the folder of the native programs, PACKAGE that of the package, EXAMPLES that of examples/web.
-// Pictures go to OUT. node_modules beside this file has three.js, typescript, and the package as @runstone/core.
+// PROGRAMS is the folder of the native programs, PACKAGE that of the package, EXAMPLES that of
+// examples/web. Pictures go to OUT. node_modules beside this file has three.js, typescript, and the
+// package as @runstone/core.
 import puppeteer from "puppeteer-core";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,7 +1,8 @@
-// Models that Runstone writes as glTF open in three.js, and look like the voxels that they were made of.
+// Models that Runstone writes as glTF open in three.js, and look like the voxels that they were
+// made of.
 //   node gltf_test.mjs PROGRAMS [OUT]
-// PROGRAMS is the folder of the native programs. Pictures go to OUT. The voxels are drawn a second time face
-// by face, by code of this test alone, and the pictures are compared.
+// PROGRAMS is the folder of the native programs. Pictures go to OUT. The voxels are drawn a second
+// time face by face, by code of this test alone, and the pictures are compared.
 import puppeteer from "puppeteer-core";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

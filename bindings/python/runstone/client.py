@@ -113,7 +113,8 @@ class Client:
         while True:
             try:
                 has_more = self._core.step()
-                # Chunks stay in the library, which joins the changes of each, until a program takes them.
+                # Chunks stay in the library, which joins the changes of each, until a program takes
+                # them.
                 self._take(self._core.drain(0))
             except Exception as error:  # such as MemoryError: nobody awaits this task
                 self._fault = error
@@ -138,7 +139,8 @@ class Client:
                 waiter.exception()  # asyncio would warn of one that nobody awaits
 
     def _append(self, event):
-        # Removed chunks are kept, so that a program removes their meshes. There are no more of them than it took.
+        # Removed chunks are kept, so that a program removes their meshes. There are no more of them
+        # than it took.
         if len(self._events) >= _EVENTS_MAX:
             for index, oldest in enumerate(self._events):
                 if oldest.kind != "chunk removed":

@@ -26,8 +26,8 @@
 namespace runstone::python {
 namespace {
 
-/// A pipe in which a byte waits while the client has something to do. The thread of the library writes
-/// it without Python's lock, and the loop of asyncio waits for it.
+/// A pipe in which a byte waits while the client has something to do. The thread of the library
+/// writes it without Python's lock, and the loop of asyncio waits for it.
 class WakePipe {
  public:
   WakePipe() {

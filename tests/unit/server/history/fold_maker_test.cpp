@@ -1,5 +1,5 @@
-// Retention moves the beginning of a log into the base in parts, and loses nothing, also if power or
-// disk fail between or in them.
+// Retention moves the beginning of a log into the base in parts, and loses nothing, also if power
+// or disk fail between or in them.
 #include "server/history/fold_maker.hpp"
 
 #include <algorithm>
