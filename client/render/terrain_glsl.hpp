@@ -4,7 +4,7 @@
 // fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids,
 // RUNSTONE_FADE draws a part of the pixels, and RUNSTONE_GLOSSY mirrors sun and sky. Those of
 // textures stand in texture_glsl.hpp, that of plants in plant_glsl.hpp. A software driver computes
-// both sides of a branch, so what few chunks need is a variant.
+// both sides of a branch, so code that only few chunks need is a variant.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"

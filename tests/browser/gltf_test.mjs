@@ -77,7 +77,7 @@ const HILLS = { sides: [150, 40, 140], at: (x, y, z) => {
   return y + 4 > height ? 2 : 4;
 } };
 
-// What a page does: opens a model with three.js, counts its triangles, and draws it.
+// The code of a page: it opens a model with three.js, counts its triangles, and draws it.
 const PAGE = `<!doctype html><script type="importmap">{"imports": {"three": "/modules/three/build/three.module.js", "three/addons/": "/modules/three/examples/jsm/"}}</script>
 <script type="module">
 import * as THREE from "three";

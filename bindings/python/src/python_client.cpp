@@ -77,8 +77,8 @@ class PythonClient {
       error_ = client.error();
     }
   }
-  /// Throws if the constructor could not start to connect. An exception must not be made without
-  /// Python's lock.
+  /// Throws if the constructor could not start to connect. The exception is made here, because that
+  /// needs Python's lock.
   void check_made() const {
     if (!client_) refuse(error_);
   }
