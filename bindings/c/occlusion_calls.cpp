@@ -14,7 +14,7 @@ using namespace runstone::c_interface;
 
 namespace {
 
-/// Refuses a chunk around whose sides do not fit those of the chunk.
+/// Refuses one of the chunks around if its sides do not fit the sides of the chunk.
 void check_fits(const RunChunk& beyond, const RunChunk& chunk, std::size_t place) {
   for (std::size_t axis = 0; axis < 3; ++axis, place /= 3) {
     if (place % 3 == 1 && beyond.extent.sides()[axis] != chunk.extent.sides()[axis])

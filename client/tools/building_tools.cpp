@@ -49,7 +49,7 @@ ToolEdits VoxelTool::plan(const ToolInput& input) const {
   return joined(input, {SetVoxel{input.target}, {}, material});
 }
 
-/// The voxels of a box that the box tool fills. The values are those of its parameter.
+/// The voxels of a box that the box tool fills. The values equal the values of its parameter.
 enum class BoxFill : std::uint8_t { solid, hollow, walls };
 
 /// Returns boxes that do not overlap and together are a box, its shell of some thickness, or the

@@ -1,5 +1,5 @@
 // Veil: replaces the materials of voxels that nobody can see, so that the runs of a chunk are long
-// and its bytes do not tell what is hidden.
+// and its bytes do not reveal the hidden voxels.
 //
 // A material *covers* if `covers` says opaque (for chunks: veil_visibilities() in
 // common/materials). A voxel is *enclosed* if it covers and its six neighbours cover. The veil

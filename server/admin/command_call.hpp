@@ -136,7 +136,7 @@ struct CommandCall {
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
   /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
   /// which hazard_of() warns must be confirmed. `in_force` is called when the change is in force,
-  /// and returns what is appended to the answer; null: nothing is.
+  /// and returns the text that is appended to the answer. If it is null, no text is appended.
   void change_rights(const RightsChange& change, const std::string& text,
                      const std::function<std::string()>& in_force = nullptr) const;
 

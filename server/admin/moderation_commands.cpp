@@ -412,7 +412,7 @@ Result<WithdrawCommand, std::string> parse_withdraw(WordReader& reader) {
 }
 
 void withdraw_one(const CommandCall& call, const PublicKey& key, const std::string& who) {
-  // A player withdraws the lines of those whom the player may mute.
+  // A player may withdraw the lines of the players whom the player may mute.
   const Restrict mute{RestrictionKind::mute, key, 0, ""};
   const bool is_self = call.caller.actor.key == key;
   if (auto why = call.world().rights().change_refusal(mute, call.caller.actor); why && !is_self)

@@ -86,7 +86,7 @@ class ChatLog {
   /// return without work, so that a warning is written.
   std::optional<Work> take_work();
   void carry_out(Work& work);
-  /// Marks lines as withdrawn. Those for which the disk has no space are tried again later.
+  /// Marks lines as withdrawn. Lines for which the disk has no space are tried again later.
   void carry_out(std::vector<Withdrawal>&& withdrawals);
   /// Opens the file unless it is open. Returns true if it is. After a failure it waits for
   /// warning_interval before it tries again.

@@ -75,7 +75,7 @@ class DurableLog {
   }
   RetentionThread& retention() { return *retention_; }
   const RetentionThread& retention() const { return *retention_; }
-  /// Stops making keyframes, checking and removing edits, writes what is queued, and ends the
+  /// Stops making keyframes, checking and removing edits, writes the queued records, and ends the
   /// threads. On a full disk the edits behind durable() are lost. It may be called again.
   void stop();
 

@@ -112,7 +112,7 @@ void KeyframeThread::run() {
           std::this_thread::yield();  // lets the threads that serve players run first
           return !is_stopping();
         });
-    // Retention has moved the beginning of the log past what the keyframe needed.
+    // Retention has moved the beginning of the log past the edits that the keyframe needed.
     const bool is_outrun = !made && made.error().kind == StoreError::Kind::bad_request;
     if (is_outrun && ++outruns <= kOutrunsMax) {
       if (!rest(kOutrunRest)) return;

@@ -220,7 +220,7 @@ TEST_CASE("a carried session says why a connection ended, and begins another one
   bench.from_client = FrameReader(Sender::client);
   bench.to_client = FrameWriter();
   bench.open();
-  // The materials are those of before.
+  // The materials are the same as before.
   const auto notices = bench.notices();
   REQUIRE(notices.size() == 1);
   CHECK(notices[0].kind == CarriedNoticeKind::opened);
