@@ -213,7 +213,7 @@ runstone_status runstone_client_mesh(runstone_client* client, size_t index, runs
     const MeshSource& source = source_at(client, index);
     runstone_mesh& made = live(mesh, "mesh");
     const auto materials = client->client.mesh_materials();
-    // The chunks have no handles, so the next runstone_mesh_update() makes the mesh anew.
+    // The chunks have no handles, so the next runstone_mesh_update() makes a new mesh.
     made.change_quads([&] {
       with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
         mesh_chunk(*source.chunk, source.beside(), {}, *materials, scratch, made.quads);

@@ -102,7 +102,7 @@ struct ChatReceived {
   enum class From : std::uint8_t {
     player,
     server,              // the host
-    message_of_the_day,  // for one who joins
+    message_of_the_day,  // for a player who joins
     refused,             // the server rejected a line of this client; `text` is the reason
     visit,               // a player has joined or left
     other,               // a kind of a newer server

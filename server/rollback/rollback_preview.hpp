@@ -50,7 +50,7 @@ struct RollbackPreview {
   };
   std::shared_ptr<Progress> progress = std::make_shared<Progress>();
   Sequence rollback = 0;         // first edit of the rollback; 0 until it has written one
-  std::optional<OwnGround> own;  // nullopt: of somebody with the right `roll_back`
+  std::optional<OwnGround> own;  // nullopt: of a player with the right `roll_back`
 
   // The worker writes these in compute(). The world strand reads them after the worker has
   // answered.

@@ -317,7 +317,7 @@ void WorldServer::tick(const Clocks& now) {
   if (const auto ended = rooms_->rights.end_grants(); !ended.empty()) {
     rooms_->rights.close_refused();
     ground.rights_changed({});
-    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
+    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner informs all players
   }
   // Another server may set the spawn from now on. A state that this server saves later must not
   // overwrite it.

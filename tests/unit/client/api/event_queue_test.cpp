@@ -25,7 +25,7 @@ TEST_CASE("a full queue drops the oldest event of the same kind", "[client_api]"
   const std::vector<WorldEvent> drained = events.drain();
   CHECK(drained.size() == 1 + 3 * (EventQueue::kEventsMax + 1) - 1);
   CHECK(std::holds_alternative<ChunkMissing>(drained[0]));
-  CHECK(std::holds_alternative<ChunkRemoved>(drained[1]));  // the line before it is gone
+  CHECK(std::holds_alternative<ChunkRemoved>(drained[1]));  // the line before it was dropped
   CHECK(events.edit_events() == 0);
   CHECK(events.drain().empty());
 }
