@@ -3,8 +3,9 @@
 //
 //   auto client = WorldClient::connect({.server = "localhost", .name = "ada"});
 //   for (each frame) {
-//     client->step(); for (WorldEvent& event : client->drain(16)) ...; // mesh chunks, handle
-//     outcomes of edits ... client->move(place); client->submit(edit); ...
+//     client->step();
+//     for (WorldEvent& event : client->drain(16)) ...;  // mesh chunks, handle outcomes of edits
+//     ... client->move(place); client->submit(edit); ...
 //   }
 //
 // A program that handles these events keeps no mesh that is out of date: a chunk is reported when

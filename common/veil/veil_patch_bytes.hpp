@@ -1,8 +1,8 @@
 // The canonical bytes of a VeilPatch in the axis order kVeilOrder:
 //   varint   number of spans
 //   for each span:
-//     varint voxels between the end of the span before and its first voxel; of the first span: its
-//              first voxel
+//     varint   voxels between the end of the span before and its first voxel; of the first span:
+//              its first voxel
 //     varint   2 * (voxels - 1), plus 1 if the material is that of the span before
 //     varint   the material, if it is not
 // A voxel that one dug voxel uncovers takes 2 to 7 bytes.
