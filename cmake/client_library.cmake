@@ -1,8 +1,9 @@
-# runstone::client: one archive with the code of client/api and of all rooms below it that are not installed
-# as libraries of their own. Its headers are those of client/api that include no other room of the client.
+# runstone::client: one archive with the code of client/api and of all rooms below it that are not
+# installed as libraries of their own. Its headers are the headers of client/api that include no
+# other room of the client.
 
-# Sets `out` to the static libraries of this project that a target links, itself included, but those that are
-# installed.
+# Sets `out` to the static libraries of this project that a target links, itself included, but those
+# that are installed.
 function(runstone_library_parts target out)
   set(parts "")
   set(waiting ${target})
@@ -33,7 +34,7 @@ target_compile_features(runstone_client PUBLIC cxx_std_20)
 target_sources(runstone_client PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
   ${PROJECT_SOURCE_DIR}/client/api/mesh_source.hpp ${PROJECT_SOURCE_DIR}/client/api/world_client.hpp
   ${PROJECT_SOURCE_DIR}/client/api/world_client_options.hpp ${PROJECT_SOURCE_DIR}/client/api/world_event.hpp)
-# The packages of pkg-config have no targets in another project.
+# Another project has no targets for the packages of pkg-config.
 target_link_libraries(runstone_client
   PUBLIC runstone_common_edits runstone_common_collision runstone_common_tiles runstone_protocol_chunks
   INTERFACE $<LINK_ONLY:OpenSSL::SSL> $<LINK_ONLY:OpenSSL::Crypto> $<LINK_ONLY:SQLite::SQLite3> $<LINK_ONLY:Threads::Threads>

@@ -24,8 +24,8 @@ endif()
 add_compile_options(-ffp-contract=off)
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # g++ collects garbage once a unit has 128 MiB. Most units of a unity build need ten times that, so
-  # each is compiled 6 % faster if the first collection comes later.
+  # g++ collects garbage once a unit has 128 MiB. Most units of a unity build need ten times that,
+  # so each is compiled 6 % faster if the first collection comes later.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=524288>)
   # g++ 12 reports overlapping copies in std::string where there are none (gcc bug 105651).
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)

@@ -5,11 +5,11 @@
 # A module inside another one's folder is declared first and keeps its sources to itself.
 # SHARED makes a shared object, which holds the code of its DEPS and gives others none of their headers.
 #
-# With CMAKE_UNITY_BUILD, as in the presets release, asan, fuzz and tsan, the sources of a module are
-# compiled together, because their headers cost most of the time. SINGLE keeps them apart: in the
-# libraries for embedders, so that neither what is measured nor the time to compile one changed file
-# depends on the preset.
-# For WebAssembly this holds for vector code alone: nothing else is measured there.
+# With CMAKE_UNITY_BUILD, as in the presets release, asan, fuzz and tsan, the sources of a module
+# are compiled together, because their headers cost most of the time. SINGLE keeps them apart: in
+# the libraries for embedders, so that neither what is measured nor the time to compile one changed
+# file depends on the preset. For WebAssembly this holds only for vector code, because no other code
+# is measured there.
 #
 # With clang, the headers of the standard library, and those of Asio, spdlog and CLI11, are then parsed
 # once for all modules (runstone_precompile). Builds that compile each file alone find missing includes,
@@ -36,8 +36,9 @@ function(runstone_precompile name flags)
   target_precompile_headers(runstone_precompiled_${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
-# clang 14 makes thread-local variables ordinary ones in WebAssembly without threads, but not with the
-# instructions for bulk memory: then they cannot be linked. So modules with such variables do without these.
+# In WebAssembly without threads, clang 14 makes thread-local variables ordinary variables. With the
+# instructions for bulk memory it does not, and then the code cannot be linked. So modules with such
+# variables are compiled without these instructions.
 function(runstone_without_threads name)
   foreach(source ${ARGN})
     file(STRINGS ${source} thread_local REGEX "thread_local|with_scratch<")

@@ -57,8 +57,8 @@ web_library(web_zstd zstd::libzstd_shared SOURCES ${zstd_sources} HEADERS ${web_
 
 # Its header with the version is made by its own build; Debian's package has the same version.
 file(COPY /usr/include/sodium/version.h DESTINATION ${web_sources}/libsodium/src/libsodium/include/sodium)
-# The parts of libsodium that processors without special instructions use, without those that nothing here
-# calls: each file costs a start of Emscripten.
+# The parts of libsodium for processors without special instructions. Parts that no code here calls
+# are left out, because each file costs a start of Emscripten.
 file(GLOB_RECURSE sodium_sources ${web_sources}/libsodium/src/libsodium/*.c)
 list(FILTER sodium_sources EXCLUDE REGEX "(avx|sse|neon|aesni|_xmm|sandy2x)")
 list(FILTER sodium_sources EXCLUDE REGEX "/crypto_(auth|box|kdf|kx|secretbox|secretstream|shorthash)/|scryptsalsa")

@@ -81,8 +81,8 @@ void veil_all(std::vector<VeilChunk>& chunks, const VeilMaterials& materials,
   }
 }
 
-/// Digs a voxel out of each chunk, the first one that covers at or behind the middle, and finds what
-/// that uncovers. The shown chunk has the axis order of the true one, as a server keeps it.
+/// Digs a voxel out of each chunk, the first one that covers at or behind the middle, and finds the
+/// uncovered voxels. The shown chunk has the axis order of the true chunk, as in a server.
 void dig_all(std::vector<VeilChunk>& chunks, const VeilMaterials& materials, VeilScratch& scratch) {
   VeilPatch patch;
   for (VeilChunk& chunk : chunks) {
@@ -217,7 +217,7 @@ Result<VeilResult, std::string> run_veil_bench(const BenchOptions& options,
       [&](std::size_t number, const MeasuredWorld& world, unsigned edge) {
         if (world.volumes.empty()) return;
         const VoxelWorld* voxels = worlds->voxels(number);
-        // Of the scenarios only the visibilities are known: all their materials stop bodies.
+        // A scenario has visibilities but no material table. All its materials stop bodies.
         const VisibilityTable covers = voxels != nullptr && voxels->materials != nullptr
                                            ? VisibilityTable(veil_visibilities(*voxels->materials))
                                            : *world.visibility;

@@ -1,6 +1,7 @@
 // `runstone-bench veil`: the chunks of whole worlds with and without a veil: runs, bytes, and the
-// times to make the veil, to find what a dug voxel uncovers, to unpack and to mesh. A pass does all
-// chunks of a world in turn, so caches and branch predictors are as cold as in a client.
+// times to make the veil, to find the voxels that one dug voxel uncovers, to unpack and to mesh. A
+// pass handles all chunks of a world in turn, so caches and branch predictors are as cold as in a
+// client.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -43,7 +44,7 @@ struct VeilResult {
   std::vector<Target> targets() const;
 };
 
-/// Single-threaded. Fails if the Luanti world is wanted and cannot be read.
+/// Thread: one. Fails if the Luanti world is wanted and cannot be read.
 Result<VeilResult, std::string> run_veil_bench(const BenchOptions& options, std::ostream& progress);
 
 void write_table(const VeilResult& result, std::ostream& out);

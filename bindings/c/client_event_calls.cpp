@@ -195,7 +195,7 @@ runstone_status runstone_client_take_chunk(runstone_client* client, size_t index
     output(chunk, "chunk");
     if (neighbours != nullptr) std::fill_n(neighbours, kDirectionCount, nullptr);
     const MeshSource& source = source_at(client, index);
-    // No handle is given before all are made.
+    // The caller gets no handle before all of them are made.
     std::array<std::unique_ptr<runstone_chunk>, kDirectionCount> beside;
     for (std::size_t d = 0; d < beside.size(); ++d) {
       if (neighbours != nullptr && source.neighbours[d] != nullptr)
@@ -213,7 +213,7 @@ runstone_status runstone_client_mesh(runstone_client* client, size_t index, runs
     const MeshSource& source = source_at(client, index);
     runstone_mesh& made = live(mesh, "mesh");
     const auto materials = client->client.mesh_materials();
-    // The chunks have no handles, so that the next runstone_mesh_update() makes the mesh anew.
+    // The chunks have no handles, so the next runstone_mesh_update() makes a new mesh.
     made.change_quads([&] {
       with_scratch<ChunkMeshScratch>([&](ChunkMeshScratch& scratch) {
         mesh_chunk(*source.chunk, source.beside(), {}, *materials, scratch, made.quads);

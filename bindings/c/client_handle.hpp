@@ -1,5 +1,5 @@
-// The object behind runstone_client: the client of the C++ library, and the events that a program has
-// drained or that did not fit its buffer.
+// The object behind runstone_client: the client of the C++ library, and the events that a program
+// has drained or that did not fit its buffer.
 #pragma once
 #include <deque>
 #include <string>
@@ -23,7 +23,8 @@ namespace runstone::c_interface {
 /// Refuses a call with the words of the client.
 [[noreturn]] void refuse_as(const ClientRefusal& refusal);
 
-/// Copies a text in UTF-8 to a field, cut to its size between two characters, with a zero at the end.
+/// Copies a text in UTF-8 to a field, cut to its size between two characters, with a zero at the
+/// end.
 template <std::size_t kSize>
 void write_text(const std::string& from, char (&out)[kSize]) {
   out[cut_utf8(from, kSize - 1).copy(out, kSize - 1)] = '\0';

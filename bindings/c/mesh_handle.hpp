@@ -10,17 +10,18 @@
 
 struct runstone_mesh : runstone::c_interface::Handle<0x6873656d> {
   runstone::ChunkMesh quads;
-  /// With the shapes that the quads name. Null before the first mesh.
+  /// The materials with the shapes that the quads name. Null before the first mesh.
   runstone::MeshMaterialsPtr materials;
   // Revisions; 0: none, or the mesh has to be made anew.
   std::uint64_t of_chunk = 0, of_visibility = 0;
   std::array<std::uint64_t, runstone::kDirectionCount> of_neighbours{};
-  /// By pass. Valid if the mesh has occlusion: its quads are then these, and not `quads`.
+  /// The quads with occlusion, by pass. If the mesh has occlusion, they replace `quads`.
   std::array<runstone::OccludedQuads, 2> occluded;
   bool has_occlusion = false;
 
-  /// Does `work`, which changes the quads. If it throws, the mesh becomes empty, and the next update
-  /// makes it anew: half of it could name faces of shapes that `materials` does not have.
+  /// Does `work`, which changes the quads. If `work` throws, the mesh becomes empty and the next
+  /// update makes it anew, because a part of the quads could name faces of shapes that `materials`
+  /// lacks.
   template <class F>
   auto change_quads(F&& work) {
     of_chunk = 0;

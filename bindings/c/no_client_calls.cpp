@@ -1,5 +1,5 @@
-// The calls of runstone.h on a client, for builds without one. There is no handle of a client there, so
-// that every call but the first ones refuses its handle.
+// The calls of runstone.h on a client, for builds without one. No handle of a client exists there,
+// so every call that takes one refuses it.
 #include "bindings/c/handle.hpp"
 #include "bindings/c/runstone.h"
 #include "bindings/c/versioned.hpp"

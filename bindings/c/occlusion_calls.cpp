@@ -14,7 +14,7 @@ using namespace runstone::c_interface;
 
 namespace {
 
-/// Refuses a chunk around whose sides do not fit those of the chunk.
+/// Refuses one of the chunks around if its sides do not fit the sides of the chunk.
 void check_fits(const RunChunk& beyond, const RunChunk& chunk, std::size_t place) {
   for (std::size_t axis = 0; axis < 3; ++axis, place /= 3) {
     if (place % 3 == 1 && beyond.extent.sides()[axis] != chunk.extent.sides()[axis])
@@ -22,7 +22,7 @@ void check_fits(const RunChunk& beyond, const RunChunk& chunk, std::size_t place
   }
 }
 
-/// The places of the six neighbours by Direction.
+/// The places of the six neighbours in the 27 chunks, by Direction.
 constexpr std::array<std::size_t, kDirectionCount> kNeighbourPlaces = {
     around_place(-1, 0, 0), around_place(1, 0, 0),  around_place(0, -1, 0),
     around_place(0, 1, 0),  around_place(0, 0, -1), around_place(0, 0, 1)};

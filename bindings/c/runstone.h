@@ -339,7 +339,7 @@ RUNSTONE_API runstone_status runstone_shapes_create(runstone_shapes** out);
 RUNSTONE_API runstone_status runstone_shapes_free(runstone_shapes* shapes);
 /* Gives a material the shape of 1 to 32 boxes: their union, or the two upright diagonal planes of
  * each for RUNSTONE_SHAPE_CROSSED, which are plants. min is 0 .. 15, and max is min + 1 .. 16.
- * Replaces a shape that the material has. Refuses more than 1023 faces. */
+ * Replaces the present shape of the material, if any. Refuses more than 1023 faces. */
 RUNSTONE_API runstone_status runstone_shapes_add(runstone_shapes* shapes, uint16_t material,
                                                  uint32_t form, const runstone_local_box* boxes,
                                                  size_t count);
@@ -355,8 +355,9 @@ RUNSTONE_API runstone_status runstone_shapes_add_kind(runstone_shapes* shapes, u
  * entry are opaque; material 0 is always empty. */
 RUNSTONE_API runstone_status runstone_visibility_create(const uint8_t* visibilities, size_t count,
                                                         runstone_visibility** out);
-/* Makes a table in which materials have shapes. Meshes of it have quads of shapes, and levels of
- * detail take a shape for a cube if it fills at least half of its voxel. The shapes are copied. */
+/* Makes a table in which materials have shapes. Meshes that are made with this table have quads of
+ * shapes. Levels of detail treat a shape as a cube if it fills at least half of its voxel. The
+ * shapes are copied. */
 RUNSTONE_API runstone_status runstone_visibility_create_with_shapes(const uint8_t* visibilities,
                                                                     size_t count,
                                                                     const runstone_shapes* shapes,
@@ -388,18 +389,19 @@ RUNSTONE_API runstone_status runstone_mesh_update(runstone_mesh* mesh, const run
                                                   const runstone_borders* const borders[6],
                                                   const runstone_visibility* visibility,
                                                   uint32_t* is_whole);
-/* Darkens the corners of the quads of cubes by the opaque voxels around them: quads are cut so that
- * the four corners of each give every face its own values, and vertices get their occlusion.
- * `around` is NULL or 27 chunks of which each may be NULL: the one at an offset of x, y and z of -1,
- * 0 or 1 is around[x + 1 + 3 * (y + 1) + 9 * (z + 1)], and around[13] is not read. Refuses a mesh
- * that is not of this chunk, these neighbours and this visibility as they are now. The next
- * runstone_mesh_chunk() or runstone_mesh_update() takes the occlusion away. */
+/* Darkens the corners of the quads of cubes by the opaque voxels around them. Quads are cut so that
+ * the four corners of each quad give the exact values of each of its faces. Vertices then have
+ * their occlusion. `around` is NULL or 27 chunks, each of which may be NULL. The chunk at the
+ * offsets x, y and z, each -1, 0 or 1, is around[x + 1 + 3 * (y + 1) + 9 * (z + 1)]. around[13] is
+ * not read. Refuses a mesh that was not made from this chunk, these neighbours and this visibility
+ * as they are now. The next runstone_mesh_chunk() or runstone_mesh_update() removes the
+ * occlusion. */
 RUNSTONE_API runstone_status runstone_mesh_occlude(runstone_mesh* mesh, const runstone_chunk* chunk,
                                                    const runstone_chunk* const around[27],
                                                    const runstone_visibility* visibility);
 /* Writes the occlusion of the corners of each quad of a pass, for programs that unpack quads in a
- * shader: bits 2 * i and 2 * i + 1 are that of corner i, in the order of the vertices of a quad
- * that has none. Zeros without runstone_mesh_occlude(). */
+ * shader: bits 2 * i and 2 * i + 1 are the occlusion of corner i. Corners are in the order of the
+ * vertices of a quad without occlusion. Writes zeros if runstone_mesh_occlude() was not called. */
 RUNSTONE_API runstone_status runstone_mesh_occlusion(const runstone_mesh* mesh, uint32_t pass,
                                                      uint8_t* out, size_t capacity, size_t* count);
 /* Writes the quads of cubes of a pass, 8 bytes each (docs/meshing.md), by direction, then layer. */
@@ -411,9 +413,9 @@ RUNSTONE_API runstone_status runstone_mesh_layer_quads(const runstone_mesh* mesh
                                                        uint32_t direction, uint32_t layer,
                                                        uint64_t* out, size_t capacity,
                                                        size_t* count);
-/* Writes four vertices for each quad of cubes of a pass, counter-clockwise seen from outside. A quad
- * with occlusion may begin at its second corner, so that the triangles of runstone_mesh_indices()
- * meet at the diagonal that is less dark. */
+/* Writes four vertices for each quad of cubes of a pass, counter-clockwise seen from outside. A
+ * quad with occlusion may begin at its second corner, so that the triangles of
+ * runstone_mesh_indices() meet at the diagonal that is less dark. */
 RUNSTONE_API runstone_status runstone_mesh_vertices(const runstone_mesh* mesh, uint32_t pass,
                                                     runstone_vertex* out, size_t capacity,
                                                     size_t* count);
@@ -487,14 +489,14 @@ RUNSTONE_API runstone_status runstone_chunk_boxes(const runstone_chunk* chunk, c
 
 /* The client (docs/c.md#the-client). A client joins a server and keeps the chunks around a player
  * up to date. A program calls runstone_client_step() every frame, drains the events and meshes the
- * chunks that they name: no mesh is then out of date for longer than that.
+ * chunks that they name. So no mesh stays out of date.
  *
  * Threads. The calls of one client are made by one thread at a time, also those that only read. No
- * call waits for the network or a disk but _connect() with files, _wait(), _close() and _free(), and
- * the _step() that meets a server for the first time and keeps its key in a file.
+ * call waits for the network or a disk, except _connect() with files, _wait(), _close(), _free(),
+ * and the _step() that saves the key of a new server in a file.
  *
- * A build of the library without the client has these functions, too. runstone_client_connect()
- * then returns RUNSTONE_UNSUPPORTED. */
+ * A build of the library without the client has these functions, too. There,
+ * runstone_client_connect() returns RUNSTONE_UNSUPPORTED. */
 
 enum {
   RUNSTONE_ENCRYPTION_ANY_CERTIFICATE = 0, /* TLS 1.3; the handshake proves the server's key */
@@ -509,14 +511,14 @@ enum {
 /* The action of the first edit of a new action, for runstone_client_submit(). */
 #define RUNSTONE_NEW_ACTION UINT64_MAX
 
-/* Kinds of events. Later libraries may have more: ignore what you do not know. */
+/* Kinds of events. Later libraries may have more kinds: ignore unknown ones. */
 enum {
   /* The world is open. flags: RUNSTONE_FLAG_ANOTHER_WORLD, RUNSTONE_FLAG_FIRST_CONTACT */
   RUNSTONE_EVENT_WORLD_OPENED = 1,
   /* A connection ended or could not be made. text: a sentence; more: the exact reason. flags:
    * RUNSTONE_FLAG_FINAL, RUNSTONE_FLAG_LACKS_PASSWORD */
   RUNSTONE_EVENT_CONNECTION_LOST = 2,
-  /* The mesh of a chunk is out of date, or it has none. at; detail: RUNSTONE_CAUSE_... */
+  /* The mesh of a chunk is out of date or missing. at; detail: RUNSTONE_CAUSE_... */
   RUNSTONE_EVENT_CHUNK_CHANGED = 3,
   RUNSTONE_EVENT_CHUNK_REMOVED = 4,  /* A chunk is not shown any more: remove its mesh. at */
   RUNSTONE_EVENT_CHUNK_MISSING = 5,  /* The server cannot send a chunk. at */
@@ -536,12 +538,12 @@ enum {
   RUNSTONE_EVENT_COMMAND_DONE = 12,
   RUNSTONE_EVENT_MATERIALS_CHANGED = 13, /* There are more materials, or other shapes. */
   RUNSTONE_EVENT_PLAYERS_CHANGED = 14,   /* Players joined, left or changed their name or role. */
-  /* Something is not as the options say, and the client goes on. text */
+  /* An option cannot be honoured, for example the cache, and the client goes on. text */
   RUNSTONE_EVENT_WARNING = 15
 };
 enum { /* flags of events */
        RUNSTONE_FLAG_ANOTHER_WORLD =
-           1, /* not the world that was open before; all chunks are gone */
+           1, /* another world than before is open; all earlier chunks are removed */
        RUNSTONE_FLAG_FIRST_CONTACT = 2,  /* the key of the server was not known */
        RUNSTONE_FLAG_FINAL = 4,          /* the client does not connect again */
        RUNSTONE_FLAG_LACKS_PASSWORD = 8, /* the world has a password, and the options have none */
@@ -557,9 +559,9 @@ enum { /* who wrote a line of the chat */
        RUNSTONE_CHAT_PLAYER = 0,
        RUNSTONE_CHAT_SERVER = 1,
        RUNSTONE_CHAT_MESSAGE_OF_THE_DAY = 2,
-       RUNSTONE_CHAT_REFUSED = 3, /* why a line of this client was not passed on */
+       RUNSTONE_CHAT_REFUSED = 3, /* the server rejected a line of this client; text: the reason */
        RUNSTONE_CHAT_VISIT = 4,   /* a player has joined or left */
-       RUNSTONE_CHAT_OTHER = 5    /* of a newer server */
+       RUNSTONE_CHAT_OTHER = 5    /* a kind of a newer server */
 };
 
 typedef struct runstone_client_options {
@@ -578,8 +580,9 @@ typedef struct runstone_client_options {
   uint32_t view_radius_vertical; /* (4) */
   uint64_t memory_mib;           /* of chunks and edits, 16 to 65536 (1024) */
   uint64_t cache_mib;            /* 1 to 1048576 (256) */
-  /* Called when there is something to step, by a thread of the library. It must not call the client,
-   * nor wait for a thread that may be in a call of the client, such as for a mutex (NULL). */
+  /* A thread of the library calls this function when runstone_client_step() has something to do.
+   * The function must not call the client, nor wait for a thread that may be in a call of the
+   * client, for example for a mutex (NULL). */
   void (*wake)(void* context);
   void* wake_context;
 } runstone_client_options;
@@ -630,33 +633,35 @@ typedef struct runstone_player { /* 120 bytes */
   char role[36]; /* "" if the server did not name it; cut if it is longer */
 } runstone_player;
 
-/* Fills options with their defaults. out->struct_size is set by the caller. */
+/* Fills options with their defaults. Requires that the caller has set out->struct_size. */
 RUNSTONE_API runstone_status runstone_client_default_options(runstone_client_options* out);
-/* Starts connecting, and returns at once: an event tells the outcome. After a loss the client
- * connects again by itself. Refuses wrong options, and files that cannot be used. Texts are copied. */
+/* Starts to connect and returns at once. An event reports the outcome. After a loss the client
+ * connects again by itself. Refuses invalid options, and files that cannot be used. Copies the
+ * texts of the options. */
 RUNSTONE_API runstone_status runstone_client_connect(const runstone_client_options* options,
                                                      runstone_client** out);
-/* Closes and frees. */
+/* Closes the client as runstone_client_close() does, and frees it. */
 RUNSTONE_API runstone_status runstone_client_free(runstone_client* client);
-/* Sends what is queued and a goodbye, and ends the threads. Waits a second at most for the network,
- * and until the cache is written. Chunks and events stay readable. Does nothing the second time. */
+/* Sends the queued messages and a goodbye, and ends the threads. Waits at most a second for the
+ * network, and until the cache is written. Chunks and events stay readable. A second call does
+ * nothing. */
 RUNSTONE_API runstone_status runstone_client_close(runstone_client* client);
-/* Handles what has arrived and sends what is due. Call it every frame, or every 10 ms. Takes a few
- * milliseconds at most, with a password a quarter of a second when it joins; `has_more`, if not NULL,
- * becomes 1 if something is left. */
+/* Handles received messages and sends due ones. Call it every frame, or every 10 ms. A call takes a
+ * few milliseconds at most. The call that joins with a password takes a quarter of a second.
+ * `has_more`, if not NULL, becomes 1 if messages are left for the next call, otherwise 0. */
 RUNSTONE_API runstone_status runstone_client_step(runstone_client* client, uint32_t* has_more);
-/* Waits until there is something to step, `milliseconds` at most. */
+/* Waits until runstone_client_step() has something to do, at most `milliseconds`. */
 RUNSTONE_API runstone_status runstone_client_wait(runstone_client* client, uint32_t milliseconds);
 /* Writes the next events to an array of `capacity` elements of `event_size` bytes, which is
  * sizeof(runstone_event), and their number to *count. Events that do not fit are kept, so a program
- * calls again while *count is the capacity. At most `chunks_max` of them are new chunks that
- * changed, the most important ones; the others stay outdated until a later call. Events that were
- * kept come first, whatever `chunks_max` is then. Events are named by their index until the next
- * call. Requires a capacity of at least 1. */
+ * calls again while *count is the capacity. A call takes at most `chunks_max` of the changed
+ * chunks, the most important ones. The other chunks stay outdated until a later call. Events that
+ * an earlier call kept come first, and `chunks_max` does not limit them. The index of an event
+ * names it until the next call. Requires a capacity of at least 1. */
 RUNSTONE_API runstone_status runstone_client_drain(runstone_client* client, size_t chunks_max,
                                                    runstone_event* out, size_t event_size,
                                                    size_t capacity, size_t* count);
-/* Write the texts of a drained event. *count includes the zero at the end. */
+/* These two calls write the texts of a drained event. *count includes the zero at the end. */
 RUNSTONE_API runstone_status runstone_client_event_text(runstone_client* client, size_t index,
                                                         char* out, size_t capacity, size_t* count);
 RUNSTONE_API runstone_status runstone_client_event_more(runstone_client* client, size_t index,
@@ -665,9 +670,9 @@ RUNSTONE_API runstone_status runstone_client_event_more(runstone_client* client,
 RUNSTONE_API runstone_status runstone_client_event_chunks(runstone_client* client, size_t index,
                                                           runstone_pos* out, size_t capacity,
                                                           size_t* count);
-/* Makes handles of the chunk of a drained RUNSTONE_EVENT_CHUNK_CHANGED, and of its six neighbours if
- * `neighbours` is not NULL; those that are missing become NULL. The caller frees them. They are
- * copies, which any thread may mesh. */
+/* Makes handles of the chunk of a drained RUNSTONE_EVENT_CHUNK_CHANGED, and of its six neighbours
+ * if `neighbours` is not NULL. Handles of missing neighbours become NULL. The caller frees the
+ * handles. They are copies, which any thread may mesh. */
 RUNSTONE_API runstone_status runstone_client_take_chunk(runstone_client* client, size_t index,
                                                         runstone_chunk** chunk,
                                                         runstone_chunk* neighbours[6]);
@@ -677,33 +682,36 @@ RUNSTONE_API runstone_status runstone_client_mesh(runstone_client* client, size_
                                                   runstone_mesh* mesh);
 /* Gives the number of chunks that have to be meshed and were not drained yet. */
 RUNSTONE_API runstone_status runstone_client_outdated(runstone_client* client, size_t* count);
-/* Gives RUNSTONE_CLIENT_..., and 1 in `is_complete`, if not NULL, if all chunks around the player
- * have arrived. */
+/* Gives the state, RUNSTONE_CLIENT_.... `is_complete`, if not NULL, becomes 1 if all chunks around
+ * the player have arrived, otherwise 0. */
 RUNSTONE_API runstone_status runstone_client_state(runstone_client* client, uint32_t* state,
                                                    uint32_t* is_complete);
-/* Describes the world. Returns RUNSTONE_NOT_FOUND before it was open for the first time. */
+/* Describes the world. Returns RUNSTONE_NOT_FOUND before a world was open for the first time. */
 RUNSTONE_API runstone_status runstone_client_world(runstone_client* client,
                                                    runstone_world_info* out);
 /* Moves the player, and the view with it. */
 RUNSTONE_API runstone_status runstone_client_move(runstone_client* client,
                                                   const runstone_place* place);
-/* Gives the place of the player: that of the last move, or where the server let the player begin. */
+/* Gives the place of the player: the place of the last move, or the place where the server let the
+ * player begin. */
 RUNSTONE_API runstone_status runstone_client_place(runstone_client* client, runstone_place* out);
 RUNSTONE_API runstone_status runstone_client_set_view(runstone_client* client, uint32_t radius,
                                                       uint32_t radius_vertical);
-/* Shows edit `index` of a list at once and sends it. An event tells the outcome of the edit with
- * this `number`, also after a lost connection, unless the client ends before. Edits with one action
- * are undone as one: pass RUNSTONE_NEW_ACTION with the first, and the number of the first with the
- * others; with 0 the edit is an action by itself. Returns RUNSTONE_LIMIT_EXCEEDED if the budget of
- * the player does not suffice yet. `number` may be NULL. */
+/* Shows edit `index` of a list at once and sends it. An event reports the outcome of the edit with
+ * this `number`, also after a lost connection, unless the client ends before. One undo takes back
+ * all edits of one action. Pass RUNSTONE_NEW_ACTION with the first edit of an action, and the
+ * number of the first edit with the others. With 0 the edit is an action by itself. Returns
+ * RUNSTONE_LIMIT_EXCEEDED if the budget of the player does not suffice yet. `number` may be
+ * NULL. */
 RUNSTONE_API runstone_status runstone_client_submit(runstone_client* client,
                                                     const runstone_edits* edits, size_t index,
                                                     uint64_t action, uint64_t* number);
-/* Gives the microseconds until the budget of the player suffices for an edit; 0 if it does. */
+/* Gives the microseconds until the budget of the player suffices for an edit, or 0 if it suffices
+ * now. */
 RUNSTONE_API runstone_status runstone_client_submit_delay(runstone_client* client,
                                                           const runstone_edits* edits, size_t index,
                                                           int64_t* wait_us);
-/* Sends a line to everybody. */
+/* Sends a line of the chat to all players. */
 RUNSTONE_API runstone_status runstone_client_chat(runstone_client* client, const char* line);
 /* Sends a command, such as "undo". RUNSTONE_EVENT_COMMAND_DONE has the answer. Refuses another
  * command before that event was drained. */
@@ -717,7 +725,7 @@ RUNSTONE_API runstone_status runstone_client_chunks(runstone_client* client, run
 /* Gives the material of a voxel that is shown. */
 RUNSTONE_API runstone_status runstone_client_material_at(runstone_client* client,
                                                          runstone_pos voxel, uint16_t* material);
-/* Gives the number of materials, which are 0 .. count - 1; 0 before the world was open. */
+/* Gives the number of materials, or 0 before a world was open. Materials are 0 .. count - 1. */
 RUNSTONE_API runstone_status runstone_client_material_count(runstone_client* client, size_t* count);
 RUNSTONE_API runstone_status runstone_client_material(runstone_client* client, uint32_t material,
                                                       runstone_material_info* out);

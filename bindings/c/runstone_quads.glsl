@@ -1,11 +1,11 @@
-// runstone_quads.glsl: unpacks the quads of 8 bytes of Runstone in a shader, GLSL 1.30 or ES 3.00 and
-// later. Include it behind the line #version. A quad is a uvec2: its low 32 bits, then its high ones,
-// as runstone_mesh_quads() writes them on machines whose lowest byte comes first.
+// runstone_quads.glsl: unpacks the quads of 8 bytes of Runstone in a shader, GLSL 1.30 or ES 3.00
+// and later. Include it behind the line #version. A quad is a uvec2: its low 32 bits, then its high
+// ones, as runstone_mesh_quads() writes them on machines whose lowest byte comes first.
 //
 // A vertex shader draws six vertices a quad, of which vertex i is
 //   RunstoneQuad quad = runstone_unpack(texelFetch(quads, i / 6).xy);
 //   vec3 at = origin_of_chunk + runstone_corner(quad, runstone_triangle_corner(uint(i % 6)));
-// The numbers are those of RUNSTONE_QUAD_..._SHIFT and _BITS in runstone.h.
+// The numbers equal RUNSTONE_QUAD_..._SHIFT and _BITS in runstone.h.
 const uint RUNSTONE_QUAD_X_SHIFT = 0u;
 const uint RUNSTONE_QUAD_X_BITS = 7u;
 const uint RUNSTONE_QUAD_Y_SHIFT = 7u;
@@ -82,7 +82,8 @@ uint runstone_triangle_corner(uint vertex) {
   return vertex < 3u ? vertex : vertex == 3u ? 0u : vertex - 2u;
 }
 
-// Returns the occlusion of a corner, 0 .. 3, of a number that runstone_mesh_occlusion() writes.
+// Returns the occlusion of a corner, 0 .. 3. `corners` is an element that runstone_mesh_occlusion()
+// writes.
 uint runstone_occlusion(uint corners, uint corner) { return (corners >> (2u * corner)) & 3u; }
 
 // Returns the corner of vertex 0 .. 5 of the two triangles of a quad with occlusion, whose diagonal

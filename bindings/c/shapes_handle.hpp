@@ -15,7 +15,7 @@ struct runstone_shapes : runstone::c_interface::Handle<0x70616873> {
 
 namespace runstone::c_interface {
 
-/// Returns what meshers read of materials of these visibilities, by id, and shapes. Refuses more
+/// Returns the materials for meshers, from visibilities by id and from shapes. Refuses more
 /// different shapes than a table can have.
 MeshMaterialsPtr mesh_materials(std::span<const Visibility> visibilities,
                                 const runstone_shapes& shapes);

@@ -1,5 +1,5 @@
-// The objects behind runstone_visibility and runstone_borders. A visibility holds all that meshers read
-// of materials, with their shapes.
+// The objects behind runstone_visibility and runstone_borders. A visibility holds all properties of
+// materials that meshers read, with the shapes.
 #pragma once
 #include <cstdint>
 #include <memory>

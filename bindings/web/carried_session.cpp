@@ -13,7 +13,8 @@
 namespace runstone {
 namespace {
 
-/// The stream writes about so many bytes at a time, so that edits are soon before other messages.
+/// The bytes that the stream writes at a time, about. A small number lets edits soon pass other
+/// messages.
 constexpr std::size_t kWriteBytes = std::size_t{64} << 10;
 
 SessionConfig session_config_of(const CarriedPlayer& player) {
@@ -27,7 +28,7 @@ SessionConfig session_config_of(const CarriedPlayer& player) {
   return config;
 }
 
-/// How long unpacking takes is not measured: the session is pure.
+/// The session is pure, so it does not measure the time of unpacking.
 std::int64_t no_clock_ns() { return 0; }
 
 MeshMaterials materials_as_cubes(const MaterialTable& table) {
@@ -262,7 +263,7 @@ std::optional<CarriedMesh> CarriedSession::next_mesh() {
     }
     if (!planner_.finish(job->key, job->number, mesh, job->chunk, std::move(made))) continue;
     if (mesh->empty()) {
-      // A chunk of air that was never drawn is no news.
+      // A chunk of air that was never drawn needs no report.
       if (drawn_.erase(job->key) == 0) continue;
       return CarriedMesh{job->key.at, nullptr};
     }

@@ -8,8 +8,8 @@
 //   - draws what next_mesh() returns.
 // Shapes that are no cubes are meshed as in coarse levels of detail: as a cube if they fill at
 // least half of their voxel, otherwise not at all. Distant ground is not requested. Pure:
-// randomness and times are arguments, in microseconds of a steady clock. One thread. Bounds: the
-// replica's (client/replica), and kNoticesMax notices.
+// randomness and times are arguments. Times are microseconds of a steady clock. Thread: one.
+// Bounds: those of the replica (client/replica), and kNoticesMax notices.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -40,12 +40,12 @@ struct CarriedPlayer {
   std::uint8_t radius_h = 0, radius_v = 0;  // of the view, in chunks: kCarriedRadiusMax at most
 };
 
-/// What happened, for the program. Values are part of the interface for JavaScript.
+/// The kinds of notices for the program. Their values are part of the interface for JavaScript.
 enum class CarriedNoticeKind : std::uint8_t {
   opened = 1,     // the world is open, for the first time or again
-  closed = 2,     // the server has ended the session; text: why
-  refused = 3,    // as `closed`, and another attempt is pointless
-  rejected = 4,   // number: the edit; text: why
+  closed = 2,     // the server has ended the session; text: the reason
+  refused = 3,    // as `closed`, but another attempt is pointless
+  rejected = 4,   // number: the edit; text: the reason
   chat = 5,       // text: "name: line", or a line of the server
   materials = 6,  // there are more materials, or materials of another world
   durable = 7,    // number: an edit that is on disk
@@ -70,11 +70,11 @@ class CarriedSession final : private MessageSink {
 
   /// Begins a connection. `nonce` must be fresh and random.
   void connected(const Nonce& nonce, TimeUs now_us);
-  /// Takes bytes of the server. Fails if they break a rule of the protocol, or without a
+  /// Takes bytes of the server. Fails if they break a rule of the protocol, or if there is no
   /// connection. The program then closes the connection.
   Result<void> receive(ByteView bytes, TimeUs now_us);
   void disconnected();
-  /// Sends pings, poses and what else is due. Call it about every 10 ms.
+  /// Sends pings, poses and other due messages. Call it about every 10 ms.
   void step(TimeUs now_us);
   /// Returns the next frame to send, a message of a WebSocket, or an empty span if there is none.
   /// The bytes hold until the next call.
@@ -102,7 +102,8 @@ class CarriedSession final : private MessageSink {
   const ClientSession& session() const { return session_; }
   std::size_t unmeshed_count() const { return planner_.dirty_count() + gone_.size(); }
 
-  /// The oldest are dropped. All edits that are kept may become durable at once.
+  /// The greatest number of notices. Beyond it the oldest ones are dropped. It has room for the
+  /// case that all kept edits become durable at once.
   static constexpr std::size_t kNoticesMax = 2 * kLocalEditsMax;
 
  private:

@@ -1,6 +1,6 @@
 // The random numbers of libsodium in the WebAssembly of @runstone/core. They are those of the
-// page's crypto.getRandomValues(), which getentropy() calls. Without them there is no safe key, so
-// the program ends if there are none.
+// page's crypto.getRandomValues(), which getentropy() calls. Without random numbers no key is safe,
+// so the program ends if there are none.
 #include <sodium/randombytes.h>
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 /* runstone_session.h: the functions that the JavaScript of @runstone/core calls beside those of
  * runstone.h, with the same rules for handles, statuses and buffers. They are no part of the C
- * interface: they may change with each version, because the package has both sides.
+ * interface. They may change with each version, because the package contains both sides.
  *
  * A session carries no bytes and reads no clock: JavaScript has the WebSocket and passes the time
  * in milliseconds. See CarriedSession. */
@@ -24,11 +24,11 @@ typedef struct runstone_session_info {
   uint32_t author;      /* the number of this player */
   uint32_t materials;   /* the number of them, air included; 0 before the first welcome */
   uint32_t chunks;      /* that are held */
-  uint32_t unmeshed;    /* chunks that runstone_session_next_mesh() will give, sooner or later */
+  uint32_t unmeshed;    /* chunks that runstone_session_next_mesh() will give */
   uint32_t pending;     /* edits without an answer */
   uint32_t has_place;   /* 1: the server knows where the player was last */
   uint32_t reserved;    /* 0 */
-  runstone_vec place;   /* there; otherwise the spawn point of the world */
+  runstone_vec place;   /* the last place of the player; otherwise the spawn point of the world */
 } runstone_session_info;
 
 typedef struct runstone_session_material {
@@ -39,18 +39,19 @@ typedef struct runstone_session_material {
 } runstone_session_material;
 
 /* Makes a session of a player. `seed` is the secret key of the player, 32 bytes. `instance` is
- * random. Names and tickets are UTF-8. Refuses names and tickets that no server accepts; an empty
- * ticket is none. The radii are chunks, 0 .. 32. */
+ * random. Names and tickets are UTF-8. Refuses names and tickets that no server accepts. An empty
+ * ticket means no invite. The radii are chunks, 0 .. 32. */
 RUNSTONE_API runstone_status runstone_session_create(const uint8_t seed[32], const char* name,
                                                      const char* ticket, uint32_t instance,
                                                      uint32_t radius_h, uint32_t radius_v,
                                                      runstone_session** out);
 RUNSTONE_API runstone_status runstone_session_free(runstone_session* session);
-/* A connection is there. `nonce` is 32 fresh random bytes. */
+/* Begins a connection. `nonce` is 32 fresh random bytes. */
 RUNSTONE_API runstone_status runstone_session_connected(runstone_session* session,
                                                         const uint8_t nonce[32], double now_ms);
 RUNSTONE_API runstone_status runstone_session_disconnected(runstone_session* session);
-/* Takes a message of the WebSocket. Refuses bytes that break the protocol: close the connection. */
+/* Takes a message of the WebSocket. Refuses bytes that break the protocol. The caller then closes
+ * the connection. */
 RUNSTONE_API runstone_status runstone_session_receive(runstone_session* session,
                                                       const uint8_t* bytes, size_t count,
                                                       double now_ms);
@@ -72,7 +73,7 @@ RUNSTONE_API runstone_status runstone_session_get_material(const runstone_sessio
 /* Moves the eye. Yaw 0 looks along +z and grows towards +x; pitch is positive upward; radians. */
 RUNSTONE_API runstone_status runstone_session_move(runstone_session* session, runstone_vec eye,
                                                    double yaw, double pitch);
-/* Shows an edit at once and sends it. *number is that of the edit in later notices. */
+/* Shows an edit at once and sends it. *number names the edit in later notices. */
 RUNSTONE_API runstone_status runstone_session_edit(runstone_session* session, const uint8_t* bytes,
                                                    size_t count, double now_ms, uint32_t* number);
 RUNSTONE_API runstone_status runstone_session_chat(runstone_session* session, const char* text,

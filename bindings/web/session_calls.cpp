@@ -29,7 +29,7 @@ namespace {
 constexpr double kReachMax = 512;
 
 TimeUs us_of(double now_ms) {
-  // A clock beyond 2^50 us is none of a browser.
+  // No clock of a browser goes beyond 2^50 us.
   if (!(now_ms >= 0 && now_ms < 1e12)) refuse(RUNSTONE_BAD_ARGUMENT, "now_ms", "is no time");
   return static_cast<TimeUs>(now_ms * 1000);
 }
@@ -42,7 +42,7 @@ WorldPos position_of(const runstone_vec& at, const char* name) {
   return {at.x, at.y, at.z};
 }
 
-/// Refuses a call with words that are no constant.
+/// Refuses a call with words that are made at run time.
 [[noreturn]] void refuse_with(runstone_status status, const std::string& words) {
   throw RefusedCall{keep_words(status, "%s", words.c_str())};
 }
@@ -58,7 +58,7 @@ runstone_status runstone_session_create(const uint8_t seed[32], const char* name
     std::memcpy(player.seed.data(), &given(seed, "seed"), player.seed.size());
     player.name = &given(name, "name");
     player.ticket = &given(ticket, "ticket");
-    // The encoder of messages requires that they pass.
+    // The encoder of messages requires that name and ticket pass these checks.
     if (const auto right = check_player_name(player.name); !right)
       refuse_with(RUNSTONE_BAD_ARGUMENT, "name: " + right.error());
     if (const auto right = check_ticket(player.ticket); !right)
@@ -231,7 +231,7 @@ runstone_status runstone_session_next_mesh(runstone_session* session, runstone_m
     given(has_mesh, "has_mesh") = 0;
     const auto next = from.next_mesh();
     if (!next) return;
-    // The quads are those of no handle of a chunk.
+    // The quads belong to no handle of a chunk.
     to.of_chunk = 0;
     to.has_occlusion = false;
     *at = {next->at.x, next->at.y, next->at.z};

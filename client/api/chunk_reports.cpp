@@ -28,7 +28,7 @@ void ChunkReports::take(std::span<const ChunkChange> changes, EventQueue& events
 std::optional<ChunkChanged> ChunkReports::next() {
   std::optional<MeshJob> job = planner_.next();
   if (!job) return std::nullopt;
-  // The program meshes the source that it gets. The planner has nothing to wait for.
+  // The program meshes the source that it gets, so the planner does not wait for a result.
   static_cast<void>(planner_.finish(job->key, job->number, nullptr));
   reported_.insert(job->key.at);
   return ChunkChanged{{job->key.at, job->serial, std::move(job->chunk), std::move(job->neighbours)},

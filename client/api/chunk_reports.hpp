@@ -1,6 +1,6 @@
-// ChunkReports: which chunks of a replica have to be meshed again by the program, and which meshes
-// it has to remove. A MeshPlanner decides it, as in runstone-client: neighbours that arrive, change
-// or leave count, too. One thread.
+// ChunkReports: reports the chunks of a replica that the program has to mesh again, and the chunks
+// whose meshes it has to remove. A MeshPlanner decides this, as in runstone-client, so a neighbour
+// that arrives, changes or leaves also makes a mesh outdated. Thread: one.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -18,10 +18,11 @@ class ChunkReports {
   /// `replica` must outlive the reports.
   explicit ChunkReports(const Replica& replica) : replica_(replica), planner_(replica) {}
 
-  /// Takes the changes of the replica. Queues the chunks that were reported and are not shown any
-  /// more.
+  /// Takes the changes of the replica. Queues ChunkRemoved for each chunk that was reported and is
+  /// not shown any more.
   void take(std::span<const ChunkChange> changes, EventQueue& events);
-  /// Call it when the view of the replica moved, or its answers for chunks at the edge changed.
+  /// Call it when the view of the replica has moved, or when the answers of the replica for chunks
+  /// at the edge have changed.
   void view_changed() { planner_.view_changed(); }
   void set_eye(ChunkCoord eye) { planner_.set_eye(eye); }
   /// Reports again the chunks that have a material from `first` on.
@@ -29,8 +30,8 @@ class ChunkReports {
   /// Reports all chunks again, because shapes of materials changed.
   void mesh_all_again() { planner_.forget_meshes(); }
 
-  /// Returns the next chunk to mesh, or nullopt while each one waits for a neighbour or is up to
-  /// date.
+  /// Returns the next chunk to mesh, or nullopt if each chunk is up to date or waits for a
+  /// neighbour.
   std::optional<ChunkChanged> next();
   /// Returns the number of chunks to mesh.
   std::size_t count() const { return planner_.dirty_count(); }

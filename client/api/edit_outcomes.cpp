@@ -52,7 +52,7 @@ void EditOutcomes::take(const ReplicaChanges& changes, const ClientSession& sess
   if (lost_ != 0) note_offers(session, events);
 }
 
-/// Finds out which lost edits were offered again, or can never be offered.
+/// Looks for lost edits that were offered again, or that can never be offered again.
 void EditOutcomes::note_offers(const ClientSession& session, EventQueue& events) {
   for (const auto& [seq, local] : session.replica().local_edits().all()) {
     if (local.again_of == 0) continue;

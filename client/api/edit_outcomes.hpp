@@ -1,6 +1,6 @@
 // EditOutcomes: follows the edits of a WorldClient from submit() until they are durable, rejected
 // or unseen, and makes their events. The number of an edit is its first client sequence. An edit
-// that the session offers again, as a new one, keeps its number. One thread. Bound: the edits that
+// that the session offers again, as a new one, keeps its number. Thread: one. Bound: the edits that
 // LocalEdits and LostEdits keep.
 #pragma once
 #include <map>
@@ -17,7 +17,7 @@ class EditOutcomes {
   void add(ClientSequence seq) { open_.emplace(seq, Stage::waits); }
   /// Returns the number of edits without a final outcome.
   std::size_t count() const { return open_.size(); }
-  /// Takes what happened to the edits. Call it after each tick of the session, before the next
+  /// Takes the changes of the edits. Call it after each tick of the session, before the next
   /// message is received. `changes` are those of the session's replica.
   void take(const ReplicaChanges& changes, const ClientSession& session, EventQueue& events);
   /// Ends all edits, because another world is open.

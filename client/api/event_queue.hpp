@@ -1,7 +1,8 @@
-// EventQueue: the events of a WorldClient that were not drained yet. Full: the oldest event of the
-// same kind is dropped, except of edits of this client, which the caller bounds, and of removed
-// chunks, of which there are no more than were reported. The chunks that edits of others name are
-// bounded together, because a server may let one edit name all chunks of the view. One thread.
+// EventQueue: the events of a WorldClient that were not drained yet. If the queue is full, the
+// oldest event of the same kind is dropped. Two kinds are never dropped: events of edits of this
+// client, whose number the caller bounds, and events of removed chunks, of which there are at most
+// as many as reported chunks. All chunks that edits of others name share one bound, because one
+// edit of a server may name all chunks of the view. Thread: one.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,8 +20,8 @@ namespace runstone {
 class EventQueue {
  public:
   static constexpr std::size_t kEventsMax = 4'096;  // of a kind
-  /// The chunks that all events of edits of others name, 12 MiB. The newest event is kept, whatever
-  /// it names.
+  /// The greatest number of chunks that all events of edits of others name, 12 MiB. The newest
+  /// event is kept even if it names more.
   static constexpr std::size_t kNamedChunksMax = std::size_t{1} << 20;
 
   void push(WorldEvent event) {
@@ -47,7 +48,7 @@ class EventQueue {
   }
 
  private:
-  /// Requires an event of the kind.
+  /// Drops the oldest event of a kind. Requires that there is one.
   void drop_oldest(std::size_t kind) {
     const auto oldest = std::find_if(events_.begin(), events_.end(), [&](const WorldEvent& event) {
       return event.index() == kind;

@@ -18,7 +18,7 @@ constexpr std::uint64_t kMemoryMibMin = 16, kMemoryMibMax = 65'536;
 constexpr std::uint64_t kCacheMibMax = std::uint64_t{1} << 20;
 constexpr std::size_t kReportsMax = 64;
 
-/// What a WorldClient does not show.
+/// The features of servers that a WorldClient does not use.
 constexpr std::uint64_t kUnusedFeatures =
     kFeatureNames | kFeatureKeyTransfer | kFeatureTextures | kFeaturePreviews;
 

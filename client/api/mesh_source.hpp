@@ -1,7 +1,7 @@
-// MeshSource: a chunk as it is shown and the six chunks beside it, at one moment. These are the
-// arguments of the meshers of runstone::mesh:
+// MeshSource: a chunk as it is shown and the six chunks beside it, at one moment. It has the
+// arguments for the meshers of runstone::mesh:
 //   mesh_chunk(*source.chunk, source.beside(), {}, *client.mesh_materials(), scratch, mesh);
-// All of it is immutable and may be read from any thread, also after the client is gone.
+// A MeshSource is immutable. Any thread may read it, also after the client was destroyed.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,9 +18,10 @@ struct MeshSource {
   ChunkCoord at;
   /// Rises with each change of the chunk, or of a neighbour at the common border.
   std::uint64_t serial = 0;
-  /// Never null.
+  /// The chunk itself. It is never null.
   std::shared_ptr<const RunChunk> chunk;
-  /// By Direction. Null: beyond the view, or the server cannot send it.
+  /// The neighbours by Direction. Null: the neighbour lies beyond the view, or the server cannot
+  /// send it.
   std::array<std::shared_ptr<const RunChunk>, kDirectionCount> neighbours;
 
   /// Returns the neighbours as MeshNeighbours. The pointers hold as long as this object.

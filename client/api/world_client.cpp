@@ -29,7 +29,7 @@ static_assert(kNewAction == kBeginsAction);
 
 /// step() is due this often, because the session needs its ticks.
 constexpr unsigned kStepMs = 10;
-/// A view whose chunks have been here for this long is taken as complete by the memory budget.
+/// The memory budget treats a view as complete if its chunks have been here for this long.
 constexpr TimeUs kCompleteUs = 2'000'000;
 
 Pose pose_of(const ClientPlace& place) {
@@ -159,7 +159,7 @@ void WorldClient::State::step() {
 }
 
 void WorldClient::State::open(const WorldOpened& event) {
-  // The changes so far are of the world before.
+  // The changes so far belong to the world before.
   take_changes();
   if (event.is_another && world) edits.world_changed(events);
   world = info_of(session());
@@ -206,7 +206,7 @@ void WorldClient::State::take_changes() {
   }
 }
 
-/// Takes what else the session has heard.
+/// Takes the other news of the session.
 void WorldClient::State::take_news() {
   if (session().is_open()) take_materials(false);
   if (std::exchange(players_serial, session().players_serial()) != session().players_serial())

@@ -1,34 +1,37 @@
-// WorldClient: joins a server and keeps a replica of the world around the player: the same session,
-// replica and network as runstone-client, without a window. The loop of a program:
+// WorldClient: joins a server and keeps a replica of the world around the player. It has the
+// session, the replica and the network of runstone-client, without a window. The loop of a program:
 //
 //   auto client = WorldClient::connect({.server = "localhost", .name = "ada"});
 //   for (each frame) {
 //     client->step();
-//     for (WorldEvent& event : client->drain(16)) ...;  // mesh chunks, hear of edits
+//     for (WorldEvent& event : client->drain(16)) ...;  // mesh chunks, handle outcomes of edits
 //     ... client->move(place); client->submit(edit); ...
 //   }
 //
-// A program that handles these events alone keeps no mesh that is out of date: a chunk is reported
-// when it changes, and when a neighbour arrives, changes or leaves. While terrain loads, a chunk is
-// reported once all neighbours are there that the server will send, so that it is meshed once.
+// A program that handles these events keeps no mesh that is out of date: a chunk is reported when
+// it changes, and when a neighbour arrives, changes or leaves. While terrain loads, a chunk is
+// reported as soon as all neighbours that the server will send are there, so it is meshed once.
 //
 // Threads:
 //   - The calls of one client are made by one thread at a time. Two clients do not share anything.
-//   - The library has a thread for the network, and one for the cache if there is one. They call
-//     WorldClientOptions::wake and nothing else of the program.
-//   - What MeshSource, chunk() and mesh_materials() return may be read by any thread.
-//   - No call waits for the network or a disk, except connect() with files, wait() and close(), and
-//     the step() that meets a server for the first time and keeps its key in a file.
+//   - The library has a thread for the network, and a second one if there is a cache. These threads
+//     call WorldClientOptions::wake and nothing else of the program.
+//   - Any thread may read a MeshSource, and the results of chunk() and mesh_materials().
+//   - No call waits for the network or a disk, except connect() with files, wait(), close(), and
+//     the step() that saves the key of a new server in a file.
 //   - step() and close() wait for the threads of the library when they end. So wake must not wait
 //     for a thread that may be in a call of the client, for example for a mutex that it holds.
 //
 // Errors are results with words. No input of a server, of files or of the caller aborts the
 // program, and no call throws, except std::bad_alloc. The library writes no log.
 //
-// Bounds: chunks and edits by WorldClientOptions::memory_mib; events of the network by 16 MiB,
-// beyond which the server is held back; events that were not drained by the newest 4,096 of each
-// kind, and those of edits of others by 1,048,576 chunks that they name; edits of this client by
-// kEditsWaitingMax. Events of edits of this client and of removed chunks are never dropped.
+// Bounds:
+//   - chunks and edits: WorldClientOptions::memory_mib;
+//   - received messages: 16 MiB, beyond which the client stops reading from the server;
+//   - events that were not drained: the newest 4,096 of each kind, and 1,048,576 chunks that events
+//     of edits of others name;
+//   - edits of this client: kEditsWaitingMax.
+// Events of edits of this client and of removed chunks are never dropped.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -53,13 +56,13 @@ struct EditDescriptor;  // common/edits/descriptor/edit_descriptor.hpp, of runst
 struct MaterialRow;     // common/core/material_row.hpp, of runstone::core
 struct MeshMaterials;   // common/mesh/mesh_materials.hpp, of runstone::mesh
 
-/// Why a call did nothing. `text` is a line for the player.
+/// The reason why a call did nothing. `text` is a line for the player.
 struct ClientRefusal {
   ErrorCode code = ErrorCode::bad_value;
   std::string text;
 };
 
-/// Where a player stands and looks.
+/// The place of a player, and the direction in which the player looks.
 struct ClientPlace {
   WorldPos at;               // of the eye
   double yaw_degrees = 0;    // 0 looks along +z; grows towards +x
@@ -98,9 +101,9 @@ inline constexpr EditNumber kNewAction = UINT64_MAX;
 
 class WorldClient {
  public:
-  /// Starts connecting, and returns at once: WorldOpened or ConnectionLost tells the outcome. After
-  /// a loss the client connects again by itself. Fails with words if an option is wrong, or if the
-  /// key file, the file of authorities or the cache cannot be used.
+  /// Starts to connect and returns at once. WorldOpened or ConnectionLost reports the outcome.
+  /// After a loss the client connects again by itself. Fails with words if an option is wrong, or
+  /// if the key file, the file of authorities or the cache cannot be used.
   static Result<WorldClient, std::string> connect(WorldClientOptions options);
   /// Calls close().
   ~WorldClient();
@@ -108,62 +111,67 @@ class WorldClient {
   /// Calls close() first.
   WorldClient& operator=(WorldClient&&) noexcept;
 
-  /// Handles what has arrived and sends what is due. Call it every frame, and every 10 ms where
-  /// there are no frames. Takes a few milliseconds at most, with a password a quarter of a second
-  /// when it joins; has_more() returns true if something is left.
+  /// Handles received messages and sends due ones. Call it every frame, or every 10 ms in a program
+  /// without frames. A call takes a few milliseconds at most. The call that joins with a password
+  /// takes a quarter of a second.
   void step();
-  /// Returns true if another step() has something to do at once.
+  /// Returns true if the last step() left messages for another step() at once.
   bool has_more() const;
-  /// Waits until step() has something to do, `milliseconds` at most. For programs without frames.
+  /// Waits until step() has something to do, at most `milliseconds`. It is for programs without
+  /// frames.
   void wait(unsigned milliseconds);
-  /// Returns the events since the last call, in their order, and `chunks_max` of the chunks that
-  /// have to be meshed at most: those with edits of this player first, then the nearest ones. The
-  /// others are kept.
+  /// Returns the events since the last call, in their order, and at most `chunks_max` of the chunks
+  /// that have to be meshed: chunks with edits of this player first, then the nearest ones. The
+  /// other chunks are kept for later calls.
   std::vector<WorldEvent> drain(std::size_t chunks_max = SIZE_MAX);
-  /// Returns the number of chunks that have to be meshed: those that drain() has not returned yet,
-  /// and those that wait for a neighbour.
+  /// Returns the number of chunks that have to be meshed: chunks that drain() has not returned yet,
+  /// and chunks that wait for a neighbour.
   std::size_t outdated_count() const;
 
   ConnectionState state() const;
-  /// Returns nullopt before the first WorldOpened. Stays over a lost connection.
+  /// Returns the open world, or nullopt before the first WorldOpened. After a lost connection it
+  /// returns the world as before.
   const std::optional<ClientWorld>& world() const;
   /// Returns true if the world is open, and all chunks around the player have arrived.
   bool is_complete() const;
 
-  /// Moves the player, and the view with it. A server that a client joins for the first time begins
-  /// at the spawn, and later where the player left; place() says where. Fails before the first
-  /// WorldOpened, and for numbers that are not finite or outside of the world.
+  /// Moves the player, and the view with it. A player who is new to a server begins at the spawn,
+  /// and later at the place where the player left. place() returns that place. Fails before the
+  /// first WorldOpened, and for numbers that are not finite or lie outside of the world.
   Result<void, ClientRefusal> move(const ClientPlace& place);
-  /// Returns the place of the player: the last move(), or where the server has the player begin.
+  /// Returns the place of the player: the place of the last move(), or the place where the server
+  /// lets the player begin.
   const ClientPlace& place() const;
   /// Changes the radii of the view, as in WorldClientOptions. Fails above 64.
   Result<void, ClientRefusal> set_view_radii(std::uint8_t horizontal, std::uint8_t vertical);
 
-  /// Shows an edit at once and sends it to the server. EditConfirmed or EditRejected tells the
-  /// outcome, also after a lost connection. There is none for edits that are open when the client
-  /// ends. Edits with the same `action` are undone as one: pass kNewAction with the first, and the
-  /// number of the first with the others. 0: the edit is an action by itself. Fails
+  /// Shows an edit at once and sends it to the server. EditConfirmed, EditRejected or EditUnseen
+  /// reports the outcome, also after a lost connection. Edits that have no outcome when the client
+  /// ends get none. One undo takes back all edits of one action. Pass kNewAction with the first
+  /// edit of an action, and the number of the first edit with the others. With 0 the edit is an
+  /// action by itself. Fails
   ///   - with bad_value before the first WorldOpened and after the end;
-  ///   - with the error of validate() for an invalid edit, and with not_found for a material that the
-  ///     world lacks or a chunk that the server cannot send;
+  ///   - with the error of validate() for an invalid edit, and with not_found for a material that
+  ///     the world lacks or a chunk that the server cannot send;
   ///   - with unknown_kind for an edit without voxels;
   ///   - with not_permitted if the player may not make it, as far as the client knows;
   ///   - with limit_exceeded if the edit is larger than the world allows, if the budget of the
   ///     player does not suffice yet (wait_us()), or if kEditsWaitingMax edits or events of edits
   ///     wait.
   Result<EditNumber, ClientRefusal> submit(const EditDescriptor& edit, EditNumber action = 0);
-  /// Returns how long the budget of the player needs until it suffices for the edit. 0: it does.
+  /// Returns the time until the budget of the player suffices for the edit, or 0 if it suffices
+  /// now.
   TimeUs wait_us(const EditDescriptor& edit) const;
 
-  /// Sends a line to everybody. Fails unless a world is open, and if the server has no chat or the
-  /// line is empty, too long or not UTF-8.
+  /// Sends a line of the chat to all players. Fails if no world is open, if the server has no chat,
+  /// or if the line is empty, too long or not UTF-8.
   Result<void, ClientRefusal> chat(std::string_view line);
-  /// Sends a command, such as "undo". CommandDone has the answer. Fails unless a world is open,
-  /// while another command runs or its answer was not drained, if the text is empty, too long or
-  /// not UTF-8, and if the server accepts no commands.
+  /// Sends a command, such as "undo". CommandDone has the answer. Fails if no world is open, if
+  /// another command runs or its answer was not drained, if the text is empty, too long or not
+  /// UTF-8, or if the server accepts no commands.
   Result<void, ClientRefusal> command(std::string_view text);
 
-  /// Return null or nullopt if the chunk is not shown.
+  /// These three calls return null or nullopt if the chunk is not shown.
   std::shared_ptr<const RunChunk> chunk(ChunkCoord at) const;
   std::optional<MeshSource> mesh_source(ChunkCoord at) const;
   std::optional<Material> material_at(VoxelPos at) const;
@@ -174,14 +182,14 @@ class WorldClient {
   const std::vector<MaterialRow>& materials() const;
   /// Cost: O(materials).
   std::optional<Material> find_material(std::string_view name) const;
-  /// Returns what the meshers read of the materials. Never null.
+  /// Returns the properties of the materials that meshers read. The result is never null.
   std::shared_ptr<const MeshMaterials> mesh_materials() const;
 
   /// Returns the other players in the world, ascending by author.
   std::vector<PlayerInfo> players() const;
 
-  /// Sends what is queued and a goodbye, and ends the threads. Waits a second at most for the
-  /// network, and for the cache to be written. Chunks stay readable. Does nothing if it was called.
+  /// Sends the queued messages and a goodbye, and ends the threads. Waits at most a second for the
+  /// network, and until the cache is written. Chunks stay readable. A second call does nothing.
   void close();
 
  private:

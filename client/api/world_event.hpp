@@ -1,4 +1,4 @@
-// WorldEvent: what happened to a WorldClient. WorldClient::drain() returns the events.
+// WorldEvent: an event of a WorldClient. WorldClient::drain() returns the events.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,13 +14,14 @@ namespace runstone {
 /// The number of an edit of this client, ascending from 1.
 using EditNumber = ClientSequence;
 
-/// The world is open: for the first time, after a lost connection, or because the server opened
-/// another one. WorldClient::world() describes it.
+/// A world is open: for the first time, again after a lost connection, or another world of the
+/// server. WorldClient::world() describes it.
 struct WorldOpened {
-  /// Not the world that was open before. All chunks and edits of that one are gone.
+  /// True if this is another world than the one before. All chunks and edits of the earlier world
+  /// are removed.
   bool is_another = false;
-  /// The key of the server was not known for this world. A player compares
-  /// ClientWorld::server_fingerprint with that of the host.
+  /// True if the key of the server was not known for this world. The player should compare
+  /// ClientWorld::server_fingerprint with the fingerprint that the host gives.
   bool is_first_contact = false;
 };
 
@@ -28,24 +29,24 @@ struct WorldOpened {
 struct ConnectionLost {
   /// A sentence for the player, without a full stop.
   std::string headline;
-  /// The exact reason by the server or the system; may be empty.
+  /// The exact reason that the server or the system gave. It may be empty.
   std::string detail;
-  /// The client does not connect again: another attempt with the same options is pointless, for
-  /// example because the password is wrong.
+  /// True if the client does not connect again, because another attempt with the same options is
+  /// pointless. For example, the password is wrong.
   bool is_final = false;
-  /// The world has a password, and the options have none.
+  /// True if the world has a password and the options have none.
   bool lacks_password = false;
 };
 
-/// Why a chunk has to be meshed again.
+/// The reason why a chunk has to be meshed again.
 enum class ChangeCause : std::uint8_t {
   terrain,      // the chunk or a neighbour arrived or left, or materials changed
   others_edit,  // edits of others
   own_edit,     // an edit of this client, which may not be confirmed yet
 };
 
-/// The mesh of a chunk is out of date, or it has none: mesh `source`. The chunk or a neighbour
-/// changed, arrived or left. Changes of a chunk are merged until they are drained.
+/// The mesh of a chunk is out of date or missing: mesh `source`. The chunk or a neighbour changed,
+/// arrived or left. Changes of a chunk are merged until they are drained.
 struct ChunkChanged {
   MeshSource source;
   ChangeCause cause = ChangeCause::terrain;
@@ -68,12 +69,12 @@ struct EditConfirmed {
   Sequence sequence = 0;  // its place in the log of the world
 };
 
-/// The server rejected an edit of this client. It is not shown any more.
+/// The server rejected an edit of this client. The edit is not shown any more.
 struct EditRejected {
   EditNumber edit = 0;
   /// The name of the reason in docs/protocol.md, such as "not_permitted".
   std::string reason;
-  /// Words for the player.
+  /// The reason in words for the player.
   std::string text;
 };
 
@@ -92,7 +93,7 @@ struct EditUnseen {
 struct OthersEdit {
   AuthorId author = 0;  // 0: the server
   Sequence sequence = 0;
-  /// The chunks to mesh again because of it, which ChunkChanged reports, too.
+  /// The chunks to mesh again because of this edit. ChunkChanged reports them, too.
   std::vector<ChunkCoord> chunks;
 };
 
@@ -101,10 +102,10 @@ struct ChatReceived {
   enum class From : std::uint8_t {
     player,
     server,              // the host
-    message_of_the_day,  // for one who joins
-    refused,             // why a line of this client was not passed on
+    message_of_the_day,  // for a player who joins
+    refused,             // the server rejected a line of this client; `text` is the reason
     visit,               // a player has joined or left
-    other,               // of a newer server
+    other,               // a kind of a newer server
   };
   From from = From::player;
   std::string name;  // of a player; otherwise empty
@@ -115,8 +116,8 @@ struct ChatReceived {
 /// A command has ended.
 struct CommandDone {
   bool is_ok = false;
-  /// True: the connection ended before the answer was complete, and the command may have been
-  /// carried out.
+  /// True if the connection ended before the answer was complete. The command may have been carried
+  /// out.
   bool is_answer_lost = false;
   std::vector<std::string> lines;
 };
@@ -125,12 +126,12 @@ struct CommandDone {
 /// again.
 struct MaterialsChanged {};
 
-/// Players joined, left, or changed name or role: WorldClient::players() differs. Poses are not
-/// reported.
+/// Players joined, left, or changed their name or role: WorldClient::players() differs. Changes of
+/// poses are not reported.
 struct PlayersChanged {};
 
-/// Something is not as the options want it, and the client goes on: the cache cannot be written, or
-/// the key of a server cannot be kept.
+/// An option cannot be honoured, and the client goes on. For example, the cache cannot be written,
+/// or the key of a server cannot be kept.
 struct ClientWarning {
   std::string text;
 };

@@ -13,8 +13,8 @@ namespace runstone {
 
 class Chat {
  public:
-  /// `session` must outlive the object. `before_undo` is called before the command undo is sent; it may
-  /// be empty.
+  /// `session` must outlive the object. `before_undo` is called before the command undo is sent; it
+  /// may be empty.
   explicit Chat(ClientSession& session, std::function<void()> before_undo = {})
       : session_(session), before_undo_(std::move(before_undo)) {}
 

@@ -11,10 +11,10 @@ namespace runstone {
 // light to the picture: the filmic curve of Hejl and Burgess-Dawson (2010), a quotient of
 // polynomials that includes the encoding to sRGB. Its cut of the darkest tones is left out, because
 // caves would be black. At night, dim places lose most of their colour and become bluish, as eyes
-// see them; what lamps light keeps it. In ambient light the walls along x are a little darker and
-// those towards the sun a little brighter, so that hills in the shade and far away keep their
-// shape. fog_share() is the share of the haze between the eye and a place, from 0 to 1. The air is
-// half as thick each 300 voxels higher, so valleys are hazier than peaks.
+// see them. Places in the light of lamps keep their colour. In ambient light the walls along x are
+// a little darker and those towards the sun a little brighter, so that hills in the shade and far
+// away keep their shape. fog_share() is the share of the haze between the eye and a place, from 0
+// to 1. The air is half as thick each 300 voxels higher, so valleys are hazier than peaks.
 #define RUNSTONE_LIGHT_GLSL                                                          \
   "uniform vec3 sun_direction, sun_colour, zenith, horizon, nadir, glow;\n"          \
   "uniform vec3 ambient_up, ambient_side, ambient_down, dark;\n"                     \

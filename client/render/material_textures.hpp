@@ -15,7 +15,7 @@ class MaterialTextures {
   /// Binds the textures to texture units `unit` and `unit` + 1, and sets the uniforms `palette` and
   /// `looks`. Requires that the program is in use.
   void bind(const GlProgram& program, GLint unit) const;
-  /// Returns true for each material that RUNSTONE_GLOSS_GLSL leaves as it is, by id.
+  /// Returns, by id, true for each material that RUNSTONE_GLOSS_GLSL does not change.
   const std::vector<bool>& matt() const { return matt_; }
 
  private:

@@ -23,8 +23,8 @@ class TerrainBodies {
  public:
   /// Sets the shapes of the materials. Requires a table.
   void set_shapes(ShapeTablePtr shapes);
-  /// Sets the materials whose faces mirror nothing, by id. A body that was put before counts as one
-  /// that mirrors if one of them was in the list and is not any more.
+  /// Sets the materials whose faces mirror nothing, by id. If a material was in the old list and is
+  /// not in the new one, all earlier bodies count as bodies that mirror.
   void set_matt(const std::vector<bool>& materials);
   void put_chunk(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh);
   /// Requires a key of level 1 or more.

@@ -2,9 +2,9 @@
 // RUNSTONE_FIELD reads the light field, RUNSTONE_SHADOWS reads the shadow maps, RUNSTONE_DEPTH
 // reads the depth behind water, RUNSTONE_FINE draws what is smaller than a voxel, RUNSTONE_FOG
 // fades, RUNSTONE_TILE is for parts of tiles, RUNSTONE_LIQUID lowers the surfaces of liquids,
-// RUNSTONE_FADE draws a part of the pixels, and RUNSTONE_GLOSSY mirrors sun and sky. Those of
-// textures stand in texture_glsl.hpp, that of plants in plant_glsl.hpp. A software driver computes
-// both sides of a branch, so what few chunks need is a variant.
+// RUNSTONE_FADE draws a part of the pixels, and RUNSTONE_GLOSSY mirrors sun and sky. The switches
+// of textures stand in texture_glsl.hpp, and the switch of plants in plant_glsl.hpp. A software
+// driver computes both sides of a branch, so code that only few chunks need is a variant.
 #pragma once
 #include "client/render/light_glsl.hpp"
 #include "client/render/light_texture.hpp"

@@ -33,7 +33,7 @@ namespace runstone {
 
 /// For fragment shaders. Requires `colour`, that of the material, and with RUNSTONE_ALL_HOLES
 /// `look`. surface_colour() is the linear colour and the alpha at the fragment; is_textured() is
-/// true if they are those of a picture. The picture of a pane says alone where it is opaque. A
+/// true if a picture gives them. Only the picture of a pane decides where the pane is opaque. A
 /// liquid stays as clear as its material.
 #define RUNSTONE_TEXTURE_GLSL                                                 \
   "#ifdef RUNSTONE_TEXTURES\n"                                                \

@@ -126,7 +126,7 @@ class Replica {
   /// Fails if the commit is of another epoch, or if a list of previous sequences does not fit its
   /// edit.
   Result<void> receive(const Commit& commit, const Arrival& arrival);
-  /// `is_offered_again` is that of RejectedEdit.
+  /// `is_offered_again` becomes RejectedEdit::is_offered_again.
   void receive(const Reject& reject, TimeUs now_us, bool is_offered_again = false);
   /// Another server orders the edits from now on. It has resolved those of this client up to
   /// `resolved`. Returns the client sequences of the edits to send again, ascending: those that

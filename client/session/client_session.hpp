@@ -142,7 +142,8 @@ class ClientSession {
   std::uint64_t timeline_serial() const { return timeline_serial_; }
 
   /// Follows the voxel at the crosshair, or none with nullopt, and asks who set it last if a
-  /// request is due. Does nothing unless open, in the past, and with servers that cannot say it.
+  /// request is due. Does nothing if no world is open, in the past, and if the server cannot name
+  /// authors.
   void step_voxel_author(const std::optional<VoxelPos>& at, TimeUs now_us);
   const VoxelAuthor& voxel_author() const { return voxel_author_; }
   /// Returns true if voxel_author().found() may return something else than at the last call.

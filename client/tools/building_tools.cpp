@@ -49,11 +49,11 @@ ToolEdits VoxelTool::plan(const ToolInput& input) const {
   return joined(input, {SetVoxel{input.target}, {}, material});
 }
 
-/// The voxels of a box that the box tool fills. The values are those of its parameter.
+/// The voxels of a box that the box tool fills. The values equal the values of its parameter.
 enum class BoxFill : std::uint8_t { solid, hollow, walls };
 
-/// Returns boxes that do not overlap and together are a box, its shell of some thickness, or the four
-/// upright sides of that shell.
+/// Returns boxes that do not overlap and together are a box, its shell of some thickness, or the
+/// four upright sides of that shell.
 std::vector<VoxelBox> parts_of_box(const VoxelBox& box, BoxFill fill, std::int32_t wall) {
   const VoxelPos sides = sides_of(box);
   const bool has_ends = fill == BoxFill::hollow;

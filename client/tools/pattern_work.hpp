@@ -38,9 +38,9 @@ struct PatternWork {
 };
 using PatternWorkPtr = std::shared_ptr<const PatternWork>;
 
-/// Returns the work without copies. With `only`, no other voxels change. Fails with words for the player
-/// if a chunk of a box is not shown. Requires an open replica. Cost: O(chunks that meet the boxes or
-/// lie around them).
+/// Returns the work without copies. If `only` is not null, only its voxels change. Fails with words
+/// for the player if a chunk of a box is not shown. Requires an open replica. Cost: O(chunks that
+/// meet the boxes or lie around them).
 Result<PatternWorkPtr, std::string> pattern_work(const Replica& replica,
                                                  std::vector<VoxelBox> boxes, BoundMix mix,
                                                  std::optional<BoundFilter> filter,

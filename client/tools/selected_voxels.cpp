@@ -47,7 +47,7 @@ VoxelPos offset_of(Direction direction, std::int32_t steps) {
 Selected Selected::of(VoxelRows rows) {
   Selected out;
   if (rows.empty()) return out;
-  // The box of rows that were removed one by one may be too wide.
+  // After voxels were removed, the box of the rows may be too wide.
   VoxelBox around;
   for (const auto& [z, y] : rows.places()) {
     const auto& row = *rows.row(y, z);
@@ -65,7 +65,7 @@ Result<VoxelRows, std::string> rows_of(const Selected& selected) {
   for (const VoxelBox& box : selected.boxes.boxes()) {
     const VoxelPos sides = sides_of(box);
     rows += static_cast<std::uint64_t>(sides.y) * static_cast<std::uint64_t>(sides.z);
-    // A sum beyond the first bound may not be multiplied.
+    // The sum is checked before it is multiplied, because the product could overflow.
     if (rows > kSelectedRowsMax) return failure(kTooManySelected);
     voxels += static_cast<std::uint64_t>(sides.x) * static_cast<std::uint64_t>(sides.y) *
               static_cast<std::uint64_t>(sides.z);
@@ -93,7 +93,7 @@ Result<Selected, std::string> filtered(const Replica& replica, const Selected& n
   auto typed = typed_pattern(text, materials, {1, middle2_of(now.boxes.around())});
   if (!typed) return failure(typed.error());
   std::uint64_t voxels_max = kSelectedVoxelsMax;
-  // Of a set in a wide box, others may pass.
+  // The filter may also pass voxels of the box that are not selected, so the bound is higher here.
   if (now.voxels || !is_kept) voxels_max *= 4;
   const auto passing = passing_voxels(now.boxes.boxes(), *std::move(typed->filter), voxels_max,
                                       replica.chunk_edge(), shown_in(replica));
@@ -119,7 +119,7 @@ Result<Selected, std::string> grown_selection(const Selected& now, Direction sid
                                               std::int32_t steps) {
   const auto rows = rows_of(now);
   if (!rows) return failure(rows.error());
-  // Along x a row becomes longer. Along the others there may be as many rows more.
+  // Along x a row becomes longer. Along the other axes up to so many rows are added.
   const std::uint64_t copies =
       axis_of(side) == Axis::x || steps < 0 ? 1 : static_cast<std::uint64_t>(steps) + 1;
   if (rows->stretches() > kSelectedVoxelsMax / copies) return failure(kTooManySelected);
@@ -148,7 +148,8 @@ ToolEdits refilled(const Replica& replica, const VoxelRows& rows, std::optional<
 ToolEdits moved_voxels(const Replica& replica, const VoxelRows& rows, Direction direction,
                        std::int32_t steps) {
   const VoxelRows target = moved(rows, offset_of(direction, steps));
-  // What moves to a selected place replaces it. Elsewhere the air of the selection does not move.
+  // A voxel that moves to a selected place replaces the voxel there, also if it is air. At other
+  // places the air of the selection does not move.
   ToolAction out;
   for (const auto& [part, empty] : {std::pair{without(target, rows), EmptyCells::skipped},
                                     std::pair{common(target, rows), EmptyCells::pasted}}) {

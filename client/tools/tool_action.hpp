@@ -56,7 +56,7 @@ struct ToolAction {
 
   /// The voxels that become the clipboard, and where they are in the world. No edit is made of them.
   std::optional<BuildPaste> copied;
-  /// The voxels that are selected. Then `copied` only shows them.
+  /// The voxels that the action selects. If it is set, `copied` only shows them.
   VoxelRowsPtr chosen;
   SelectMode chosen_mode = SelectMode::fresh;
   std::vector<BuildPaste> pastes;
@@ -65,7 +65,7 @@ struct ToolAction {
   /// The edits after the pastes. Those that clear are the last ones. An edit may have more voxels and
   /// chunks than the world allows in one: then it is cut.
   std::vector<EditDescriptor> edits;
-  /// A paste of air that comes last, once everything before it was applied.
+  /// A paste of air that is sent last, after all edits before it were applied.
   std::optional<BuildPaste> cleared;
   /// The edits after the first one only follow it, such as a fence that joins its neighbour: if one
   /// is refused, it is left out without a word.

@@ -48,7 +48,7 @@ constexpr unsigned kPlanAgainCalls = 32;
 constexpr unsigned kCostlyAgainCalls = 256;
 /// The colour of the ghosts of selected voxels.
 constexpr std::array<std::uint8_t, 3> kSelectedColour = {60, 160, 255};
-/// Selected voxels whose box has more rows along x have no ghosts.
+/// Selected voxels have no ghosts if their box has more rows along x than this.
 constexpr std::int64_t kSelectedGhostRowsMax = std::int64_t{1} << 20;
 /// The names of missing materials that a message lists.
 constexpr std::size_t kLackingListed = 8;
@@ -106,7 +106,7 @@ bool has_too_many_pieces(std::span<const VoxelBox> boxes, std::int32_t edge) {
 BuildPtr build_of_selected(const VoxelRows& rows) {
   const VoxelBox& box = rows.box();
   const VoxelPos sides = sides_of(box);
-  // Each row of the box is asked for.
+  // The build reads each row of the box, so the number of rows is bounded.
   if (std::int64_t{sides.y} * sides.z > kSelectedGhostRowsMax || sides.x > kBuildSideMax)
     return nullptr;
   const auto row_of = [&](std::int32_t y, std::int32_t z, std::vector<RowStretch>& out) {
@@ -150,7 +150,7 @@ Result<void, std::string> ToolBox::choose(std::string_view name) {
   const auto it = std::find_if(tools_.begin(), tools_.end(),
                                [&](const auto& tool) { return tool->name() == name; });
   if (it == tools_.end()) return failure("there is no tool " + std::string(name));
-  // The chunks of the last plan are kept no longer.
+  // Forgets the chunks that the last plan kept.
   tools_[chosen_]->forget_plan();
   pattern_.set(nullptr);
   chosen_ = static_cast<std::size_t>(it - tools_.begin());
@@ -325,7 +325,7 @@ void ToolBox::select(Selected selected) {
 
 Result<void, std::string> ToolBox::select(const VoxelBox& box, SelectMode mode) {
   if (selected_.voxels && mode != SelectMode::fresh) {
-    // What lies beside the voxels is not removed from them.
+    // Only the part of the box around the voxels can remove voxels.
     const VoxelBox part = mode == SelectMode::add ? box : intersect(box, *selection_);
     if (part.empty()) return {};
     const auto rows = rows_of({BoxSet(part), nullptr, 0});

@@ -82,7 +82,7 @@ class ToolBox {
   }
   /// Returns the selected voxels.
   const Selected& selected() const { return selected_; }
-  /// Returns the boxes of the selection. If it is a set of voxels, the box around them.
+  /// Returns the boxes of the selection, or the box around the voxels if it is a set of voxels.
   const BoxSet& selected_boxes() const { return selected_.boxes; }
   /// Selects a box; nullopt selects nothing. An empty box counts as nothing.
   void select(std::optional<VoxelBox> box);
@@ -92,8 +92,8 @@ class ToolBox {
   /// Selects a box, adds it to the selection or removes it from there. Fails with words for the
   /// player if the selection would have too many parts or voxels.
   Result<void, std::string> select(const VoxelBox& box, SelectMode mode);
-  /// Keeps those of the selected voxels for which a typed filter holds, or does not hold if `is_kept`
-  /// is false. Fails as filtered() does. Requires an open replica.
+  /// Keeps the selected voxels for which a typed filter holds, or does not hold if `is_kept` is
+  /// false. Fails as filtered() does. Requires an open replica.
   Result<void, std::string> narrow(const Replica& replica, const std::string& filter, bool is_kept);
   /// Sets the mode that a held key gives; nullopt: the mode of the chosen tool counts.
   void hold_select_mode(std::optional<SelectMode> mode) { held_mode_ = mode; }
@@ -179,9 +179,9 @@ class ToolBox {
   /// the ghosts changed. Requires an open replica. Cost: that of the chosen tool's plan, if the
   /// aim, the tool or the chunks changed, EditPreview::step(), and a step of a pattern that is too
   /// large to be worked out at once (all of it if chunks_max is the largest number). The plan of a
-  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than kRestCalls
-  /// calls, or if chunks_max is the largest number, and not again while it is refused and the replica
-  /// is as it was.
+  /// costly tool (Tool::is_costly()) is made once the aim has been the same for more than
+  /// kRestCalls calls, or if chunks_max is the largest number, and not again while it is refused
+  /// and the replica is as it was.
   bool step_preview(const Replica& replica, const Aim& aim, std::size_t chunks_max);
   static constexpr unsigned kRestCalls = 16;
   /// Returns the preview of the edits, and that of the builds that are too large for one edit.
@@ -198,7 +198,7 @@ class ToolBox {
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns true if the preview shows voxels that the next click only copies.
   bool previews_copy() const { return previews_copy_; }
-  /// Returns true if these are voxels that the next click selects.
+  /// Returns true if the preview shows voxels that the next click selects.
   bool previews_choice() const { return previews_choice_; }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
@@ -209,7 +209,7 @@ class ToolBox {
   ToolEdits plan(const Replica& replica, const Aim& aim, ToolButton button,
                  std::span<const VoxelPos> points, VoxelPos target);
   ToolEdits plan_typed(const Replica& replica, Material held);
-  /// Returns the boxes of the selection, or words if there is none.
+  /// Returns the boxes of the selection. Fails with words for the player if there is none.
   Result<BoxSet, std::string> boxes_or_words() const;
   /// Returns the selected voxels, with the empty ones, as a build whose corner is that of
   /// selection(). Its other cells are untouched. Fails with words for the player.
@@ -218,7 +218,8 @@ class ToolBox {
   Result<void, std::string> turn(const Orientation& orientation);
   /// Keeps what the paste tool is about to put down, and lets the action go on.
   void keep_pasted(const Replica& replica, ToolEdits& made);
-  /// Makes the voxels that an action copies the clipboard, or selects those that it chooses.
+  /// Puts the voxels that an action copies into the clipboard, or selects the voxels that it
+  /// chooses.
   void hold_copied(ToolEdits& made);
   /// Sets clipboard_rows_ to the rows that the materials of a build have in this world.
   void take_rows(const Build& build);

@@ -1,5 +1,5 @@
-// UprightChunks: shown chunks with lines along y, as brushes read them, kept from one plan of a brush to
-// the next. While the aim moves, most chunks of two plans are the same. One thread.
+// UprightChunks: shown chunks with lines along y, as brushes read them, kept from one plan of a
+// brush to the next. While the aim moves, most chunks of two plans are the same. Thread: one.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace runstone {
 
 class UprightChunks {
  public:
-  /// The runs of the chunks that are kept, in both orders, at most: about 25 MB.
+  /// The greatest number of runs of the chunks that are kept, in both orders: about 25 MB.
   static constexpr std::size_t kKeptRunsMax = std::size_t{1} << 22;
 
   explicit UprightChunks(std::size_t runs_max = kKeptRunsMax) : runs_max_(runs_max) {}
 
   /// Forgets the chunks that of() has not returned since the last call. Call it before each plan.
   void begin_plan();
-  /// Returns the chunk with lines along y, or the chunk itself if it is uniform or has them already.
-  /// A chunk whose runs have no room is not kept. Requires a chunk. Cost: that of reorder() for a
-  /// chunk that is not kept, otherwise O(log chunks).
+  /// Returns the chunk with lines along y, or the chunk itself if it is uniform or has them
+  /// already. A chunk whose runs have no room is not kept. Requires a chunk. Cost: that of
+  /// reorder() for a chunk that is not kept, otherwise O(log chunks).
   std::shared_ptr<const RunChunk> of(const std::shared_ptr<const RunChunk>& chunk);
   /// Forgets all chunks.
   void clear() {
@@ -33,7 +33,7 @@ class UprightChunks {
  private:
   struct Kept {
     std::size_t runs() const { return chunk->runs.size() + upright->runs.size(); }
-    std::shared_ptr<const RunChunk> chunk;  // so that no other chunk gets its address
+    std::shared_ptr<const RunChunk> chunk;  // kept, so that no other chunk gets its address
     std::shared_ptr<const RunChunk> upright;
     std::uint64_t used = 0;
   };

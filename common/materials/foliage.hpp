@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-/// Returns true for leaves. Rows do not say through what light passes, so their names do.
+/// Returns true for leaves. No field of a row says that light passes, so the name decides.
 inline bool is_foliage(const MaterialInfo& material) {
   return material.name.find("leaves") != std::string::npos;
 }

@@ -1,5 +1,5 @@
-// The liquids of a table, by material, for code that treats them as a set, and those whose surface
-// lies lower than their cubes.
+// The liquids of a table, by material, for code that treats them as a set, and the liquids whose
+// surface is lower than their cubes.
 #pragma once
 #include <vector>
 
@@ -16,8 +16,8 @@ inline std::vector<bool> liquids(const MaterialTable& table) {
   return out;
 }
 
-/// Returns true for the liquids whose surface lies lower: the transparent ones. An opaque one hides
-/// the faces of its neighbours, which a lower surface would show.
+/// Returns true for the liquids whose surface is lower than their cubes: the transparent ones. An
+/// opaque liquid hides the faces of its neighbours, which a lower surface would show.
 inline bool has_lowered_surface(const MaterialInfo& row) {
   return row.body == MaterialBody::liquid && row.visibility == Visibility::transparent &&
          row.colour[3] < 255 && row.shape.is_cube();

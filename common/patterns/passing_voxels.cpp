@@ -17,7 +17,8 @@ class GrowingRows {
   GrowingRows(std::int32_t low, std::int32_t high, VoxelRows& out)
       : low_(low), open_(static_cast<std::size_t>(high - low)), out_(out) {}
 
-  /// Adds voxels of the column at x and z. Requires columns of one z, with ascending x, until finish().
+  /// Adds voxels of the column at x and z. Requires columns of one z, with ascending x, until
+  /// finish().
   void add(const HeightRange& range, std::int32_t x, std::int32_t z) {
     for (std::int32_t y = range.low; y < range.high; ++y) {
       RowStretch& part = open_[static_cast<std::size_t>(y - low_)];
@@ -44,7 +45,7 @@ class GrowingRows {
   VoxelRows& out_;
 };
 
-/// Adds the voxels of a part of a box. Returns why it ended early, if so.
+/// Adds the voxels of a part of a box. Returns the error if it ended early, or nullopt.
 std::optional<FloodFault> add_passing(const VoxelBox& part, const VoxelBox& box,
                                       BoundFilter& filter, std::uint64_t& voxels_left,
                                       std::int32_t chunk_edge, const ChunkLookup& chunks,

@@ -22,9 +22,9 @@ namespace runstone {
 /// beyond the box as well; where they are not known, they match nothing. One thread.
 class Replacing {
  public:
-  /// Without a filter all voxels pass, and without `only` they need not be in a set. Fails with
-  /// limit_exceeded if a side of the box is longer than kBuildSideMax. Requires a box that is not empty
-  /// and lies in the world, and a valid chunk edge.
+  /// Without a filter all voxels pass. If `only` is not null, only its voxels are replaced. Fails
+  /// with limit_exceeded if a side of the box is longer than kBuildSideMax. Requires a box that is
+  /// not empty and lies in the world, and a valid chunk edge.
   static Result<Replacing> of(const VoxelBox& box, BoundMix mix, std::optional<BoundFilter> filter,
                               std::int32_t chunk_edge, ChunkLookup chunks,
                               VoxelRowsPtr only = nullptr);
@@ -32,8 +32,8 @@ class Replacing {
   /// Goes on until all voxels are done or `work` is used up, and takes what it used from `work`. The
   /// units are
   ///   - the square of the chunk edge for each chunk whose columns are read;
-  ///   - 1 for each column, for each run, for each condition of the filter in each run, for each voxel
-  ///     that is decided by itself, and for each one that is searched in `only`.
+  ///   - 1 for each column, for each run, for each condition of the filter in each run, for each
+  ///     voxel that is decided by itself, and for each one that is searched in `only`.
   /// Columns are read in slices of up to 128 x 128 columns; a slice may exceed `work` once. Returns
   /// true when all voxels are done. Fails with
   ///   - not_found if a chunk of the box is not known;

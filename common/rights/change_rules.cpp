@@ -84,7 +84,7 @@ bool is_wide(const AddressRange& range) {
   return range.bits < (is_v4 ? 32 + 24 : 48);
 }
 
-/// Returns the role that counts for a player when no role for some time does.
+/// Returns the role of a player without a role for some time.
 const Role& lasting_role_of(const RightsState& state, const PublicKey& key) {
   return state.role_of(key, std::numeric_limits<TimeUs>::max());
 }
@@ -380,7 +380,8 @@ class ChangeCheck {
     if (actor_.key == target)
       return "You cannot do this to yourself: another administrator can, or the host at the console.";
     if (has_all_ || rights_.has(Right::administer)) return std::nullopt;
-    // A role for some time protects nobody less than the role that counts again afterwards.
+    // A player with a role for some time is protected at least as well as by the role that counts
+    // afterwards.
     const auto has_fewer = [this](RightSet theirs) {
       return rights_.includes(theirs) && theirs != rights_;
     };

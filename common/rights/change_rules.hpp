@@ -55,9 +55,9 @@ struct RightsRecord {
 /// Returns the change that takes the record's change back: it restores what the records before it
 /// say of the same role, grant, default role, password, restriction or box. `records` are given in
 /// log order from the first to the newest. Returns nullopt if there is no record `seq`, if it
-/// corrects the time, or if it no longer decides anything, because a later one has replaced it. Ends
-/// are those that corrections of the time have moved. Of a grant only the role without an end is
-/// restored. Cost: O(records log n).
+/// corrects the time, or if it no longer decides anything, because a later one has replaced it.
+/// Ends are those that corrections of the time have moved. A grant is restored only if it has no
+/// end. Cost: O(records log n).
 std::optional<RightsChange> inverse_of(const std::vector<RightsRecord>& records, Sequence seq);
 
 }  // namespace runstone

@@ -29,8 +29,9 @@ struct RemoveRole {
   std::string role;
   friend bool operator==(const RemoveRole&, const RemoveRole&) = default;
 };
-/// Gives a player a role. With an end, the role counts until then, in place of the one that the player
-/// has without it, which counts again afterwards. A grant without an end replaces both.
+/// Gives a player a role. A grant with an end counts until this end, in place of the grant without
+/// an end. Afterwards the grant without an end counts again. A new grant without an end replaces
+/// both.
 struct GrantRole {
   PublicKey key{};
   std::string role;     // empty: the default role of the world; only without an end
@@ -131,7 +132,7 @@ void encode(const RightsChange& change, Bytes& out);
 /// Reads one change, up to the end of the input. The result is valid if the reader is ok.
 RightsChange read_rights_change(ByteReader& in);
 
-/// Returns true for a grant with an end, which programs of world format 12 and earlier cannot read.
+/// Returns true for a grant with an end, which programs of world format 11 and earlier cannot read.
 bool is_timed_grant(const RightsChange& change);
 
 /// Returns the ground that the change is about; nullopt for a change that has no place, which

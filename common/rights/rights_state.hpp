@@ -82,9 +82,10 @@ class RightsState {
   void set_time(TimeUs now_us) { time_us_ = now_us; }
 
   // Roles.
-  /// Returns the role of a player: the granted one, or else the default role. A grant with an end
-  /// that is in force counts before the other. A grant of a role that does not exist counts as no
-  /// grant, and a default role that does not exist as the role visitor. Cost: O(log grants).
+  /// Returns the role of a player: the granted role, otherwise the default role. A grant with an
+  /// end that is in force counts before a grant without an end. A grant of a role that does not
+  /// exist is ignored. If the default role does not exist, it is the role visitor. Cost: O(log
+  /// grants).
   const Role& role_of(const PublicKey& key) const { return role_of(key, time_us_); }
   const Role& role_of(const PublicKey& key, TimeUs now_us) const;
   /// Returns null if there is none. The built-in roles always exist.
@@ -93,8 +94,8 @@ class RightsState {
   const std::map<std::string, Decided<Role>>& roles() const { return roles_; }
   /// Returns the grants without an end.
   const std::map<PublicKey, Decided<std::string>>& grants() const { return grants_; }
-  /// Returns the grants with an end that the last one of their player decides, also those that have
-  /// ended: such a grant is removed when a later one with an end is made.
+  /// Returns the newest grant with an end of each player, also if it has ended. A grant that has
+  /// ended is removed when a later grant with an end is made.
   const std::map<PublicKey, Decided<GrantRole>>& timed_grants() const { return timed_grants_; }
   /// Returns true if a record has given a role for some time.
   bool has_timed_grants_ever() const { return has_timed_grants_ever_; }
@@ -102,8 +103,8 @@ class RightsState {
   const Decided<GrantRole>* timed_grant(const PublicKey& key, TimeUs now_us) const;
   /// Returns the grants that ended after `since_us`, up to `now_us` (UTC). Cost: O(timed grants).
   std::vector<GrantRole> grants_ended(TimeUs since_us, TimeUs now_us) const;
-  /// Returns the keys with a grant without an end whose role has the right `administer` and who are not banned.
-  /// Cost: O(grants log n).
+  /// Returns the keys with a grant without an end whose role has the right `administer` and who are
+  /// not banned. Cost: O(grants log n).
   std::vector<PublicKey> administrators(TimeUs now_us) const;
 
   /// Returns true if a role was ever granted or an invite ever made, even if it was taken back.
@@ -139,9 +140,9 @@ class RightsState {
   // Corrections of the time.
   /// Returns true if the records have a correction of the time.
   bool is_time_corrected() const { return is_time_corrected_; }
-  /// Returns true if a restriction, an invite or a grant has an end behind `now_us` (UTC) that a record from
-  /// `since` on has given. Cost: O(log n) for each restriction,
-  /// invite and grant with an end.
+  /// Returns true if a record from `since` on has given an end after `now_us` (UTC) to a
+  /// restriction, an invite or a grant. Cost: O(log n) for each restriction, invite and grant with
+  /// an end.
   bool has_ends_given_since(Sequence since, TimeUs now_us) const;
 
   // Protected ground.
@@ -182,7 +183,7 @@ class RightsState {
                              const TouchesBox& touches, TimeUs now_us) const;
 
  private:
-  /// The role that a player was given, if one was.
+  /// The granted role of a player, or null, and the record that gave it.
   struct Granted {
     const Role* role = nullptr;
     ChangeOrigin by;

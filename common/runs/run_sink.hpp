@@ -19,7 +19,7 @@ class RunSink {
     if (!starts_.empty() && starts_.back().material == material) return;
     starts_.push_back({first, material});
   }
-  /// Returns true if these are the runs. Requires canonical runs.
+  /// Returns true if the collected runs equal `runs`. Requires canonical runs.
   template <class Runs>
   bool holds(const Runs& runs) const {
     if (runs.size() != starts_.size()) return false;

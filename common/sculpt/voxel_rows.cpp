@@ -189,8 +189,9 @@ VoxelRows moved(const VoxelRows& rows, VoxelPos by) {
 
 namespace {
 
-/// Combines a set with itself moved by steps, until it was moved by `steps`. The result of `done`
-/// steps, moved by at most as many, gives that of up to twice as many.
+/// Combines a set with all its copies that are moved by 1 .. `steps` steps. The result of `done`
+/// steps, combined with itself moved by at most `done` steps, gives the result of up to twice as
+/// many steps.
 VoxelRows combined_along(const VoxelRows& rows, Direction direction, std::int32_t steps,
                          VoxelRows (*combine)(const VoxelRows&, const VoxelRows&)) {
   VoxelRows out = rows;

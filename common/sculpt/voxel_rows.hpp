@@ -52,16 +52,17 @@ using VoxelRowsPtr = std::shared_ptr<const VoxelRows>;
 
 /// Returns the voxels of boxes. Cost: O(rows of the boxes log rows).
 VoxelRows rows_of_boxes(std::span<const VoxelBox> boxes);
-/// Returns the voxels that are in one of the sets, in the first but not in the second, and in both.
-/// Cost: O(stretches of both sets).
+/// united() returns the voxels that are in one of the sets, without() the voxels of the first set
+/// that are not in the second, and common() the voxels that are in both. Cost: O(stretches of both
+/// sets).
 VoxelRows united(const VoxelRows& a, const VoxelRows& b);
 VoxelRows without(const VoxelRows& a, const VoxelRows& b);
 VoxelRows common(const VoxelRows& a, const VoxelRows& b);
 /// Returns the set moved by an offset. Cost: O(stretches).
 VoxelRows moved(const VoxelRows& rows, VoxelPos by);
-/// Returns the set and the voxels up to `steps` behind it in a direction, and the voxels behind which
-/// all voxels up to `steps` in a direction are in the set. Requires 0 <= steps. Cost: O(stretches of
-/// the result * log steps).
+/// grown_to() returns the set and the voxels up to `steps` behind it in a direction. shrunk_from()
+/// returns the voxels behind which all voxels up to `steps` in the direction are in the set.
+/// Requires 0 <= steps. Cost: O(stretches of the result * log steps).
 VoxelRows grown_to(const VoxelRows& rows, Direction direction, std::int32_t steps);
 VoxelRows shrunk_from(const VoxelRows& rows, Direction direction, std::int32_t steps);
 

@@ -1,5 +1,5 @@
 // EnclosedLayers: the enclosed voxels of a chunk, layer by layer along its slowest axis, as rows of
-// bits. A voxel is enclosed if it is opaque and its six neighbours are. Internal to veil.
+// bits. A voxel is enclosed if it and its six neighbours are opaque. Internal to veil.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace runstone {
 
-/// The opaque voxels of three layers, and the enclosed ones of one. A row is a line.
+/// The opaque voxels of three layers, and the enclosed voxels of one layer. A row is a line.
 template <class Row>
 struct EnclosedScratch {
   std::array<std::vector<Row>, 3> opaque;  // layer s lies in opaque[s % 3]
@@ -59,7 +59,7 @@ class EnclosedLayers {
     const Row* const rows = layer_rows(layer_).data();
     const Row* const before = layer_rows(layer_ + 2).data();
     const Row* const after = layer_rows(layer_ + 1).data();
-    // Their bits lie along the middle axis, which may be longer than a row.
+    // The bits of these two rows lie along the middle axis, which may be longer than a Row.
     const auto first_beyond = borders_.row<Row128>(0, false, layer_);
     const auto last_beyond = borders_.row<Row128>(0, true, layer_);
     Row below = borders_.row<Row>(1, false, layer_);

@@ -105,8 +105,8 @@ SlowLayers layers_beside(const RunChunk& chunk, const DirtyLayers& dirty,
   for (std::size_t d = 0; d < beyond.size(); ++d) {
     const auto direction = static_cast<Direction>(d);
     const Axis across = axis_of(direction);
-    // Of the neighbour only the layer that touches the chunk counts. Its depth may differ from the
-    // chunk's, but chunks of a world are cubes of one edge.
+    // Only the layer of the neighbour that touches the chunk matters. Chunks of a world are cubes
+    // of one edge, so the layers of both chunks have the same numbers.
     const unsigned depth = chunk.extent.sides()[static_cast<std::size_t>(across)];
     if (!beyond[d].any() || !border_dirty(beyond[d], opposite(direction), depth)) continue;
     if (across == slow) {

@@ -10,22 +10,22 @@
 namespace runstone {
 namespace {
 
-/// Writes the veiled runs. It gets the runs of the chunk and the first voxel of each that keeps its
-/// material: all voxels behind it in the run show the same.
+/// Writes the veiled runs. Its input is the runs of the chunk, and of each run the first voxel that
+/// keeps its material. All later voxels of the run show this material, too.
 class VeilWriter {
  public:
   VeilWriter(RunSink& sink, const VeilMaterials& materials) : sink_(sink), materials_(materials) {}
 
-  /// Voxel `at` keeps its material, and all voxels between it and the last one that was kept are
-  /// enclosed, as far as they do not belong to its run.
+  /// Voxel `at` keeps its material. All voxels between the run of the last kept voxel and `at` are
+  /// enclosed.
   void keep(std::uint32_t at, Material material, std::uint32_t run_end) {
-    // A run before that covers goes on up to here.
+    // If the run before covers, it continues up to here.
     if (!covers_ && end_ < at) sink_.append(end_, covers(material) ? material : materials_.filler);
     sink_.append(at, material);
     covers_ = covers(material);
     end_ = run_end;
   }
-  /// All voxels that are left are enclosed.
+  /// Ends the runs. All voxels behind the run of the last kept voxel are enclosed.
   void finish(std::uint32_t volume) {
     if (!covers_ && end_ < volume) sink_.append(end_, materials_.filler);
   }

@@ -41,7 +41,7 @@ VeilBorders::VeilBorders(const RunChunk& chunk,
 }
 
 void VeilBorders::set_missing(Direction side, MissingSide missing) {
-  // Bits and rows outside of the chunk are not read.
+  // No caller reads bits and rows outside of the chunk.
   sides_[side_number(side, order_)].fill(missing == MissingSide::closed ? ~Row128{0} : 0);
 }
 

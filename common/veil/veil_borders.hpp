@@ -1,5 +1,5 @@
-// VeilBorders: what lies beyond the six sides of a chunk, as far as it decides which voxels of the
-// chunk are enclosed. A voxel beyond a side covers the voxel that it touches if it is opaque.
+// VeilBorders: the covering voxels beyond the six sides of a chunk. They decide which voxels at the
+// sides are enclosed.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace runstone {
 
-/// How a side counts whose neighbour is missing.
-///   - open: nothing beyond it covers, so the voxels at the side keep their materials. Tiles count
-///     so, because a client may draw a tile beside anything.
-///   - closed: all of it covers. Chunks count so: a voxel is told when its neighbour is known, and
-///     not before.
+/// The treatment of a side whose neighbour is missing.
+///   - open: no voxel beyond the side covers, so the voxels at the side keep their materials. Tiles
+///     have open sides, because a client may draw a tile beside anything.
+///   - closed: every voxel beyond the side covers. Chunks have closed sides, so a voxel is sent
+///     only when its neighbour is known.
 enum class MissingSide : std::uint8_t { open, closed };
 
 /// Layers [first, end) of the slowest axis of a chunk.
@@ -31,24 +31,23 @@ SlowLayers all_slow_layers(const RunChunk& chunk);
 
 class VeilBorders {
  public:
-  /// Makes the borders of a chunk of this extent and axis order, all of whose neighbours are
-  /// missing.
+  /// Makes the borders of a chunk of this extent and axis order. All of its neighbours are missing.
   VeilBorders(Extent extent, AxisOrder order, MissingSide missing);
   /// Reads the neighbours of a chunk, in any axis order. A missing neighbour is null. Requires
   /// valid neighbours with the chunk's sides where they touch. Cost: O(runs of the neighbours).
   VeilBorders(const RunChunk& chunk, const std::array<const RunChunk*, kDirectionCount>& neighbours,
               const VisibilityTable& covers, MissingSide missing);
-  /// Reads what lies beside some layers of the chunk. The rest is not known afterwards. Cost: for a
-  /// few layers O(layers * (length + log runs)).
+  /// Reads the voxels beside some layers of the chunk only. Rows beside other layers are not valid
+  /// afterwards. Cost: for a few layers O(layers * (length + log runs)).
   VeilBorders(const RunChunk& chunk, const std::array<const RunChunk*, kDirectionCount>& neighbours,
               const VisibilityTable& covers, MissingSide missing, SlowLayers layers);
 
   Extent extent() const { return extent_; }
   AxisOrder order() const { return order_; }
 
-  /// Returns the voxels beyond a side that cover, as a row of bits. `rank` is that of the axis
-  /// across the side in the axis order. Bits lie along the fastest of the two other axes, and rows
-  /// along the slowest.
+  /// Returns the voxels beyond a side that cover, as a row of bits. `rank` is the place of the axis
+  /// across the side in the axis order. Bits lie along the faster of the two other axes, and rows
+  /// along the slower one.
   template <class Row>
   Row row(int rank, bool positive, std::uint32_t row) const {
     return static_cast<Row>(sides_[static_cast<std::size_t>(rank) * 2 + (positive ? 1 : 0)][row]);

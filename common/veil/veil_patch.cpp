@@ -100,7 +100,7 @@ VeilPatch in_order(const VeilPatch& patch, AxisOrder order) {
 bool apply_patch(const VeilPatch& patch, RunChunk& chunk) {
   RUNSTONE_ASSERT(patch.extent == chunk.extent);
   if (patch.order != chunk.order) return apply_patch(in_order(patch, chunk.order), chunk);
-  // A splice moves the runs behind it, which costs less than copying all runs a few times.
+  // Each splice moves the runs behind it. For a few spans that costs less than a copy of all runs.
   constexpr std::size_t kSplicesMax = 8;
   if (patch.spans.size() <= kSplicesMax) {
     bool is_changed = false;

@@ -1,6 +1,6 @@
-// VeilPatch: voxels of a shown chunk that get other materials, as stretches of the flattened chunk.
-// Canonical form: the order is kVeilOrder, stretches ascend and do not overlap, and two that touch
-// differ in material. So equal changes have equal stretches. Holders apply a patch in their own
+// VeilPatch: voxels of a shown chunk that get other materials, as spans of the flattened chunk.
+// Canonical form: the order is kVeilOrder, the spans ascend and do not overlap, and two spans that
+// touch differ in material. So equal changes have equal spans. Holders apply a patch in their own
 // axis order.
 #pragma once
 #include <cstdint>
@@ -31,16 +31,16 @@ struct VeilPatch {
   friend bool operator==(const VeilPatch&, const VeilPatch&) = default;
 };
 
-/// Fails with the first broken invariant, in any axis order; the offset of the error is the number
-/// of the span. A patch from outside passes this check before use.
+/// Checks a patch in any axis order. Fails with the first broken invariant. The offset of the error
+/// is the number of the span. Call it before you use a patch from outside.
 Result<void> validate(const VeilPatch& patch);
 
 /// Returns the same changes in another axis order. Requires a valid patch. Cost: O(n log n) for n
 /// lines of the new order in which a span has voxels.
 VeilPatch in_order(const VeilPatch& patch, AxisOrder order);
 
-/// Applies a patch in any axis order. Returns true if a voxel changed. Requires a valid patch of the
-/// chunk's extent. Cost: O(runs + spans), and that of in_order().
+/// Applies a patch in any axis order. Returns true if a voxel changed. Requires a valid patch of
+/// the chunk's extent. Cost: O(runs + spans), plus the cost of in_order().
 bool apply_patch(const VeilPatch& patch, RunChunk& chunk);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// Joins a world, reads it, meshes it, and places a voxel above the ground: the loop of a program without a
-// window. It needs a WebSocket, as node has it from version 22 on.
+// Joins a world, reads it, meshes it, and places a voxel above the ground: the loop of a program
+// without a window. It needs a WebSocket, which node has from version 22 on.
 //   node join.mjs ws://127.0.0.1:8080/play
 import { Edits, load, Session } from "@runstone/core";
 

@@ -1,5 +1,5 @@
-// Joins a world through its gateway and draws it with three.js. A click digs, a click with the right button
-// builds, W A S D and the mouse fly.
+// Joins a world through its gateway and draws it with three.js. A click digs, a click with the
+// right button builds, W A S D and the mouse fly.
 //   index.html?server=ws://127.0.0.1:8080/play&name=ada
 import * as THREE from "three";
 import { Direction, Edits, load, Look, Pass, Session } from "@runstone/core";

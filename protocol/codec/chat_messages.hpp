@@ -39,16 +39,17 @@ struct ChatLines {
   friend bool operator==(const ChatLines&, const ChatLines&) = default;
 };
 
-/// Names a line of a player. Author numbers would not do: a restarted server gives others.
+/// Identifies a line of a player. Author numbers cannot identify it, because a restarted server
+/// gives other numbers.
 struct ChatLineId {
   TimeUs utc_us = 0;  // of the line
   std::string name;   // of the line; empty: of no player's line
   friend bool operator==(const ChatLineId&, const ChatLineId&) = default;
 };
-/// Returns what names the line.
+/// Returns the id of the line.
 inline ChatLineId id_of(const ChatLine& line) { return {line.utc_us, line.name}; }
 
-/// Lines that nobody shall read any more.
+/// Lines that clients hide from now on.
 struct ChatWithdrawn {
   std::vector<ChatLineId> lines;  // 1 .. kChatWithdrawnMax
   friend bool operator==(const ChatWithdrawn&, const ChatWithdrawn&) = default;

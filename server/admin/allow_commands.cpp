@@ -15,7 +15,8 @@
 namespace runstone {
 namespace {
 
-/// The changes of rights between two waits for the disk, so that a long list holds nobody up.
+/// The greatest number of changes of rights between two waits for the disk. The bound lets other
+/// work run during a long list.
 constexpr std::size_t kAllowedAtOnce = 50;
 constexpr TimeUs kInviteOfListUs = TimeUs{30} * 86'400'000'000;
 

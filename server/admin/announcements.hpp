@@ -1,6 +1,6 @@
-// Announcements: lines that the host writes to everybody again and again, or at a time of each day. A
-// list comes from the setting `announcements`, and commands add to it until the server stops.
-// Pure: times are arguments. Thread: one.
+// Announcements: lines that the server writes to all players at an interval, or at a time of each
+// day. A list comes from the setting `announcements`, and commands add to it until the server
+// stops. Pure: times are arguments. Thread: one.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -26,10 +26,11 @@ struct Announcement {
   friend bool operator==(const Announcement&, const Announcement&) = default;
 };
 
-/// Parses "every 30m TEXT" or "at 20:00 TEXT". The time of day is in UTC. Fails with what is wrong.
+/// Parses "every 30m TEXT" or "at 20:00 TEXT". The time of day is in UTC. Fails with the fault in
+/// words.
 Result<Announcement, std::string> parse_announcement(std::string_view text);
-/// Parses announcements with "|" between them. An empty text has none. Fails with what is wrong, or if
-/// there are more than kAnnouncementsMax.
+/// Parses announcements with "|" between them. An empty text has none. Fails with the fault in
+/// words, also if there are more than kAnnouncementsMax.
 Result<std::vector<Announcement>, std::string> parse_announcements(std::string_view text);
 /// Returns a text that parse_announcement() reads.
 std::string text_of(const Announcement& announcement);
@@ -40,17 +41,18 @@ class Announcements {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  /// Replaces those of the setting. Those that were there before keep the time of their next line.
+  /// Replaces the announcements of the setting. An announcement that was in the old list keeps the
+  /// time of its next line.
   void set_configured(const std::vector<Announcement>& announcements);
-  /// Adds one. Fails if there are too many.
+  /// Adds an announcement of a command. Fails if there are too many.
   Result<void, std::string> add(Announcement announcement);
-  /// Removes the one with this number of list(), if a command has added it. Fails otherwise, with the
-  /// reason.
+  /// Removes the announcement with this number in list(). Fails with the reason if there is none,
+  /// or if no command has added it.
   Result<Announcement, std::string> remove(std::size_t number);
-  /// Returns a line for each, with its number from 1.
+  /// Returns a line for each announcement, with its number from 1.
   std::string list() const;
-  /// Calls `say` for each line that is due. A line that was due while the clock jumped by more than ten
-  /// minutes, or before the first call, is left out. Cost: O(announcements).
+  /// Calls `say` for each line that is due. A line that was due while the clock jumped by more than
+  /// ten minutes, or before the first call, is left out. Cost: O(announcements).
   void tick(TimeUs steady_us, TimeUs utc_us, const Say& say);
 
  private:

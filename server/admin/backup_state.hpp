@@ -12,7 +12,7 @@ struct LastBackup {
   std::uint64_t age_s = 0;      // 0 if its time is after the clock's
   std::uint64_t bytes = 0;      // of its files
   std::uint64_t new_bytes = 0;  // that no earlier backup had
-  std::uint64_t ahead_s = 0;    // by which its time is after the clock's
+  std::uint64_t ahead_s = 0;    // the seconds by which its time lies after the clock
 };
 
 struct BackupState {

@@ -73,8 +73,9 @@ struct CommandServices {
   PlayerReports reports = {};
   Announcements announcements = {};
 
-  /// Lets the commands go on that wait for the disk, and the import of a folder, and writes
-  /// announcements that are due if somebody is here to read them. Call it on every tick, and when the log became durable or failed.
+  /// Continues the commands that wait for the disk, and the import of a folder. Writes due
+  /// announcements if a player is connected. Call it on every tick, and when the log became durable
+  /// or failed.
   void tick(const Clocks& now);
 };
 
@@ -134,8 +135,8 @@ struct CommandCall {
   void answer_when_names_durable(const std::string& text) const;
   /// Orders a change of rights, if the caller may make it. Answers when it is on disk with "text
   /// (record N)" and the number of sessions that it ended, or with why it was refused. A change of
-  /// which hazard_of() warns must be confirmed. `in_force` is called when the change is in force, and
-  /// returns what is appended to the answer; null: nothing is.
+  /// which hazard_of() warns must be confirmed. `in_force` is called when the change is in force,
+  /// and returns the text that is appended to the answer. If it is null, no text is appended.
   void change_rights(const RightsChange& change, const std::string& text,
                      const std::function<std::string()>& in_force = nullptr) const;
 

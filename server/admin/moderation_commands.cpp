@@ -273,7 +273,7 @@ std::string exempt_by_default(const RightsState& rights) {
          " administers (role default visitor changes it)";
 }
 
-/// Returns the players who are here and whom a restriction is for.
+/// Returns the connected players to whom a restriction applies.
 std::vector<PublicKey> present_players(const CommandCall& call, const RestrictionSubject& subject) {
   if (const auto* key = std::get_if<PublicKey>(&subject)) return {*key};
   std::vector<PublicKey> keys;
@@ -284,8 +284,8 @@ std::vector<PublicKey> present_players(const CommandCall& call, const Restrictio
   return keys;
 }
 
-/// Withdraws the newest lines of the chat of those players who are not here any more. Returns what
-/// the answer says of it, or an empty text if there were none.
+/// Withdraws the newest lines of the chat of those players who are not connected any more. Returns
+/// the sentence for the answer, or an empty text if no line was withdrawn.
 std::string withdraw_lines_of_gone(const CommandCall& call, const std::vector<PublicKey>& players) {
   People& people = call.world().people();
   std::size_t lines = 0;
@@ -412,7 +412,7 @@ Result<WithdrawCommand, std::string> parse_withdraw(WordReader& reader) {
 }
 
 void withdraw_one(const CommandCall& call, const PublicKey& key, const std::string& who) {
-  // A player withdraws the lines of those whom the player may mute.
+  // A player may withdraw the lines of the players whom the player may mute.
   const Restrict mute{RestrictionKind::mute, key, 0, ""};
   const bool is_self = call.caller.actor.key == key;
   if (auto why = call.world().rights().change_refusal(mute, call.caller.actor); why && !is_self)

@@ -43,9 +43,9 @@ struct OperatorActions {
   std::function<BackupState()> backup_state;
   /// Returns how the server is, for `status`. The runtime sets it.
   std::function<ServerHealth()> health;
-  /// The retention of the log. The runtime sets these. `run_retention` begins a run that keeps the edits
-  /// of so many days, and returns false if one is under way or the log cannot be written;
-  /// `stop_retention` ends the run under way, and returns false if there is none.
+  /// The retention of the log. The runtime sets these. `run_retention` begins a run that keeps the
+  /// edits of so many days. It returns false if a run is under way or the log cannot be written.
+  /// `stop_retention` ends the run under way. It returns false if there is none.
   std::function<RetentionState()> retention_state;
   std::function<bool(std::uint64_t days)> run_retention;
   std::function<bool()> stop_retention;

@@ -23,7 +23,7 @@
 namespace runstone {
 namespace {
 
-/// The memory of the box of one world.
+/// The greatest memory for the box of one world.
 constexpr std::size_t kRestoredBytesMax = std::size_t{128} << 20;
 
 Result<RestoreBoxCommand, std::string> parse_restore_box(WordReader& reader) {
@@ -42,7 +42,7 @@ Result<RestoreBoxCommand, std::string> parse_restore_box(WordReader& reader) {
   return reader.result(command);
 }
 
-/// A box as it was in a backup, beside the box of the world now.
+/// A box as it was in a backup, and the same box of the world now.
 struct BackupBox {
   std::shared_ptr<const FileBuild> then;
   LogEnd end;  // of the backup, at the moment
@@ -61,8 +61,8 @@ Result<FileBuild, std::string> read_box(WorldReader& reader, const Generator& ge
                   [&](std::uint64_t, std::uint64_t) { return should_continue(); });
 }
 
-/// Returns what tells restored materials apart: place_build() goes by names, and a material may have got
-/// a shape since the backup. It is empty for an empty material.
+/// Returns a key that distinguishes restored materials, or an empty text for an empty material.
+/// place_build() finds materials by name, and a material may have got a shape since the backup.
 std::string restored_name(const BuildMaterial& material) {
   return material.row.visibility == Visibility::empty ? "" : world_name_of(material);
 }
@@ -108,13 +108,13 @@ std::uint64_t differing_cells(const FileBuild& then, const FileBuild& now) {
   return count;
 }
 
-/// Reads the box of the backup and that of the world, as it is on disk up to `durable`. Blocks on the
-/// disk.
+/// Reads the box of the backup and that of the world, as it is on disk up to `durable`. Blocks on
+/// the disk.
 Result<BackupBox, std::string> read_backup_box(WorldReader& live, const Generator& generator,
                                                const RestoreBoxCommand& wanted, Sequence durable,
                                                const ShouldContinue& should_continue) {
   const std::string place = place_name(wanted.backup);  // without a password
-  // To open a FIFO would hold up this worker for ever.
+  // If the file is a FIFO, opening it would block this worker for ever.
   std::error_code unreadable;
   const std::string file = wanted.backup + "/world.sqlite";
   if (!is_database(wanted.backup) && std::filesystem::exists(file, unreadable) &&

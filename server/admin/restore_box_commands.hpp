@@ -10,7 +10,8 @@
 
 namespace runstone {
 
-/// The voxels of the box. Both the backup and the world are read at once, on a worker.
+/// The greatest number of voxels of the box. A worker reads the backup and the world, and holds
+/// both in memory.
 inline constexpr std::uint64_t kRestoredVoxelsMax = std::uint64_t{64} << 20;
 
 struct RestoreBoxCommand {

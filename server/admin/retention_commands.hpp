@@ -1,5 +1,5 @@
-// The commands about the retention of the log: retention, retention preview, retention run, retention
-// stop.
+// The commands about the retention of the log: retention, retention preview, retention run,
+// retention stop.
 #pragma once
 #include <span>
 #include <string>
@@ -11,8 +11,8 @@ namespace runstone {
 
 std::span<const CommandRow> retention_commands();
 
-/// Returns a plan as lines for a person: what would go and what stays, the bytes that come back, and
-/// how far the past reaches then.
+/// Returns a plan as lines for a person: the edits that would be removed and those that stay, the
+/// bytes that come back, and how far the past would reach.
 std::string retention_plan_text(const RetentionPlan& plan);
 
 }  // namespace runstone

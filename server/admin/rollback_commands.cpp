@@ -115,7 +115,8 @@ bool take_filter(WordReader& reader, CommandFilter& filter) {
   return true;
 }
 
-/// Puts the place of a protected box that the filter names into it. Returns why it cannot, or nullopt.
+/// Sets the box of the filter to the protected box that the filter names. Returns the reason if
+/// there is no such box, or nullopt.
 std::optional<std::string> place_filter(const CommandCall& call, CommandFilter& filter) {
   if (filter.in.empty()) return std::nullopt;
   const Decided<ProtectedBox>* box = call.rights().find_box(filter.in);
@@ -229,7 +230,7 @@ Result<RollbackPreviewCommand, std::string> parse_preview(WordReader& reader) {
 }
 
 constexpr CommandRule kRollback = needs(Right::roll_back);
-// Without the right roll_back these commands are for the owners of protected ground.
+// Owners of protected ground may give these commands without the right roll_back.
 constexpr CommandRule kOwnRollback = needs(Right::roll_back, Right::claim, Right::build);
 
 RollbackService::Scope scope_of(const CommandCall& call) {
@@ -243,8 +244,8 @@ std::string box_names(const std::vector<const Decided<ProtectedBox>*>& boxes) {
   return text;
 }
 
-/// Chooses the ground on which a caller without the right roll_back takes edits back, and puts it
-/// into the filter. A failure is the reason why there is none.
+/// Chooses the ground on which a caller without the right roll_back takes edits back, and sets it
+/// as the box of the filter. Fails with the reason if there is no such ground.
 Result<OwnGround, std::string> choose_own_ground(const CommandCall& call,
                                                  const RollbackPreviewCommand& command,
                                                  CommandFilter& filter) {
@@ -334,7 +335,8 @@ Result<std::string, std::string> parse_rollback_id(WordReader& reader) {
   return reader.result(reader.take_only("one id comes after it (rollback list names them)"));
 }
 
-/// Returns why an owner of ground may not apply a preview: the ground has changed hands or place.
+/// Returns the reason why an owner of ground may not apply a preview, or nullopt: the ground has
+/// another owner or another place than before.
 std::optional<std::string> why_not_own(const CommandCall& call, const OwnGround& ground) {
   const PublicKey& key = *call.caller.actor.key;
   if (auto frozen = call.world().rights().freeze_text(key)) return frozen;

@@ -118,8 +118,8 @@ struct ServerConfig {
   std::uint64_t chat_days = 30;        // for which lines stay on disk, 0: none is written .. 36500
   std::string message_of_the_day;      // for players who join; empty: none
   // Retention.
-  std::uint64_t retention_days = 0;         // for which edits stay in the log, 0: for ever .. 36500
-  std::vector<Announcement> announcements;  // lines that are written again and again
+  std::uint64_t retention_days = 0;  // days that edits stay in the log; 0: for ever; at most 36500
+  std::vector<Announcement> announcements;  // lines that are written to all players
   // Backups that the server makes by itself.
   std::uint64_t backup_every_s = 0;       // seconds between two backups, 0: none, 60..31622400
   std::string backup_folder;              // that holds them; not in the world's folder

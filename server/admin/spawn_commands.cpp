@@ -25,7 +25,7 @@ std::string spawn_text(const WorldPos& at) {
   return fmt::format("{:.1f} {:.1f} {:.1f}", at.x, at.y, at.z);
 }
 
-/// Returns what the answer says of the ground that is kept clear.
+/// Returns the sentence of the answer about the ground that is kept clear.
 std::string kept_text(const CommandCall& call) {
   const Decided<ProtectedBox>* box = call.rights().find_box(kSpawnBox);
   if (box == nullptr) return "; no ground is kept clear (spawn keep-clear R)";

@@ -1,4 +1,5 @@
-// The commands about the spawn of the world: where it is, and the ground around it that is kept clear.
+// The commands about the spawn of the world: its place, and the ground around it that is kept
+// clear.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,11 +12,12 @@ namespace runstone {
 
 /// The protected box with which `spawn keep-clear` keeps the ground.
 inline constexpr const char* kSpawnBox = "spawn";
-/// It decides before the boxes of players. A host may open a part of it with a higher priority.
+/// The priority of this box. It is higher than that of the boxes of players. A host may open a part
+/// of the box with a higher priority.
 inline constexpr std::int32_t kSpawnBoxPriority = 500;
 inline constexpr std::int64_t kSpawnRadiusMax = 1'000;
 
-/// Where the spawn shall be. Without a place: where the player is who gives the command.
+/// The new place of the spawn. Without a place it is the place of the player who gives the command.
 struct SpawnCommand {
   std::optional<VoxelPos> at;
   friend bool operator==(const SpawnCommand&, const SpawnCommand&) = default;

@@ -32,7 +32,8 @@ constexpr const char* kHasWithdrawn =
     "SELECT COUNT(*) FROM pragma_table_info('line') WHERE name = 'withdrawn'";
 constexpr const char* kAddWithdrawn = "ALTER TABLE line ADD COLUMN withdrawn INTEGER";
 
-// The world strand withdraws lines that it keeps in memory. Each is among the newest lines here.
+// The world strand withdraws only lines that it keeps in memory, so each of them is among the
+// newest lines of the database.
 constexpr std::int64_t kWithdrawnAmongNewest = 4'096;
 
 // A commit waits for no fsync, which would delay those of the edit log: only a checkpoint does, once

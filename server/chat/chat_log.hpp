@@ -7,8 +7,8 @@
 //     that is damaged is renamed to chat.sqlite.damaged, which is removed when its lines would have
 //     been, and a new one is begun. Nobody waits for the log, and the server never stops for it. A
 //     warning, at most once a minute, counts the missing lines.
-// Threads: append(), withdraw(), forget_before(), search() from any thread; they never wait for the disk. The
-// thread of the log calls `on_warning` and the answers of searches.
+// Threads: append(), withdraw(), forget_before() and search() may be called from any thread; they
+// never wait for the disk. The thread of the log calls `on_warning` and the answers of searches.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -52,8 +52,8 @@ class ChatLog {
   ChatLog& operator=(const ChatLog&) = delete;
 
   void append(const ChatEntry& entry);
-  /// Marks lines of a player that were appended before, by their times, as withdrawn. Does nothing if
-  /// too many such calls wait.
+  /// Marks lines of a player that were appended before, by their times, as withdrawn. Does nothing
+  /// if too many such calls wait.
   void withdraw(const PublicKey& key, const std::vector<TimeUs>& times);
   /// Removes the lines that are older, and a damaged file that was last written before, soon.
   void forget_before(TimeUs utc_us);
@@ -86,7 +86,7 @@ class ChatLog {
   /// return without work, so that a warning is written.
   std::optional<Work> take_work();
   void carry_out(Work& work);
-  /// Marks lines as withdrawn. Those for which the disk has no space are tried again later.
+  /// Marks lines as withdrawn. Lines for which the disk has no space are tried again later.
   void carry_out(std::vector<Withdrawal>&& withdrawals);
   /// Opens the file unless it is open. Returns true if it is. After a failure it waits for
   /// warning_interval before it tries again.

@@ -13,7 +13,7 @@
 namespace runstone {
 namespace {
 
-// Smaller folds take hardly less: what they take then is the wait for the disk.
+// Smaller folds take hardly less time, because most of it is then the wait for the disk.
 constexpr FoldSize kFoldSizeMax{4'096, 128}, kFoldSizeMin{128, 16};
 
 }  // namespace

@@ -1,7 +1,8 @@
-// FoldMaker: makes the next fold of a world's log: its oldest edits, and the chunks that they lead to.
-// The owner of the store that is open for writing moves it into the base (WorldSink::fold_log()).
-// Each fold begins at the head of the log, so a world is whole after each of them.
-// Threads: one, which alone uses the reader.
+// FoldMaker: makes the next fold of a world's log: its oldest edits, and the chunks after these
+// edits. The owner of the store that is open for writing moves the fold into the base
+// (WorldSink::fold_log()). Each fold begins at the head of the log, so the world is whole after
+// each fold.
+// Thread: one, which alone uses the reader.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -20,7 +21,8 @@ struct FoldSize {
   std::size_t chunks_max = 32;
 };
 
-/// The time of the log writer that a fold takes, as far as its size can bound it.
+/// The target for the time of the log writer that a fold takes. Only the size of the fold controls
+/// it.
 inline constexpr std::chrono::milliseconds kFoldTimeMax{20};
 
 /// Returns the size of the next fold, if one of size `now` took the log writer `taken`.

@@ -65,7 +65,7 @@ StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
 
 StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {
   auto made = made_chunk(at, key);
-  // Retention may have moved the beginning of the log past what the moment has read.
+  // Retention may have moved the beginning of the log past the edits that the moment has read.
   if (made || made.error().kind != StoreError::Kind::bad_request) return made;
   forget(at);
   return made_chunk(at, key);

@@ -11,8 +11,8 @@ namespace runstone {
 namespace {
 
 constexpr TimeUs kDayUs = 86'400'000'000;
-// The edits behind a cut that are looked at for actions that it would divide, and how often the cut
-// moves back for them.
+// The number of edits behind a cut that are searched for actions that it would divide, and the
+// number of times that the cut moves back for them.
 constexpr Sequence kActionLookEdits = 256;
 constexpr int kActionLooks = 8;
 
@@ -20,8 +20,8 @@ Unexpected<StoreError> refuse_plan(const WorldReader& reader, std::string what) 
   return {{StoreError::Kind::bad_request, reader.file(), "retention", std::move(what)}};
 }
 
-/// Returns the cut, moved back so that no action of a player has edits on both sides of it, as far as
-/// kActionLookEdits show. It stays at or behind the head.
+/// Returns the cut, moved back so that no action of a player has edits on both sides of it, as far
+/// as kActionLookEdits show. It stays at or behind the head.
 StoreResult<Sequence> before_actions(WorldReader& reader, Sequence head, Sequence cut) {
   for (int look = 0; look < kActionLooks && cut > head; ++look) {
     Sequence first = cut + 1;
@@ -39,8 +39,9 @@ StoreResult<Sequence> before_actions(WorldReader& reader, Sequence head, Sequenc
   return cut;
 }
 
-/// Returns the doubt about an edit behind which the time of the log steps ahead: a clock that was wrong
-/// makes such a step, and then all edits before it look old. `old`: the newest edit that looks old.
+/// Returns the doubt about an edit behind which the time of the log steps ahead. A wrong clock
+/// makes such a step, and then all edits before it look old. `old` is the newest edit that looks
+/// old.
 StoreResult<std::string> doubt_of(WorldReader& reader, const LogEnd& old, std::uint64_t days) {
   std::string doubt;
   const auto read =
@@ -83,7 +84,7 @@ StoreResult<RetentionPlan> plan_retention(WorldReader& reader, std::uint64_t day
   if (from_us < std::numeric_limits<TimeUs>::min() + kept_us) return plan;
   const auto found = reader.sequence_at(from_us - kept_us);
   if (!found) {
-    // All edits that are older are removed already.
+    // All older edits are already removed.
     if (found.error().kind == StoreError::Kind::bad_request) return plan;
     return failure(found.error());
   }
@@ -101,7 +102,7 @@ StoreResult<RetentionPlan> plan_retention(WorldReader& reader, std::uint64_t day
   const auto volume = reader.log_volume(*cut);
   if (!volume) return failure(volume.error());
   plan.volume = *volume;
-  // The cut may have moved back from it, for the sake of actions.
+  // The cut may have moved back from this edit, so that it divides no action.
   const auto old = reader.edit_at(wanted);
   if (!old) return failure(old.error());
   auto doubt = doubt_of(reader, old->value_or(plan.cut), days);

@@ -1,9 +1,11 @@
-// RetentionPlan: what a retention would remove from the log of a world, before it acts.
-//   - Retention removes the oldest part of the log. It cannot leave a record of it out or keep one,
-//     because the numbers of the log have no gaps, and each chunk is its base and all edits since.
+// RetentionPlan: the edits that a retention would remove from the log of a world. It is made before
+// the retention acts.
+//   - Retention removes the oldest part of the log as a whole. It cannot keep a record of this
+//     part, because the numbers of the log have no gaps, and each chunk is its base and all edits
+//     since.
 //   - The days count back from the newest edit, or from the clock if that is earlier. So the newest
 //     edit stays, whatever the clock says, and a world in which nobody builds keeps what it has.
-// It blocks on the disk.
+// Planning blocks on the disk.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -16,12 +18,13 @@ inline constexpr std::uint64_t kRetentionDaysMax = 36'500;
 
 struct RetentionPlan {
   std::uint64_t days = 0;
-  LogEnd head;    // up to here the log is removed already
-  LogEnd cut;     // up to here it would be; equal to the head if nothing would go
+  LogEnd head;    // the last edit that is already removed
+  LogEnd cut;     // the last edit that would be removed; equal to the head if there is none
   LogEnd newest;  // the last edit of the log
   LogVolume volume;
   FreeSpace free;
-  /// Why the plan needs a person's word, as a sentence without a period. Empty: it does not.
+  /// The reason why a person must confirm the plan, as a sentence without a period. Empty: no
+  /// confirmation is needed.
   std::string doubt;
 
   bool removes_nothing() const { return cut == head; }

@@ -4,8 +4,8 @@
 // Memory: every edit read, once; for each chunk ever edited its stored form without voxels, and the
 // list of its edits. No chunk is kept.
 // Threads: one, which alone uses the reader, except for voxels(). A server may write the world
-// meanwhile. Retention that moves the beginning of the log past what the object needs is detected and
-// reported.
+// meanwhile. If retention moves the beginning of the log past the edits that the object needs, this
+// is detected and reported.
 #pragma once
 #include <cstdint>
 #include <functional>

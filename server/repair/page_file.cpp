@@ -226,7 +226,8 @@ std::optional<Bytes> PageFile::record_of(const PageCell& cell, Age age) {
 
 bool PageFile::is_pointer_map(std::uint32_t number, ByteView page) const {
   if (number < 2 || page.size() < kPointerBytes) return false;
-  // Each of them stands before the pages that it describes. SQLite never uses the page of the locks.
+  // Each of them stands before the pages that it describes. SQLite never uses the page of the
+  // locks.
   const auto group = static_cast<std::uint32_t>(page_bytes_ / kPointerBytes + 1);
   const auto lock_page = static_cast<std::uint32_t>(kLockByte / page_bytes_ + 1);
   std::uint32_t map = (number - 2) / group * group + 2;

@@ -44,8 +44,8 @@ class PageFile {
   /// Returns the whole record of a cell, with its overflow pages. Returns nullopt if they end
   /// early.
   std::optional<Bytes> record_of(const PageCell& cell, Age age);
-  /// Returns true for a page of back references, which has no rows. Files that can give space back in
-  /// parts have such pages. It looks at the page alone, because the header may be damaged.
+  /// Returns true for a page of back references, which has no rows. Files that can give space back
+  /// in parts have such pages. It looks at the page alone, because the header may be damaged.
   bool is_pointer_map(std::uint32_t number, ByteView page) const;
   /// Returns true for each page that SQLite does not use. Element 0 is not a page.
   const std::vector<bool>& free_pages() const { return is_free_; }

@@ -124,7 +124,8 @@ StoreResult<void> Replayer::compare_rest() {
   }
   for (const auto& [key, rows] : listed_) {
     for (const auto& [version, expected] : rows) {
-      // What retention has removed cannot be compared: the log begins with a later version.
+      // Versions that retention has removed cannot be compared, because the log begins with a later
+      // version.
       const bool is_removed = head_ > 0 && version.seq <= head_ && chunks_.contains(key);
       if (key.lod != 0 || version.seq > report_.seq || is_removed) {
         ++report_.not_compared;

@@ -62,7 +62,8 @@ class File {
 Result<RlogWorld, std::string> world_of(WorldReader& store, const LogEnd& head) {
   const auto has_base = store.has_base();
   if (!has_base) return failure(has_base.error().message());
-  // meta() is of the moment when the world was opened: retention may have moved materials into it.
+  // meta() was read when the world was opened. Since then retention may have moved materials into
+  // it.
   const auto materials = store.materials(head.version.seq);
   if (!materials) return failure(materials.error().message());
   const WorldMeta& meta = store.meta();

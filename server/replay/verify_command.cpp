@@ -120,8 +120,8 @@ Result<void, std::string> expect_all(Replayer& replayer, Store& store,
   return {};
 }
 
-/// Replays the log at one moment of the world: retention of a running server moves edits from the log
-/// into the base.
+/// Replays the log at one moment of the world: retention of a running server moves edits from the
+/// log into the base.
 StoreResult<ReplayReport> replay_at_one_moment(Replayer& replayer, Store& store,
                                                const VerifyOptions& options, Sequence end) {
   if (const auto begun = store.begin_reads(); !begun) return failure(begun.error());

@@ -73,8 +73,8 @@ class RestorePlanner {
   /// with its stored form or with why that could not be read. Ends if `each` returns false.
   void in_batches(std::span<const Item> items, Sequence end,
                   const std::function<bool(const Item&, StoreResult<StoredForm>)>& each);
-  /// Calls `each` for one chunk whose log does not fit into memory. `each` reads the log as it was when
-  /// the stored form was read, because retention moves edits from one to the other.
+  /// Calls `each` for one chunk whose log does not fit into memory. `each` reads the log as it was
+  /// when the stored form was read, because retention moves edits from one to the other.
   bool one_at_one_moment(const Item& item,
                          const std::function<bool(const Item&, StoreResult<StoredForm>)>& each);
   StoreResult<RestorePlan> plan_from(StoredForm stored, const Item& item,

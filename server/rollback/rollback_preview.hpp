@@ -16,7 +16,7 @@
 
 namespace runstone {
 
-/// The protected ground of a player without the right `roll_back`, who takes edits back there.
+/// The protected ground on which a player without the right `roll_back` takes edits back.
 struct OwnGround {
   AuthorId author = 0;  // of the player
   std::string name;     // of the protected box
@@ -50,13 +50,13 @@ struct RollbackPreview {
   };
   std::shared_ptr<Progress> progress = std::make_shared<Progress>();
   Sequence rollback = 0;         // first edit of the rollback; 0 until it has written one
-  std::optional<OwnGround> own;  // nullopt: of somebody with the right `roll_back`
+  std::optional<OwnGround> own;  // nullopt: of a player with the right `roll_back`
 
   // The worker writes these in compute(). The world strand reads them after the worker has
   // answered.
   std::shared_ptr<const Selection> selection;
   std::uint64_t voxels = 0, chunks = 0;  // that would change
-  /// The line about edits that may match and are no longer in the log. Empty: there are none.
+  /// The line about edits that may match but are no longer in the log. Empty: there are none.
   std::string removed;
   std::string summary, error;  // `error` is empty if the preview could be computed
 

@@ -13,7 +13,8 @@ namespace {
 
 // Selections are large, so the oldest preview is discarded when there are more.
 constexpr std::size_t kPreviewsMax = 16;
-// Of these, previews of players without the right `roll_back`. They displace no others.
+// The greatest number of these previews that belong to players without the right `roll_back`. They
+// do not displace other previews.
 constexpr std::size_t kOwnPreviewsMax = 8;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick

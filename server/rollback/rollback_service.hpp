@@ -61,13 +61,14 @@ class RollbackService {
 
   /// Answers what a rollback of these edits would do, and keeps the preview under an id ("p1"). If
   /// that takes longer than a moment, answers with the id and the progress come before. Changes
-  /// nothing. The functions are those of RollbackPreview::compute(). `own`: of a player without the
-  /// right `roll_back`, whose earlier preview is discarded; the filter has the box.
+  /// nothing. The functions are those of RollbackPreview::compute(). `own` is the ground of a
+  /// player without the right `roll_back`. The filter must have its box. The earlier preview of
+  /// this player is discarded.
   void preview(const SelectionFilter& filter, const Clocks& now, CommandReply reply,
                RollbackPreview::PlanViewer viewer = {}, RollbackPreview::Summary summarise = {},
                const std::optional<OwnGround>& own = std::nullopt);
-  /// What a caller may do with previews and rollbacks. `own` is for players without the right
-  /// `roll_back`: the others do not exist for them, and their edit budget pays.
+  /// The previews and rollbacks that a caller may use. `own` is for players without the right
+  /// `roll_back`: they see only their own, and their edit budget pays.
   enum class Scope : std::uint8_t { all, own };
   /// Returns the ground of a preview of the author, or null if the author has no such preview.
   const OwnGround* own_ground(const std::string& id, AuthorId author);
@@ -154,9 +155,9 @@ class RollbackService {
   RollbackPreview* find_preview(const std::string& id);
   /// Returns null also for a preview that is not in the scope of the author.
   RollbackPreview* find_preview(const std::string& id, AuthorId author, Scope scope);
-  /// Discards previews of players without the right `roll_back`: an earlier one of the author, and the
-  /// oldest ones beyond their number. Returns false if there is no room, because the others are all of
-  /// players with the right.
+  /// Discards previews of players without the right `roll_back`: an earlier one of the author, and
+  /// the oldest ones beyond their number. Returns false if there is no room, because all other
+  /// previews belong to players with the right.
   bool make_room_for_own(AuthorId author);
   void discard(std::uint64_t number);
   /// Returns true if a rollback that this player pays for, or the undo of one, is being applied.

@@ -17,9 +17,8 @@ std::unique_ptr<ChatLog> open_chat_log(const ServerConfig& config, TimeUs now_us
 /// Returns the time before which lines are removed.
 TimeUs chat_kept_from_us(const ServerConfig& config, TimeUs now_us);
 
-/// Returns the newest lines that are not withdrawn, for players who join after a restart, or none if
-/// they cannot be read.
-/// Blocks on the disk.
+/// Returns the newest lines that are not withdrawn, for players who join after a restart, or none
+/// if they cannot be read. Blocks on the disk.
 std::vector<ChatEntry> newest_chat(ChatLog& log);
 
 /// Answers the command `chat log`, from the thread of the log.

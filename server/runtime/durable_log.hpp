@@ -1,6 +1,6 @@
-// DurableLog: the log writer, the keyframe thread, the retention and the check of the rows of a running
-// world. It reports their progress on the world strand. Several group commits become one report if the strand
-// has not run in between.
+// DurableLog: the log writer, the keyframe thread, the retention and the check of the rows of a
+// running world. It reports their progress on the world strand. Several group commits become one
+// report if the strand has not run in between.
 // Threads: writer() as LogWriter says; the events run on the world strand.
 #pragma once
 #include <atomic>
@@ -75,8 +75,8 @@ class DurableLog {
   }
   RetentionThread& retention() { return *retention_; }
   const RetentionThread& retention() const { return *retention_; }
-  /// Stops making keyframes, checking and removing edits, writes what is queued, and ends the threads. On a full
-  /// disk the edits behind durable() are lost. It may be called again.
+  /// Stops making keyframes, checking and removing edits, writes the queued records, and ends the
+  /// threads. On a full disk the edits behind durable() are lost. It may be called again.
   void stop();
 
  private:

@@ -17,8 +17,9 @@ namespace {
 // due. So a commit of one edit does not wake it.
 constexpr Sequence kPortionEdits = 1024;
 
-// How often a keyframe is begun again because retention moved the beginning of the log meanwhile, and
-// the rest before it. Only a keyframe without another one before it is concerned.
+// The number of times that a keyframe is begun again because retention moved the beginning of the
+// log meanwhile, and the rest before each attempt. This happens only to a keyframe without an
+// earlier keyframe.
 constexpr int kOutrunsMax = 100;
 constexpr std::chrono::seconds kOutrunRest{1};
 
@@ -111,7 +112,7 @@ void KeyframeThread::run() {
           std::this_thread::yield();  // lets the threads that serve players run first
           return !is_stopping();
         });
-    // Retention has moved the beginning of the log past what the keyframe needed.
+    // Retention has moved the beginning of the log past the edits that the keyframe needed.
     const bool is_outrun = !made && made.error().kind == StoreError::Kind::bad_request;
     if (is_outrun && ++outruns <= kOutrunsMax) {
       if (!rest(kOutrunRest)) return;

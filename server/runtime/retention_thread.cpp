@@ -16,7 +16,7 @@ using RetentionClock = std::chrono::steady_clock;
 // A part that gives space back takes about a millisecond for 64 pages.
 constexpr std::uint32_t kPagesBack = 256;
 
-/// The answer of the log writer to one job. It is shared with the writer, which may answer after the
+/// The answer of the log writer to one job. The writer shares it, because it may answer after the
 /// wait has ended.
 template <class T>
 struct WriterAnswer {

@@ -1,14 +1,14 @@
 // RetentionThread: removes the oldest edits of a world's log while people play, by a policy or by a
-// command. It moves them into the base in many small parts (folds). A part is one transaction of the
-// log writer, and the world is whole after each of them.
+// command. It moves them into the base in many small parts (folds). A part is one transaction of
+// the log writer, and the world is whole after each of them.
 //   - The size of a part follows the time that the log writer took for the parts before
 //     (next_fold_size()). A single edit is not divided, so a part with one edit of very many chunks
 //     takes longer.
 //   - After each part the thread rests 9 times as long as the part took, reading included. Then the
 //     records that were queued meanwhile are on disk.
-//   - It pauses while rollbacks, their previews and undos are under way: they read the log that it would
-//     shorten.
-//   - It removes nothing behind the checkpoint.
+//   - It pauses while rollbacks, their previews and undos are under way: they read the log that it
+//     would shorten.
+//   - It removes no edit behind the checkpoint.
 //   - At the end of a run it returns free space to the disk, in small parts too.
 //   - A failure ends the run, not the server: the next run goes on where it ended.
 // Threads: the constructor, the destructor and stop(): one; all others: any.
@@ -42,8 +42,8 @@ struct RetentionPace {
 
 class RetentionThread {
  public:
-  /// Starts the thread. `generator` and `writer` must outlive the object. `days`: the policy, 0: there
-  /// is none. `utc_now` returns the time in UTC.
+  /// Starts the thread. `generator` and `writer` must outlive the object. `days` is the policy; 0:
+  /// no policy. `utc_now` returns the time in UTC.
   RetentionThread(std::string place, const Generator& generator, LogWriter& writer,
                   std::uint64_t days, std::function<TimeUs()> utc_now, RetentionPace pace = {});
   /// Calls stop().
@@ -51,20 +51,20 @@ class RetentionThread {
   RetentionThread(const RetentionThread&) = delete;
   RetentionThread& operator=(const RetentionThread&) = delete;
 
-  /// Changes the policy. Ends a run of the policy before after its present part. The first run of a new
-  /// policy begins after RetentionPace::between_runs, so that a typing error can be corrected. A run of
-  /// run_now() goes on.
+  /// Changes the policy. Ends a run of the policy before after its present part. The first run of a
+  /// new policy begins after RetentionPace::between_runs, so that a typing error can be corrected.
+  /// A run of run_now() goes on.
   void set_days(std::uint64_t days);
-  /// Begins a run now, which keeps the edits of so many days, and plans again what it removes. It does
-  /// not wait for a person's word. Returns false if a run is under way.
+  /// Begins a run now, which keeps the edits of so many days. The run makes a new plan. It does not
+  /// wait for a confirmation. Returns false if a run is under way.
   bool run_now(std::uint64_t days);
   /// Ends the run under way after its present part. Returns false if there is none.
   bool cancel();
-  /// A run pauses while it is held.
+  /// Pauses the run while `is_held` is true.
   void hold(bool is_held) { is_held_.store(is_held); }
   RetentionState state() const;
-  /// Ends the thread. Waits for the present part. Requires that the writer still runs or has failed.
-  /// It may be called again.
+  /// Ends the thread. Waits for the present part. Requires that the writer still runs or has
+  /// failed. Later calls do nothing.
   void stop();
 
  private:
@@ -77,7 +77,7 @@ class RetentionThread {
   void run();
   /// Waits for the next run. Returns nullopt if the thread must end.
   std::optional<Order> await_order();
-  /// Removes what the order lets go. Fails with a sentence without a period.
+  /// Removes the edits that the order does not keep. Fails with a sentence without a period.
   Result<void, std::string> carry_out(const Order& order);
   Result<void, std::string> remove_up_to(Store& reader, Sequence cut);
   Result<void, std::string> give_space_back();

@@ -39,8 +39,8 @@ class KeyframeTable {
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge);
   /// Inserts a keyframe in the caller's transaction.
   StoreResult<void> save(const Keyframe& keyframe);
-  /// Deletes all rows and keyframes up to a sequence, in the caller's transaction. Returns the number
-  /// of keyframes.
+  /// Deletes all rows and keyframes up to a sequence, in the caller's transaction. Returns the
+  /// number of keyframes.
   StoreResult<std::uint64_t> remove(Sequence last);
 
   /// Checks the proof of each keyframe against the chunks of the base (`start`) and `rows`.

@@ -1,5 +1,5 @@
-// LogFold: the oldest part of the log, and the chunks that its edits lead to. A store moves it into
-// the base. Retention makes folds (server/history/fold_maker.hpp).
+// LogFold: the oldest part of the log, and the chunks after its edits. A store moves it into the
+// base. Retention makes folds (server/history/fold_maker.hpp).
 #pragma once
 #include <utility>
 #include <vector>
@@ -23,7 +23,7 @@ struct LogVolume {
   std::uint64_t log_bytes = 0;  // of records and their indexes
   std::uint64_t keyframes = 0;
   std::uint64_t keyframe_bytes = 0;
-  std::uint64_t base_bytes_max = 0;  // that the base may grow by
+  std::uint64_t base_bytes_max = 0;  // the greatest growth of the base
   /// The number of edits for each cause but Cause::player, ascending.
   std::vector<std::pair<Cause, std::uint64_t>> causes;
 };

@@ -4,26 +4,26 @@
 //     one call of on_durable. A slow disk makes larger groups, and so does
 //     commit_interval, because a commit writes some pages of the database however small it is.
 //   - Full: has_room() returns false, and the world rejects edits as busy. The queue of jobs does
-//     not fill in a server: the checkpointer, the keyframe thread, the tiles and retention each have at
-//     most one job under way. So a refused job means that the writer has failed or stopped. The job
-//     is not offered again. The file of a build has a place of its own, and may be offered again.
+//     not fill in a server: the checkpointer, the keyframe thread, the tiles and retention each
+//     have at most one job under way. So a refused job means that the writer has failed or stopped.
+//     The job is not offered again. The file of a build has a place of its own, and may be offered
+//     again.
 //   - Order: records go before jobs, and a job is written in slices. A record therefore never waits
 //     for many chunks.
 //   - A full disk, or a database that takes no writes: what was to be written stays queued and is
 //     written again once a second, until it can be written. has_room() returns false meanwhile. It
-//     also returns false while less space is free than the reserve: the reserve is for what is queued
-//     already. Jobs for keyframes,
-//     tiles, files of builds and retention end with an error meanwhile, because they hold nothing that
-//     the log does not.
+//     also returns false while less space is free than the reserve: the reserve is for what is
+//     queued already. Jobs for keyframes, tiles, files of builds and retention end with an error
+//     meanwhile, because they hold nothing that the log does not.
 //   - A world in a database has an owner (WorldSink::is_owned()). has_room() returns false while
 //     another program may own it.
 //   - Failure: after any other error nothing more is written, on_failed is called once, and queued
 //     batches are dropped. They were never acknowledged. The program must end and recover from the
 //     log. A keyframe, a tile or a file that cannot be written ends only its job.
 // Threads: append(), change_names(), save_state(), save_snapshots(), save_keyframe(), save_tiles(),
-// save_build_file(), fold_log(), give_back_space() and has_room() from any thread. The writer thread calls the callbacks,
-// which must return soon. The mutex is a
-// leaf: no callback and no disk access happens while it is locked.
+// save_build_file(), fold_log(), give_back_space() and has_room() from any thread. The writer
+// thread calls the callbacks, which must return soon. The mutex is a leaf: no callback and no disk
+// access happens while it is locked.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -82,7 +82,8 @@ class LogWriter {
   };
   struct Counters {
     std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
-    // Of retention, since the start: parts, edits that they removed, and the time of the writer.
+    // Counters of retention since the start: parts, edits that they removed, and the time of the
+    // writer.
     std::uint64_t folds = 0, folded_edits = 0, fold_us = 0, fold_us_max = 0;
     std::size_t queued_records = 0;  // now
   };
@@ -136,11 +137,11 @@ class LogWriter {
   /// one such job follows a file, so they are not bounded otherwise. A writer that has failed or
   /// stopped drops it.
   void remove_build_file(std::uint64_t content);
-  /// Queues a job that calls WorldSink::fold_log(). `done` is as for save_keyframe(). Returns false as
-  /// save_snapshots().
+  /// Queues a job that calls WorldSink::fold_log(). `done` is as for save_keyframe(). Returns false
+  /// as save_snapshots() does.
   bool fold_log(LogFold fold, JobDone done);
   /// Queues a job that calls WorldSink::give_back_space(). `done` gets true if there is more of it.
-  /// Returns false as save_snapshots().
+  /// Returns false as save_snapshots() does.
   using SpaceDone = std::function<void(StoreResult<bool>)>;
   bool give_back_space(std::uint32_t pages, SpaceDone done);
   /// Writes everything that is queued, calls the callbacks, and ends the thread. If the disk is

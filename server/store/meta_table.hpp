@@ -62,7 +62,8 @@ inline constexpr const char* kShapesKey = "shapes";
 inline constexpr const char* kTexturesKey = "textures";
 /// The key of a row, always 1, that only a world has whose log has or had a gap.
 inline constexpr const char* kGapsKey = "gaps";
-/// The key of a row, always 1, that only a world has in which a role was given for some time.
+/// The key of the row that marks a world in which a role was given for some time. The value is 1.
+/// Other worlds do not have the row.
 inline constexpr const char* kTimedGrantsKey = "timed_grants";
 
 /// The keys of the rows that clock() and places() read. Only a world whose clock was set has the

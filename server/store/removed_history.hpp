@@ -1,5 +1,5 @@
 // The words for edits that the log no longer has, because retention or a compaction has moved them
-// into the base. It is neither damage nor a gap.
+// into the base. Such edits are neither damage nor a gap.
 #pragma once
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-/// Returns "seq=100 (2023-11-14T22:13:20Z)", the last edit that was removed.
+/// Returns text such as "seq=100 (2023-11-14T22:13:20Z)" for the last edit that was removed.
 inline std::string removed_place(const LogEnd& head) {
   return "seq=" + std::to_string(head.version.seq) + " (" + utc_text(head.time_us) + ")";
 }

@@ -54,9 +54,9 @@ class SegmentTable {
     open_.clear();
     added_ = 0;
   }
-  /// Deletes the segments that end at an edit up to `last`, in the caller's transaction, and returns
-  /// how many rows there were. A segment that continues behind it stays, with a box that may be
-  /// larger than needed.
+  /// Deletes the segments that end at an edit up to `last`, in the caller's transaction, and
+  /// returns how many rows there were. A segment that continues behind it stays, with a box that
+  /// may be larger than needed.
   StoreResult<std::uint64_t> remove_up_to(Sequence last);
   /// Returns the number of rows that were added since the last call.
   std::uint64_t take_added() { return std::exchange(added_, 0); }

@@ -1,5 +1,5 @@
-// The part of SqlStore that shortens the log: edits are applied to the base, then they are deleted.
-// A compaction does it in one transaction, and retention in many small ones (fold_log()).
+// The part of SqlStore that shortens the log: it applies edits to the base and deletes them. A
+// compaction does it in one transaction, and retention in many small ones (fold_log()).
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -15,7 +15,8 @@
 namespace runstone {
 namespace {
 
-// What a row takes besides its descriptor or its voxels, with its indexes: docs/edit-log.md, "Size".
+// The bytes of a row besides its descriptor or its voxels, with its indexes (docs/edit-log.md,
+// "Size").
 constexpr std::uint64_t kRowBytes = 82;
 // The stretches of the log that log_volume() reads, and the edits of each.
 constexpr std::uint64_t kStretches = 32, kStretchEdits = 64;
@@ -188,7 +189,8 @@ StoreResult<void> SqlStore::fold_log(const LogFold& fold) {
     const Sequence last = fold.to.version.seq;
     const auto checkpoint = meta_table_.counter("checkpoint");
     if (!checkpoint) return failed(checkpoint.error());
-    // Up to the checkpoint each chunk has a snapshot, so none becomes older than its base.
+    // The snapshots contain all edits up to the checkpoint, so no snapshot becomes older than its
+    // base.
     if (last <= fold.from || last > range->last.version.seq || last > *checkpoint) {
       return refuse(
           "fold seq=" + std::to_string(last),
@@ -240,7 +242,7 @@ StoreResult<LogVolume> SqlStore::log_volume(Sequence last) {
       return std::pair(static_cast<std::uint64_t>(row->integer(0)),
                        static_cast<std::uint64_t>(row->integer(1)));
     };
-    // Some stretches of the log stand for all of it.
+    // A sample of the log gives the estimate for all of it.
     std::uint64_t looked_at = 0, descriptor_bytes = 0;
     auto stretch = database().prepare(
         "SELECT count(*), CAST(coalesce(sum(length(descriptor)), 0) AS BIGINT) FROM edit_log "

@@ -52,7 +52,7 @@ StoreResult<StoredMoment> SqlStore::stored_moment(Sequence at) {
 
 StoreResult<std::optional<Chunk>> SqlStore::load_stored(const StoredChunk& chunk) {
   const auto matching = [&](StoreResult<std::optional<Chunk>> loaded) {
-    // Retention or a compaction may have replaced it.
+    // Retention or a compaction may have replaced the keyframe.
     if (loaded && loaded->has_value() && (*loaded)->version != chunk.version) loaded->reset();
     return loaded;
   };

@@ -199,15 +199,15 @@ class SqlStore final : public Store {
   /// Returns the base chunks that a compaction completed. Reads nothing if there was no compaction.
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
   StoreResult<void> complete_base(const StoredMoment& moment);
-  /// Checks that the chunks of a fold are those that its edits touch. Returns true if an edit changes
-  /// the material table.
+  /// Checks that the chunks of a fold are those that its edits touch. Returns true if an edit
+  /// changes the material table.
   StoreResult<bool> check_fold_chunks(const LogFold& fold, const LogRange& range);
-  /// Fails (corrupt) if the log has edits behind `last` and lacks the first of them. Nothing could read
-  /// a log that begins with a lost edit.
+  /// Fails (corrupt) if the log has edits behind `last` but lacks the first of them. No program
+  /// could read a log that begins with a lost edit.
   StoreResult<void> check_new_beginning(Sequence last);
-  /// Moves the head of the log, in the caller's transaction, and deletes what lies up to there:
-  /// edits, eras, segments and keyframes. `lacks_none`: the log has each of these edits, so no lost
-  /// edit is counted again, which would cost O(edits of the log).
+  /// Moves the head of the log, in the caller's transaction, and deletes all edits, eras, segments
+  /// and keyframes up to there. `lacks_none` means that the log has each of these edits. Then lost
+  /// edits are not counted again, which would cost O(edits of the log).
   StoreResult<void> move_head(const LogEnd& head, bool lacks_none);
   /// Calls `each` for the records of this cause that compactions kept, then for those of the log.
   StoreResult<void> read_kept(Cause cause, const EachRecord& each);
@@ -222,7 +222,7 @@ class SqlStore final : public Store {
   StoreResult<void> mark_textures(std::span<const EditRecord> records);
   /// Marks the world as one with gaps if a record is one.
   StoreResult<void> mark_gaps(std::span<const EditRecord> records);
-  /// Marks the world as one with roles for some time if a record gives one.
+  /// Marks the world as a world with roles for some time if a record gives such a role.
   StoreResult<void> mark_timed_grants(std::span<const EditRecord> records);
   /// Marks the world as one with shapes if a record gives some or has a look with a silhouette, and
   /// records the rules of tiles that follow. Deletes the tiles if a voxel of such a material may be

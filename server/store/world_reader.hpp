@@ -57,8 +57,8 @@ class WorldReader : public LogReader, public ChunkReader, public LibraryReader {
   /// Returns false if the connection with the database was lost: every read fails from then on. A
   /// loss is known after the first read that fails.
   virtual bool is_usable() const { return true; }
-  /// Returns the volume of the edits up to `last`, and of the keyframes up to there. Cost: O(rows of
-  /// keyframes, snapshots and edits with a cause), and some reads of the log.
+  /// Returns the volume of the edits up to `last`, and of the keyframes up to there. Cost: O(rows
+  /// of keyframes, snapshots and edits with a cause), and some reads of the log.
   virtual StoreResult<LogVolume> log_volume(Sequence /*last*/) { return LogVolume{}; }
   /// Returns the free space inside the file of the world.
   virtual StoreResult<FreeSpace> free_space() { return FreeSpace{}; }

@@ -37,15 +37,16 @@ inline constexpr std::uint32_t kWorldFormatOfClock = 10;
 /// The format of a world that was repaired and lacks records (kGapsKey): its log has records that
 /// programs of format 10 do not know. It has the tables of a library only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfGaps = 11;
-/// The format of a world in which a player was given a role for some time (kTimedGrantsKey): its log has
-/// records that programs of format 12 do not know.
+/// The format of a world in which a player was given a role for some time (kTimedGrantsKey): its
+/// log has records that programs of format 11 do not know.
 inline constexpr std::uint32_t kWorldFormatOfTimedGrants = 12;
 /// The newest format that this program knows.
 inline constexpr std::uint32_t kWorldFormatNewest = kWorldFormatOfTimedGrants;
 /// The oldest format that is converted when a world is opened for writing.
 inline constexpr std::uint32_t kWorldFormatConverted = 2;
 
-/// Returns "world formats 5, 6, 7, 8, 9, 10, 11 and 12": those that this program makes, for --version.
+/// Returns the formats that this program makes, for --version:
+/// "world formats 5, 6, 7, 8, 9, 10, 11 and 12".
 inline std::string world_formats_text() {
   return "world formats " + std::to_string(kWorldFormat) + ", " +
          std::to_string(kWorldFormatOfEras) + ", " + std::to_string(kWorldFormatOfLibrary) + ", " +

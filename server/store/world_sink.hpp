@@ -80,18 +80,18 @@ class WorldSink {
   /// they were made, are not those of the materials that are written (tile_rules_of()). Fails
   /// (bad_request) if a tile is ahead of the log.
   virtual StoreResult<void> save_tiles(ChunkSpan tiles, std::uint32_t rules) = 0;
-  /// Moves the oldest edits of the log into the base: writes the chunks of a fold, moves the head of
-  /// the log, and deletes the edits, their indexes, and the keyframes up to there. Changes of rights,
-  /// textures and new materials stay, as for Store::compact(). Fails (bad_request) and writes nothing
-  /// if
+  /// Moves the oldest edits of the log into the base: writes the chunks of a fold, moves the head
+  /// of the log, and deletes the edits, their indexes, and the keyframes up to there. Changes of
+  /// rights, textures and new materials stay, as for Store::compact(). Fails (bad_request) and
+  /// writes nothing if
   ///   - the head of the log is not `from`;
   ///   - `to` is no edit of the log, or lies behind the checkpoint;
   ///   - the chunks are not those that the edits touch, or have other versions.
   virtual StoreResult<void> fold_log(const LogFold& /*fold*/) {
     return failure(StoreError{StoreError::Kind::bad_request, "", "", "cannot remove old edits"});
   }
-  /// Returns up to so many pages of free space to the disk. Returns true if there is more of it.
-  /// Returns false at once if the database cannot give space back in parts.
+  /// Gives up to so many pages of free space back to the disk. Returns true if more free space is
+  /// left. Returns false at once if the database cannot give space back in parts.
   virtual StoreResult<bool> give_back_space(std::uint32_t /*pages*/) { return false; }
 };
 

@@ -19,7 +19,7 @@ namespace runstone {
 inline constexpr std::string_view kPlayPath = "/play";
 /// The path of the places of players, which are for those who may see the map alone.
 inline constexpr std::string_view kMapPlayersPath = "/map/players.json";
-/// The path of the border of the world, which is for those who may see the map alone, too.
+/// The path of the border of the world. Players who may see only the map get it, too.
 inline constexpr std::string_view kMapBorderPath = "/map/border.json";
 
 /// How long browsers may keep an answer.

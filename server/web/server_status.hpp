@@ -22,8 +22,8 @@ struct PlayerPlace {
 /// The border of the world, as columns.
 struct StatusBorder {
   bool is_circle = false;
-  /// Of a box: x and z of the first column, and of the one behind the last. Of a circle: x and z of the
-  /// column in the middle, the radius, and 0.
+  /// The numbers of a box are x and z of the first column and of the column behind the last. The
+  /// numbers of a circle are x and z of the column in the middle, the radius, and 0.
   std::array<std::int64_t, 4> numbers{};
 };
 

@@ -34,8 +34,8 @@ std::string status_page(const WebConfig& config, const ServerStatus& server, con
 std::string map_page(const WebConfig& config);
 /// Returns where the players are on the map, as JSON: a list of [name, x, y, z].
 std::string map_players_json(const ServerStatus& server);
-/// Returns the border of the world: {"circle": [x, z, radius]}, {"box": [x, z, x, z]} with the column
-/// behind the last at the end, or {} if there is none.
+/// Returns the border of the world: {"circle": [x, z, radius]}, {"box": [x, z, x, z]} with the
+/// column behind the last at the end, or {} if there is none.
 std::string map_border_json(const ServerStatus& server);
 
 }  // namespace runstone

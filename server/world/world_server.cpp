@@ -317,9 +317,10 @@ void WorldServer::tick(const Clocks& now) {
   if (const auto ended = rooms_->rights.end_grants(); !ended.empty()) {
     rooms_->rights.close_refused();
     ground.rights_changed({});
-    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner tells all players
+    if (!cluster.is_following()) people.grants_ended(ended, now);  // the owner informs all players
   }
-  // Another server may set the spawn now. A state that this one saves later must not set it back.
+  // Another server may set the spawn from now on. A state that this server saves later must not
+  // overwrite it.
   if (cluster.is_following()) rooms_->set_spawn.reset();
   people.forget_gone_authors();
   people.close_silent(now);

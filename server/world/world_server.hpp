@@ -54,10 +54,10 @@ class WorldServer {
   /// Returns the border within which players may edit, or nullopt if there is none.
   const std::optional<WorldBorder>& border() const;
 
-  /// Returns where players begin who have no last place.
+  /// Returns the place where players without a last place begin.
   const WorldPos& spawn() const;
-  /// Sets it for the players who join from now on, and saves it. The other servers of the world take it
-  /// at their next start. Requires a finite place in the world.
+  /// Sets the spawn for players who join from now on, and saves it. The other servers of the world
+  /// take it at their next start. Requires a finite place in the world.
   void set_spawn(const WorldPos& spawn, const Clocks& now);
 
   /// Replays a record of the log above the checkpoint. Call it for each, in order, before the first

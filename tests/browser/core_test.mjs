@@ -1,8 +1,9 @@
-// Tests of the package @runstone/core: alone in node, and in pages of a headless Chromium that join a real
-// server through its gateway.
+// Tests of the package @runstone/core: alone in node, and in pages of a headless Chromium that join
+// a real server through its gateway.
 //   node core_test.mjs PROGRAMS PACKAGE EXAMPLES [OUT]
-// PROGRAMS is the folder of the native programs, PACKAGE that of the package, EXAMPLES that of examples/web.
-// Pictures go to OUT. node_modules beside this file has three.js, typescript, and the package as @runstone/core.
+// PROGRAMS is the folder of the native programs, PACKAGE the folder of the package, and EXAMPLES
+// the folder examples/web. Pictures go to OUT. node_modules beside this file has three.js,
+// typescript, and the package as @runstone/core.
 import puppeteer from "puppeteer-core";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -228,7 +229,7 @@ await test("the example with three.js joins a world and draws the quads of its c
   await complete(one);
   const counts = await one.evaluate(async () => {
     const { Mesh, Visibility } = await import("@runstone/core");
-    // As the session does: shapes do not count as cubes here, so chunks with shapes are left out.
+    // Shapes do not count as cubes in a session, so chunks with shapes are left out.
     const visibility = new Visibility(session.materials.map(({ look }) => look));
     const shapes = new Set(session.materials.filter(({ isCube }) => !isCube).map(({ id }) => id));
     const around = [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]];
@@ -364,7 +365,7 @@ await test("a server that sends other bytes is left, with words", async () => {
 await browser.close();
 await world.close();
 await server.close();
-// At the end, because this target is missed (docs/web-core.md).
+// This check comes last, because the target is missed (docs/web-core.md).
 await test("the package is small", () => {
   let bytes = 0;
   for (const name of readdirSync(files)) {

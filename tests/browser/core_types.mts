@@ -1,4 +1,5 @@
-// A program with the types of @runstone/core. The compiler checks it and the declarations; it never runs.
+// A program with the types of @runstone/core. The compiler checks it and the declarations; it never
+// runs.
 import { buildTile, Chunk, Edits, load, Look, Mesh, Pass, RunstoneError, Session, Space, Visibility, type SessionEvent } from "@runstone/core";
 
 await load(new URL("runstone-core.wasm", "http://localhost/"));

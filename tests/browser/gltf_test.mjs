@@ -1,7 +1,8 @@
-// Models that Runstone writes as glTF open in three.js, and look like the voxels that they were made of.
+// Models that Runstone writes as glTF open in three.js, and look like the voxels that they were
+// made of.
 //   node gltf_test.mjs PROGRAMS [OUT]
-// PROGRAMS is the folder of the native programs. Pictures go to OUT. The voxels are drawn a second time face
-// by face, by code of this test alone, and the pictures are compared.
+// PROGRAMS is the folder of the native programs. Pictures go to OUT. The voxels are drawn a second
+// time face by face, by code of this test alone, and the pictures are compared.
 import puppeteer from "puppeteer-core";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -76,7 +77,7 @@ const HILLS = { sides: [150, 40, 140], at: (x, y, z) => {
   return y + 4 > height ? 2 : 4;
 } };
 
-// What a page does: opens a model with three.js, counts its triangles, and draws it.
+// The code of a page: it opens a model with three.js, counts its triangles, and draws it.
 const PAGE = `<!doctype html><script type="importmap">{"imports": {"three": "/modules/three/build/three.module.js", "three/addons/": "/modules/three/examples/jsm/"}}</script>
 <script type="module">
 import * as THREE from "three";

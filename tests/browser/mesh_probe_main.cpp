@@ -165,7 +165,8 @@ Digest digest_of_column(const Generator& generator, ChunkCoord foot) {
   return out;
 }
 
-/// Prints a line for each generator, seed and place: the digest, and the height of the surface there.
+/// Prints a line for each generator, seed and place: the digest, and the height of the surface
+/// there.
 int print_digests() {
   const MaterialTable& materials = landscape_material_table();
   constexpr std::uint64_t kSeeds[] = {0, 7, (std::uint64_t{1} << 53) + 1,

@@ -1,5 +1,5 @@
-// The worlds and the meshes that WebAssembly makes are those of the native programs, bit for bit; and what
-// meshes cost.
+// The worlds and the meshes that WebAssembly makes equal those of the native programs, bit for bit.
+// The test also prints the times of meshes.
 //   node mesh_test.mjs NATIVE WEB    the folders with runstone-mesh-probe
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";

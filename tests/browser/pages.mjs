@@ -1,11 +1,13 @@
-// Pages for tests: a server of files on this machine, and pages that import three.js and other packages.
+// Pages for tests: a server of files on this machine, and pages that import three.js and other
+// packages.
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".wasm": "application/wasm", ".glb": "model/gltf-binary" };
 
-// Serves folders: {"/prefix/": folder}. The longest prefix of a path counts. Returns {address, close}.
+// Serves folders: {"/prefix/": folder}. The longest prefix of a path counts. Returns
+// {address, close}.
 export async function serve(folders) {
   const prefixes = Object.keys(folders).sort((a, b) => b.length - a.length);
   const server = createServer(async (request, response) => {

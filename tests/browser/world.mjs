@@ -32,8 +32,8 @@ async function stop(program) {
 }
 
 export class World {
-  // `bin` has the programs of the preset release, `page` the files of the preset web. Without a page the
-  // gateway serves none. `gateway` are further options of runstone-web.
+  // `bin` has the programs of the preset release, `page` the files of the preset web. Without a
+  // page the gateway serves none. `gateway` are further options of runstone-web.
   static async open(bin, page, world, gateway = []) {
     const out = new World();
     out.bin = bin;

@@ -16,7 +16,7 @@ MaskWord = Literal["everything", "empty", "solid"] | int
 Voxels = npt.NDArray[np.uint16]
 
 class Error(Exception):
-    """A world that cannot be read, a file that cannot be written, or what a server refuses."""
+    """A world that cannot be read, a file that cannot be written, or a refusal of a server."""
 
 class Edit:
     @property

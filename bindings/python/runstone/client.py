@@ -15,9 +15,9 @@ _CLOSED = "the client is closed"
 class Client:
     """A player in the world of a server, and the chunks around the player.
 
-    It is an asynchronous context manager, which joins a world and leaves it, and an asynchronous
-    iterator of events (ClientEvent). While it is joined, a task of the running loop steps it, so chunks
-    and edits arrive whether or not a program takes the events.
+    A client is an asynchronous context manager, which joins a world and leaves it, and an
+    asynchronous iterator of events (ClientEvent). While the client is joined, a task of the running
+    loop steps it, so chunks and edits arrive whether or not a program takes the events.
     """
 
     def __init__(self, server, name="builder", *, invite="", password="", key_file="", encryption="any certificate",
@@ -25,8 +25,9 @@ class Client:
                  cache_mib=256):
         """Prepare to join a server: HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE.
 
-        encryption is "any certificate", "authorities" or "none", which is for servers with --insecure.
-        Without a key_file the identity of the player is not kept. The radii of the view are in chunks.
+        encryption is "any certificate", "authorities" or "none", which is for servers with
+        --insecure. Without a key_file the identity of the player is not kept. The radii of the view
+        are in chunks.
         """
         self._options = (server, name, invite, password, os.fspath(key_file), encryption, os.fspath(authorities_file),
                          (view_radius, view_radius_vertical), memory_mib, os.fspath(cache_folder), cache_mib)
@@ -42,7 +43,10 @@ class Client:
     # Joining and leaving.
 
     async def join(self):
-        """Connect and wait until the world is open. Raise Error if the server refuses this client."""
+        """Connect and wait until the world is open.
+
+        Raise Error if the server refuses this client.
+        """
         if self._closed:
             raise ValueError(_CLOSED)
         if self._core is not None:
@@ -61,7 +65,7 @@ class Client:
         return self
 
     async def close(self):
-        """Leave the world. Later calls raise ValueError. Do nothing the second time."""
+        """Leave the world. Later calls of other methods raise ValueError."""
         if self._closed:
             return
         self._closed = True
@@ -113,7 +117,8 @@ class Client:
         while True:
             try:
                 has_more = self._core.step()
-                # Chunks stay in the library, which joins the changes of each, until a program takes them.
+                # Chunks stay in the library until a program takes them. The library merges the
+                # changes of each chunk.
                 self._take(self._core.drain(0))
             except Exception as error:  # such as MemoryError: nobody awaits this task
                 self._fault = error
@@ -138,7 +143,8 @@ class Client:
                 waiter.exception()  # asyncio would warn of one that nobody awaits
 
     def _append(self, event):
-        # Removed chunks are kept, so that a program removes their meshes. There are no more of them than it took.
+        # Removed chunks are kept, so that a program can remove their meshes. Their number is
+        # bounded by the chunks that the program took.
         if len(self._events) >= _EVENTS_MAX:
             for index, oldest in enumerate(self._events):
                 if oldest.kind != "chunk removed":
@@ -191,12 +197,18 @@ class Client:
 
     @property
     def state(self):
-        """The connection: "connecting", "open" or "ended". After a loss the client connects again."""
+        """The connection: "connecting", "open" or "ended".
+
+        After a loss the client connects again.
+        """
         return self._open().state
 
     @property
     def world(self):
-        """The world as a dict: id, edge, y_min, y_max, edit_volume_max, spawn, author, name, fingerprint."""
+        """The world as a dict.
+
+        The keys are id, edge, y_min, y_max, edit_volume_max, spawn, author, name and fingerprint.
+        """
         return self._open().world
 
     @property
@@ -210,7 +222,10 @@ class Client:
 
     @property
     def players(self):
-        """The other players, as dicts with author, name, role and place (None if it is not known)."""
+        """The other players, as dicts with author, name, role and place.
+
+        place is None if it is not known.
+        """
         return self._open().players
 
     @property
@@ -300,17 +315,17 @@ class Client:
     def submit(self, edit, action=None):
         """Show an edit at once and send it. Return its number, which later events have.
 
-        action is None for an edit by itself, Client.NEW_ACTION for the first edit of an action, and the
-        number of that edit for the others: one undo takes all of them back.
+        action is None for an edit by itself, Client.NEW_ACTION for the first edit of an action, and
+        the number of the first edit for the others. One undo takes all edits of an action back.
         Raise Error if the player may not make the edit, or if the budget does not suffice yet.
         """
         return self._open().submit(edit, action)
 
     async def edit(self, edit, action=None):
-        """Submit an edit as soon as the budget suffices, and return its sequence in the log of the world.
+        """Submit an edit as soon as the budget suffices, and return its sequence in the log.
 
-        Raise Error if the edit is rejected, and if the client ends before the answer. Return None if the answer was
-        lost with a connection.
+        Return None if the answer was lost with a connection. Raise Error if the edit is rejected,
+        or if the client ends before the answer.
         """
         core = self._open()
         while (wait := core.wait_us(edit)) > 0:
@@ -332,7 +347,10 @@ class Client:
         self._open().chat(line)
 
     async def command(self, text):
-        """Send a command, such as "undo", and return the lines of its answer. Raise Error if it fails."""
+        """Send a command, such as "undo", and return the lines of its answer.
+
+        Raise Error if the command fails.
+        """
         core = self._open()
         self._check_fault()
         core.command(text)

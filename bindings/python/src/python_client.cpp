@@ -26,8 +26,8 @@
 namespace runstone::python {
 namespace {
 
-/// A pipe in which a byte waits while the client has something to do. The thread of the library writes
-/// it without Python's lock, and the loop of asyncio waits for it.
+/// A pipe in which a byte waits while the client has something to do. The thread of the library
+/// writes it without Python's lock, and the loop of asyncio waits for it.
 class WakePipe {
  public:
   WakePipe() {
@@ -77,8 +77,8 @@ class PythonClient {
       error_ = client.error();
     }
   }
-  /// Throws if the constructor could not start to connect. An exception must not be made without
-  /// Python's lock.
+  /// Throws if the constructor could not start to connect. The exception is made here, because that
+  /// needs Python's lock.
   void check_made() const {
     if (!client_) refuse(error_);
   }

@@ -1,5 +1,5 @@
-// The objects runstone.ClientEvent and _runstone.ClientCore: the client of the C++ library. The class
-// runstone.Client of the package joins the core to asyncio.
+// The objects runstone.ClientEvent and _runstone.ClientCore: the client of the C++ library. The
+// class runstone.Client of the package joins the core to asyncio.
 #pragma once
 #include "python_values.hpp"
 

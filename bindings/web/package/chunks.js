@@ -31,7 +31,7 @@ export class Chunk extends Handle {
     return new Chunk((out, room) => call("chunk_create_from_runs", ...sidesOf(sides), whole(order, "order"),
       room.put(Uint32Array.from(ends)), room.put(Uint16Array.from(materials)), ends.length, out));
   }
-  // `sides`, if given, are those that the chunk must have.
+  // The chunk must have the sides `sides`, if they are given.
   static decode(bytes, sides = null) {
     return new Chunk((out, room) => call("chunk_decode", room.put(bytes), bytes.byteLength,
       sides === null ? 0 : room.put(Uint32Array.from(sidesOf(sides))), out));
@@ -72,7 +72,7 @@ export class Chunk extends Handle {
   reorder(order = Order.CHEAPEST) {
     call("chunk_reorder", this.at, whole(order, "order"));
   }
-  // Two numbers of 64 bits.
+  // Returns the digest of the voxels: two numbers of 64 bits.
   get digest() {
     return use((room) => {
       const at = room.take(16);
@@ -90,7 +90,7 @@ export class Chunk extends Handle {
   encode(encoding = Encoding.PACKED) {
     return list(Uint8Array, 1, "chunk_encode", this.at, whole(encoding, "encoding"));
   }
-  // Applies edits to the chunk of a world at this place in the grid of chunks. Returns what changed.
+  // Applies edits to the chunk of a world at this place in the grid of chunks. Returns the changes.
   apply(place, edits) {
     return use((room) => {
       const at = room.struct(64);
@@ -101,15 +101,16 @@ export class Chunk extends Handle {
       return { isChanged: memory().getUint32(at + 4, true) === 1, voxels: Number(memory().getBigUint64(at + 8, true)), layers };
     });
   }
-  // Boxes that cover each solid voxel once, for physics engines: [{min: [x, y, z], max: [x, y, z]}].
+  // Returns boxes that cover each solid voxel once, for physics engines:
+  // [{min: [x, y, z], max: [x, y, z]}].
   boxes(solid = [0], others = true) {
     const bytes = use((room) => list(Uint8Array, 6, "chunk_boxes", this.at, room.put(Uint8Array.from(solid, Number)), solid.length, others ? 1 : 0));
     return Array.from({ length: bytes.length / 6 }, (_, i) => ({ min: [...bytes.slice(6 * i, 6 * i + 3)], max: [...bytes.slice(6 * i + 3, 6 * i + 6)] }));
   }
 }
 
-// Puts two structs of this size side by side. Views are taken after the last allocation, because memory that
-// grows detaches the earlier ones.
+// Puts two structs of this size side by side. Views are taken after the last allocation, because
+// memory that grows detaches the earlier ones.
 function joined(room, bytes, first, second) {
   const at = room.take(2 * bytes);
   bytesAt(at, bytes).set(bytesAt(first, bytes));
@@ -137,7 +138,7 @@ export class Edits extends Handle {
   voxel(place, brush) {
     return this.#add("voxel", brush, (room) => [room.pos(place)]);
   }
-  // Half-open: max lies outside.
+  // Adds a box. It is half-open: max lies outside.
   box(min, max, brush) {
     return this.#add("box", brush, (room) => [joined(room, 12, room.pos(min), room.pos(max))]);
   }
@@ -147,7 +148,7 @@ export class Edits extends Handle {
   stroke(points, radius, brush) {
     return this.#add("stroke", brush, (room) => [room.put(Int32Array.from(points.flatMap(({ x, y, z }) => [x, y, z]))), points.length, whole(radius, "radius")]);
   }
-  // An edit in its canonical bytes.
+  // Adds an edit in its canonical bytes.
   bytes(bytes) {
     use((room) => call("edits_add_bytes", this.at, room.put(bytes), bytes.byteLength));
     return this;
@@ -204,7 +205,7 @@ export class Mesh extends Handle {
     use((room) => call("mesh_chunk", this.at, pointer(chunk, Chunk), pointers(room, neighbours, Chunk), pointers(room, borders, Borders), pointer(visibility, Visibility)));
     return this;
   }
-  // Meshes what changed since the mesh was made. Returns true if all of it was meshed.
+  // Meshes the layers that changed since the mesh was made. Returns true if all of it was meshed.
   update(chunk, visibility, { neighbours = null, borders = null } = {}) {
     return use((room) => {
       const whole = room.take(4);
@@ -212,7 +213,7 @@ export class Mesh extends Handle {
       return memory().getUint32(whole, true) === 1;
     });
   }
-  // Two numbers of 32 bits for each quad, low bits first (docs/meshing.md; unpackQuad()).
+  // Returns two numbers of 32 bits for each quad, low bits first (docs/meshing.md; unpackQuad()).
   quads(pass = Pass.OPAQUE) {
     return list(Uint32Array, 2, "mesh_quads", this.at, whole(pass, "pass"));
   }
@@ -226,7 +227,8 @@ export class Mesh extends Handle {
       return memory().getUint32(count, true);
     });
   }
-  // Vertices and triangles in arrays for graphics libraries. Four vertices a quad, in voxels of the chunk.
+  // Returns vertices and triangles in arrays for graphics libraries: four vertices a quad, in
+  // voxels of the chunk.
   geometry(pass = Pass.OPAQUE) {
     const FLOATS = 9; // of a runstone_vertex: position, normal, uv, and two numbers of 16 bits
     const floats = list(Float32Array, FLOATS, "mesh_vertices", this.at, whole(pass, "pass"));
@@ -252,7 +254,8 @@ export function unpackQuad(low, high) {
   };
 }
 
-// Makes the tile of eight children: child i lies at x = i & 1, y = i >> 1 & 1, z = i >> 2. null is empty.
+// Makes the tile of eight children: child i lies at x = i & 1, y = i >> 1 & 1, z = i >> 2. null is
+// empty.
 export function buildTile(children, edge, visibility, order = Order.YXZ) {
   return new Chunk((out, room) => call("tile_build", room.put(Uint32Array.from({ length: 8 }, (_, i) => pointer(children[i], Chunk, true))),
     whole(edge, "edge"), whole(order, "order"), pointer(visibility, Visibility), out));
@@ -278,7 +281,7 @@ export class Space extends Handle {
   constructor(edge) {
     super("space", (out) => call("space_create", whole(edge, "edge"), out));
   }
-  // null forgets the chunk.
+  // Sets a chunk. null removes it.
   set(place, chunk) {
     use((room) => call("space_set", this.at, room.pos(place), pointer(chunk, Chunk, true)));
   }

@@ -6,7 +6,10 @@ export class RunstoneError extends Error {
   constructor(status: string, message: string);
 }
 
-/** Loads the WebAssembly, once: the file of the package, or another source. Everything else needs it. */
+/**
+ * Loads the WebAssembly, once: the file of the package, or another source. All other functions need
+ * it.
+ */
 export function load(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module): Promise<void>;
 /** The version of Runstone, as MAJOR.MINOR.PATCH. */
 export function version(): string;
@@ -25,13 +28,16 @@ export const Mask: { readonly EVERYTHING: 0; readonly ONLY_EMPTY: 1; readonly ON
 export const Look: { readonly EMPTY: 0; readonly OPAQUE: 1; readonly TRANSPARENT: 2 };
 export const Pass: { readonly OPAQUE: 0; readonly TRANSPARENT: 1 };
 
-/** An object of the WebAssembly. free() frees its memory at once; otherwise it is freed after it is garbage. */
+/**
+ * An object of the WebAssembly. free() frees its memory at once. Otherwise the memory is freed some
+ * time after the last reference is gone.
+ */
 declare class Handle {
   free(): void;
 }
 
 export interface ChunkInfo { sides: [number, number, number]; order: number; volume: number; runs: number; isUniform: boolean }
-/** What Chunk.apply() changed. layers[axis] are the layers with a changed voxel. */
+/** The changes of Chunk.apply(). layers[axis] are the layers with a changed voxel. */
 export interface Changes { isChanged: boolean; voxels: number; layers: [number[], number[], number[]] }
 export interface Runs { ends: Uint32Array; materials: Uint16Array }
 export interface LocalBox { min: [number, number, number]; max: [number, number, number] }
@@ -43,12 +49,15 @@ export class Chunk extends Handle {
   /** `voxels` has a material for each voxel, flattened in `order`. */
   static fromArray(sides: Sides, voxels: ArrayLike<number>, order?: number): Chunk;
   static fromRuns(sides: Sides, runs: { ends: ArrayLike<number>; materials: ArrayLike<number> }, order?: number): Chunk;
-  /** Makes a chunk of bytes of any encoding. `sides` are those that it must have. */
+  /**
+   * Makes a chunk of bytes of any encoding. The chunk must have the sides `sides`, if they are
+   * given.
+   */
   static decode(bytes: ArrayBuffer | ArrayBufferView, sides?: Sides | null): Chunk;
   clone(): Chunk;
   readonly info: ChunkInfo;
   readonly runs: Runs;
-  /** Two numbers of 64 bits, which do not depend on the axis order. */
+  /** The digest of the voxels: two numbers of 64 bits, which do not depend on the axis order. */
   readonly digest: [bigint, bigint];
   get(x: number, y: number, z: number): number;
   /** Sets voxels [first, first + voxels) of the chunk, flattened in its own order. */
@@ -63,14 +72,17 @@ export class Chunk extends Handle {
   boxes(solid?: ArrayLike<number | boolean>, others?: boolean): LocalBox[];
 }
 
-/** What the voxels of an edit become, and which of them may change. A number is a material. */
+/**
+ * The material that the voxels of an edit get, and the voxels that may change. A number is a
+ * material.
+ */
 export type Brush = number | { material: number; mask?: number; only?: number };
 
 /** Edits, in the order in which they are applied. */
 export class Edits extends Handle {
   constructor();
   voxel(place: Pos, brush: Brush): this;
-  /** Half-open: `max` lies outside. */
+  /** Adds a box. It is half-open: `max` lies outside. */
   box(min: Pos, max: Pos, brush: Brush): this;
   sphere(centre: Pos, radius: number, brush: Brush): this;
   stroke(points: readonly Pos[], radius: number, brush: Brush): this;
@@ -93,19 +105,23 @@ export class Borders extends Handle {
 }
 
 export interface Beside {
-  /** By Direction; gaps count as empty. */
+  /** The neighbours by Direction. Gaps count as empty. */
   neighbours?: ArrayLike<Chunk | null | undefined> | null;
-  /** Of these neighbours, by Direction. */
+  /** The borders of these neighbours, by Direction. */
   borders?: ArrayLike<Borders | null | undefined> | null;
 }
-/** Four vertices and two triangles a quad, counter-clockwise seen from outside; voxels of the chunk. */
+/**
+ * Four vertices and two triangles a quad, counter-clockwise seen from outside; voxels of the chunk.
+ */
 export interface Geometry { positions: Float32Array; normals: Float32Array; uvs: Float32Array; materials: Uint16Array; indices: Uint32Array }
 
 /** The quads of a chunk. */
 export class Mesh extends Handle {
   constructor();
   build(chunk: Chunk, visibility: Visibility, beside?: Beside): this;
-  /** Meshes what changed since the mesh was made. Returns true if all of it was meshed. */
+  /**
+   * Meshes the layers that changed since the mesh was made. Returns true if all of it was meshed.
+   */
   update(chunk: Chunk, visibility: Visibility, beside?: Beside): boolean;
   quadCount(pass?: number): number;
   /** Two numbers of 32 bits for each quad, low bits first. */
@@ -141,35 +157,38 @@ export interface SessionOptions {
   key?: Uint8Array;
   /** An invite token. */
   invite?: string;
-  /** Of the view, in chunks: 0 to 32. The server may allow less. */
+  /** The radii of the view in chunks: 0 to 32. The server may allow less. */
   radius?: number;
   radiusVertical?: number;
-  /** A class like that of browsers, where there is none. */
+  /** A class with the interface of the browsers' WebSocket, where there is none. */
   WebSocket?: unknown;
 }
 export interface SessionInfo {
   isOpen: boolean;
   wantsClose: boolean;
-  /** Every chunk of the view has arrived, or the server cannot send it. */
+  /** True if every chunk of the view has arrived, or the server cannot send it. */
   isLoaded: boolean;
-  /** Of the chunks of the world, in voxels; 0 before it is open. */
+  /** The edge of the chunks in voxels; 0 before the world is open. */
   edge: number;
   author: number;
   materials: number;
   chunks: number;
-  /** Chunks whose mesh is out of date. */
+  /** The number of chunks whose mesh is out of date. */
   unmeshed: number;
-  /** Edits without an answer. */
+  /** The number of edits without an answer. */
   pending: number;
   hasPlace: boolean;
-  /** Where the player was last, or the spawn point of the world. */
+  /** The last place of the player, or the spawn point of the world. */
   place: Vec;
 }
 /**
- * open: the world is open, for the first time or again. closed: the connection ended, and another one follows.
- * refused: no other one follows. rejected, durable and unseen: `number` is that of an edit; the answer to an
- * unseen one was lost, and the chunks show whether it was made. chat: a line.
- * materials: Session.materials has changed.
+ * - open: the world is open, for the first time or again.
+ * - closed: the connection ended, and the session connects again.
+ * - refused: the connection ended, and no further attempt is made.
+ * - rejected, durable and unseen: `number` is the number of an edit. The answer to an unseen edit
+ *   was lost, and the chunks show whether the edit was applied.
+ * - chat: a line of the chat.
+ * - materials: Session.materials has changed.
  */
 export interface SessionEvent {
   type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unseen" | "unknown";
@@ -181,7 +200,10 @@ export interface Material { id: number; name: string; colour: [number, number, n
 /** A world of a server. It connects again by itself after a loss. */
 export class Session {
   constructor(options: SessionOptions);
-  /** Receives for `ms` at most, sends what is due, and returns what happened. Call it about every 10 ms. */
+  /**
+   * Receives for at most `ms`, sends due messages, and returns the events. Call it about every
+   * 10 ms.
+   */
   step(ms?: number): SessionEvent[];
   readonly info: SessionInfo;
   readonly materials: readonly Material[];
@@ -189,11 +211,14 @@ export class Session {
   material(name: string): number;
   /** Moves the eye, and the view with it. Yaw 0 looks along +z and grows towards +x; radians. */
   move(eye: Vec, yaw?: number, pitch?: number): void;
-  /** Makes meshes that are out of date. `mesh` is valid until the next one; null: remove that of the chunk. */
+  /**
+   * Makes meshes that are out of date. `mesh` is valid until the next one. null: remove the mesh of
+   * the chunk.
+   */
   meshes(ms?: number): Generator<{ at: Pos; mesh: Mesh | null }, void, void>;
   /**
-   * Shows edits at once and sends them. Returns their numbers. Fails for an edit that the player may not make; those
-   * before it are made.
+   * Shows edits at once and sends them. Returns their numbers. Fails for an edit that the player
+   * may not make. The edits before it are made.
    */
   edit(edits: Edits): number[];
   chat(line: string): void;

@@ -1,5 +1,5 @@
-// Session: a world of a server, over a WebSocket to its gateway (runstone-web). It needs no DOM: it runs in
-// pages, in workers, and in programs that have a WebSocket.
+// Session: a world of a server, over a WebSocket to its gateway (runstone-web). It needs no DOM: it
+// runs in pages, in workers, and in programs that have a WebSocket.
 import { Chunk, Edits, Mesh, ray } from "./chunks.js";
 import { bytesAt, call, Handle, memory, pointer, readPos, readVec, RunstoneError, textAt, use, whole } from "./wasm.js";
 
@@ -47,7 +47,7 @@ export class Session {
     try {
       socket = new this.#WebSocket(this.#url);
     } catch (error) {
-      // The address is none, or this page may not connect to it.
+      // The address is invalid, or this page may not connect to it.
       this.#events.push({ type: "refused", number: 0, text: `${this.#url}: ${error.message}` });
       return;
     }
@@ -119,8 +119,8 @@ export class Session {
     });
   }
 
-  // Receives for `ms` at most, sends what is due, and returns what happened since the last call. Call it about
-  // every 10 ms, at least once a second.
+  // Receives for at most `ms`, sends due messages, and returns the events since the last call. Call
+  // it about every 10 ms, at least once a second.
   step(ms = 8) {
     const nowMs = performance.now();
     if (!this.#isOver && this.#socket === null && nowMs >= this.#nextMs) this.#connect(nowMs);
@@ -188,8 +188,9 @@ export class Session {
     use((room) => call("session_move", this.#handle.at, room.vec(eye), yaw, pitch));
   }
 
-  // Makes meshes that are out of date, for `ms` at most: {at, mesh}, where `at` is the place of the chunk in the
-  // grid of chunks. `mesh` is valid until the next one, or null: remove the mesh of the chunk.
+  // Makes meshes that are out of date, for at most `ms`: {at, mesh}, where `at` is the place of the
+  // chunk in the grid of chunks. `mesh` is valid until the next one, or null: remove the mesh of
+  // the chunk.
   *meshes(ms = 6) {
     const untilMs = performance.now() + ms;
     do {
@@ -242,8 +243,8 @@ export class Session {
     return ray("session_pick", this.#handle.at, eye, direction, reach);
   }
 
-  // Says goodbye, closes the connection and frees the memory. The session cannot be used any more. Further calls
-  // do nothing.
+  // Says goodbye, closes the connection and frees the memory. The session cannot be used any more.
+  // Further calls do nothing.
   close() {
     if (this.#isClosed) return;
     this.#isClosed = true;

@@ -93,7 +93,8 @@ export function use(work) {
   }
 }
 
-// Returns a number that the interface takes. Fails for other values: WebAssembly would cut them silently.
+// Returns a number that the interface takes. Fails for other values: WebAssembly would cut them
+// silently.
 export function whole(value, name, min = 0, max = 0xffff_ffff) {
   if (!Number.isInteger(value) || value < min || value > max)
     throw new RunstoneError("bad argument", `${name} is ${String(value)}, and not a whole number from ${min} to ${max}`);
@@ -103,8 +104,8 @@ export function whole(value, name, min = 0, max = 0xffff_ffff) {
 export const readPos = (at) => ({ x: memory().getInt32(at, true), y: memory().getInt32(at + 4, true), z: memory().getInt32(at + 8, true) });
 export const readVec = (at) => ({ x: memory().getFloat64(at, true), y: memory().getFloat64(at + 8, true), z: memory().getFloat64(at + 16, true) });
 
-// Calls a function with the parameters `out, capacity, count` and returns its elements in a new array of
-// `Type`. `parts` is how many numbers of the array an element has.
+// Calls a function with the parameters `out, capacity, count` and returns its elements in a new
+// array of `Type`. An element has `parts` numbers of the array.
 export function list(Type, parts, name, ...args) {
   return use((room) => {
     const count = room.take(4);
@@ -118,8 +119,8 @@ export function list(Type, parts, name, ...args) {
 
 const forgotten = new FinalizationRegistry(({ kind, at }) => functions[`runstone_${kind}_free`](at));
 
-// An object of the WebAssembly. free() frees its memory at once; otherwise it is freed some time after the
-// last reference is gone.
+// An object of the WebAssembly. free() frees its memory at once; otherwise it is freed some time
+// after the last reference is gone.
 export class Handle {
   #at = 0;
   #kind;
@@ -145,14 +146,16 @@ export class Handle {
   }
 }
 
-// Returns the pointer of a handle of this class. NULL stands for null and undefined if it is `optional`.
+// Returns the pointer of a handle of this class. NULL stands for null and undefined if it is
+// `optional`.
 export function pointer(handle, Class, optional = false) {
   if (optional && (handle === null || handle === undefined)) return 0;
   if (!(handle instanceof Class)) throw new RunstoneError("bad argument", `a ${Class.name} is needed`);
   return handle.at;
 }
 
-// The few functions of the system that the WebAssembly imports. It opens no files and reads no clock.
+// The few functions of the system that the WebAssembly imports. It opens no files and reads no
+// clock.
 function imports() {
   const fill = (at, count) => (crypto.getRandomValues(bytesAt(at, count)), 0);
   const none = () => 52; // ENOSYS of WASI
@@ -186,7 +189,8 @@ async function compiled(source) {
 
 let loading = null;
 
-// Loads the WebAssembly, once: the file beside this one, or the source that is given. All other calls need it.
+// Loads the WebAssembly, once: the file beside this one, or the source that is given. All other
+// calls need it.
 export function load(source = new URL("runstone-core.wasm", import.meta.url)) {
   loading ??= compiled(source).then((module) => WebAssembly.instantiate(module, imports())).then((instance) => {
     functions = instance.exports;

@@ -55,7 +55,8 @@ void OpaqueBits::read_inside(const RunChunk& chunk, const VisibilityTable& visib
   const std::uint32_t row = steps_[static_cast<std::size_t>(axes_[1])];
   const std::uint32_t gap = steps_[static_cast<std::size_t>(axes_[2])] - row * e.m;
   chunk.runs.visit([&](const auto& runs) {
-    // The line of the voxel `begin`: its first bit, its first voxel and its number in its layer.
+    // These variables describe the line of the voxel `begin`: its first bit, its first voxel and
+    // its number in its layer.
     std::uint32_t line_bit = place(0, 0, 0), line_begin = 0, line = 0;
     const auto next_line = [&] {
       line_begin += e.f;
@@ -97,7 +98,7 @@ void OpaqueBits::read_beyond(const RunChunk& beyond, const Place3& offset,
       return read_side<Row64>(beyond, offset, across, visibility);
     return read_side<Row128>(beyond, offset, across, visibility);
   }
-  // An edge or a corner. Along at most one axis there is more than one voxel.
+  // The box is an edge or a corner, so it has more than one voxel along at most one axis.
   Place3 at{}, from{}, move{};
   int count = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
-// OpaqueBits: the opaque voxels of a chunk and of the voxels around it, as bits. Corners of quads
-// are darkened by them (quad_occlusion.hpp). One bit a voxel is no dense expansion.
+// OpaqueBits: the opaque voxels of a chunk and of the layer around it, one bit a voxel. They darken
+// the corners of quads (quad_occlusion.hpp). One bit a voxel is no dense expansion.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace runstone {
 using ChunksAround = std::array<const RunChunk*, 27>;
 
 /// Returns the place in ChunksAround of the chunk at an offset of -1, 0 or 1 along each axis. Place
-/// 13 is that of the chunk itself, and is not read.
+/// 13 belongs to the chunk itself and is not read.
 constexpr std::size_t around_place(int x, int y, int z) {
   return static_cast<std::size_t>((x + 1) + 3 * (y + 1) + 9 * (z + 1));
 }
@@ -28,7 +28,7 @@ class OpaqueBits {
   /// chunk's side along each axis along which its offset is 0. Allocates only to grow. Cost:
   ///   - O(runs + lines of the chunk);
   ///   - O(runs) of each of the six chunks that touch a side;
-  ///   - for the twelve at the edges O(voxels of the edge * log runs).
+  ///   - O(voxels of the edge * log runs) of each of the twelve chunks at the edges.
   void read(const RunChunk& chunk, const ChunksAround& around, const VisibilityTable& visibility);
 
   /// Returns the number of the bit of a voxel: -1 .. side along each axis.
@@ -48,7 +48,8 @@ class OpaqueBits {
   using Place3 = std::array<int, 3>;
 
   void read_inside(const RunChunk& chunk, const VisibilityTable& visibility);
-  /// Reads the voxels of a chunk around. They are [min, max) in places of the chunk in the middle.
+  /// Reads the voxels [min, max) of one of the chunks around. The bounds are coordinates in the
+  /// chunk in the middle.
   void read_beyond(const RunChunk& beyond, const Place3& offset, const VisibilityTable& visibility);
   template <class Row>
   void read_side(const RunChunk& beyond, const Place3& offset, std::size_t axis,

@@ -8,8 +8,8 @@ namespace {
 
 using Level = std::uint8_t;
 
-/// Returns the occlusion of a point from the three voxels that a face sees there: those beside, and
-/// the diagonal one.
+/// Returns the occlusion of a point from the three voxels before the face there: the two beside the
+/// point, and the diagonal one.
 constexpr Level point_level(unsigned beside_u, unsigned beside_v, unsigned diagonal) {
   return static_cast<Level>(beside_u + beside_v == 2 ? 3U : beside_u + beside_v + diagonal);
 }
@@ -38,7 +38,7 @@ class QuadCutter {
       return;
     }
     // A row or a column of faces is cut along its length. A larger quad loses the rows and columns
-    // at those sides that are dark somewhere. The rest has no dark point.
+    // at those sides that are dark somewhere. The part that is left has no dark point.
     if (height_ == 1) {
       cut_row(0, lower_.data(), upper_.data());
       return;
@@ -79,7 +79,7 @@ class QuadCutter {
     return bits_.place(q.x, q.y, q.z) + (is_positive(direction_) ? layer_step_ : 0U - layer_step_);
   }
 
-  /// Adds a quad of a single face, as most quads are.
+  /// Adds a quad of a single face. Most quads have one face.
   void put_face(const QuadFields& q) {
     const std::uint32_t at = place_before(q), below = at - v_step_, above = at + v_step_;
     const unsigned left = bits_.at(at - u_step_), right = bits_.at(at + u_step_);

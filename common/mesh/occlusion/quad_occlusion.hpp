@@ -4,15 +4,14 @@
 //   - 3 if both voxels beside are opaque;
 //   - otherwise the number of opaque voxels among the three, 0 .. 2.
 //
-// Quads stand for many faces, so a quad is cut where its four corners alone would give a face
-// another look. That needs no texture and no shader of its own: the values go into the vertices. On
-// real worlds it makes 1.7 times as many quads. A texture of masks would leave the quads as they
-// are, but every program that draws would need to look into it at each pixel.
+// A quad stands for many faces, so it is cut where its four corners would give a face other values.
+// Then the values stand in the vertices, and no texture and no special shader is needed. On real
+// worlds this makes 1.7 times as many quads. A texture of masks would not cut quads, but every
+// program that draws would have to read it at each pixel.
 //
 // Two facts keep the cuts cheap. All faces that meet at a point of the plane before them see the
-// same four voxels there, so the occlusion is a property of the point. And the voxels before the
-// faces of a quad are not opaque, so points inside a quad have the occlusion 0: only the rim is
-// read.
+// same four voxels there, so the occlusion is a property of the point. The voxels before the faces
+// of a quad are not opaque, so points inside a quad have the occlusion 0, and only the rim is read.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -46,16 +45,16 @@ struct OccludedQuads {
 
 /// Replaces `out` by the quads of cubes of one pass, cut so that each of their faces has the
 /// occlusion of its own corners if the values of the quad's corners are interpolated over it. The
-/// parts of a quad stay together, and in its layer. Requires that `bits` were read from the chunk of
-/// the mesh, from the chunks with which it was meshed, and with the same visibility. Thread: any.
-/// Allocates only to grow. Cost: O(rims of the quads).
+/// parts of a quad stay together, and in its layer. Requires that `bits` were read from the chunk
+/// of the mesh, from the chunks with which it was meshed, and with the same visibility. Thread:
+/// any. Allocates only to grow. Cost: O(rims of the quads).
 void occlude_quads(const QuadLayers& quads, const OpaqueBits& bits, OccludedQuads& out);
 
 /// Returns the corner of a quad at which its first triangle begins: 0, or 1 so that the diagonal
 /// joins the two opposite corners that are less dark together. Both diagonals interpolate equally
-/// along the edges, but a single dark corner darkens two triangles or one, by where it lies, if the
-/// diagonal does not follow the values. The triangles are (c, c + 1, c + 2) and (c, c + 2, c + 3),
-/// modulo 4.
+/// along the edges. But if the diagonal did not follow the values, a single dark corner would
+/// darken one triangle or two, depending on its place. The triangles are
+/// (c, c + 1, c + 2) and (c, c + 2, c + 3), modulo 4.
 constexpr std::size_t first_corner(CornerOcclusion corners) {
   return occlusion_of(corners, 0) + occlusion_of(corners, 2) >
                  occlusion_of(corners, 1) + occlusion_of(corners, 3)

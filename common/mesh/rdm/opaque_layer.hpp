@@ -1,5 +1,5 @@
-// Opaque layer: the opaque voxels of one layer of a chunk as rows of bits, read from its runs in any
-// axis order. Veils read the layers of neighbours with it.
+// Opaque layer: the opaque voxels of one layer of a chunk as rows of bits, read from its runs in
+// any axis order. The veil reads the layers of neighbours with it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,9 +20,10 @@ struct LayerOfBits {
 };
 
 /// Replaces `rows`: bit i of row r is set if the voxel is opaque whose coordinate along `bit_axis`
-/// is i and whose coordinate along the third axis is r. The other rows are not valid afterwards. Row
-/// is Row64 or Row128. Requires a valid chunk, different axes, `at` and the rows inside the chunk,
-/// and sides of at most kRowBits<Row>. Cost: O(runs); for a few rows O(rows * (length + log runs)).
+/// is i and whose coordinate along the third axis is r. The other rows are not valid afterwards.
+/// Row is Row64 or Row128. Requires a valid chunk, different axes, `at` and the rows inside the
+/// chunk, and sides of at most kRowBits<Row>. Cost: O(runs); for a few rows O(rows * (length + log
+/// runs)).
 template <class Row>
 void read_opaque_layer(const RunChunk& chunk, const LayerOfBits& layer,
                        const VisibilityTable& visibility, std::array<Row, kRowBits<Row>>& rows);

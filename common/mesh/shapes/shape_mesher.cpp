@@ -131,7 +131,7 @@ class ShapeWalk {
     }(std::make_index_sequence<kDirectionCount>{});
   }
 
-  /// Adds the faces on one side of a single voxel, from `face` on, which moves behind them.
+  /// Adds the faces on one side of a single voxel, from `face` on. Moves `face` behind them.
   template <std::size_t kSide>
   void add_side(const Piece& piece, const PreparedShape& shape, std::uint64_t base,
                 Quad** const ends, const PreparedFace*& face) {

@@ -2,7 +2,7 @@
 // The map: tiles on a canvas. World coordinates are voxels, x to the right and z down. A tile is kept
 // with its ETag, so a request for another moment costs nothing where nothing changed.
 const GLOW_MS = 5000, TILES_MAX = 400, LOADS_MAX = 6, STEP_MS = 150, STEPS = 200;
-const BORDER_POLLS = 30;  // between two questions for the border
+const BORDER_POLLS = 30;  // polls of state.json between two requests of the border
 const el = (id) => document.getElementById(id);
 const canvas = el('map'), draw = canvas.getContext('2d');
 const view = {x: 0, z: 0, scale: 1};  // the middle, and CSS pixels of a voxel

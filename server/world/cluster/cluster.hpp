@@ -57,7 +57,8 @@ class Cluster {
   /// Returns why the clock of the world may not be set, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> clock_refusal() const { return followers_.clock_refusal(); }
-  /// Returns why no role may be given for some time, as a sentence without its period, or nullopt.
+  /// Returns the reason why no role may be given for some time, as a sentence without its period,
+  /// or nullopt.
   std::optional<std::string> timed_grant_refusal() const {
     return followers_.timed_grant_refusal();
   }

@@ -76,7 +76,8 @@ class Followers {
   /// Returns why the clock of the world may not be set, as a sentence without its period, or
   /// nullopt.
   std::optional<std::string> clock_refusal() const;
-  /// Returns why no role may be given for some time, as a sentence without its period, or nullopt.
+  /// Returns the reason why no role may be given for some time, as a sentence without its period,
+  /// or nullopt.
   std::optional<std::string> timed_grant_refusal() const;
   /// Returns the server through which a session is connected, or null if it is connected here.
   Follower* of_session(SessionId session);

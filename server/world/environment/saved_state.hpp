@@ -1,6 +1,6 @@
 // SavedState: the state of a world that the store keeps besides the log and writes once a minute:
-// where players were last, how far the clock of the world has come, and a spawn that was set. No edit
-// depends on it.
+// where players were last, how far the clock of the world has come, and a spawn that was set. No
+// edit depends on it.
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -8,7 +8,8 @@
 
 namespace runstone {
 
-/// The columns whose distance to the column in the middle is at most `radius` voxels, at all heights.
+/// The columns whose distance to the column in the middle is at most `radius` voxels, at all
+/// heights.
 struct BorderCircle {
   std::int32_t x = 0, z = 0;  // of the column in the middle
   std::int32_t radius = 1;    // 1 .. 2 * kWorldLimit
@@ -22,8 +23,8 @@ inline bool has_all_heights(const VoxelBox& border) {
   return border.min.y <= -kWorldLimit && border.max.y >= kWorldLimit;
 }
 
-/// Returns true if the whole box lies within the border. Requires that the box is not empty and lies in
-/// the world.
+/// Returns true if the whole box lies within the border. Requires that the box is not empty and
+/// lies in the world.
 inline bool is_within(const WorldBorder& border, const VoxelBox& box) {
   if (const auto* bounds = std::get_if<VoxelBox>(&border)) return intersect(*bounds, box) == box;
   const auto& circle = std::get<BorderCircle>(border);
@@ -37,8 +38,8 @@ inline bool is_within(const WorldBorder& border, const VoxelBox& box) {
          is_inside(x, z);
 }
 
-/// Returns text such as "x -500 to 499, z -500 to 499", both included, or "500 voxels around x 0, z 0".
-/// The heights are left out if all of them are inside.
+/// Returns text such as "x -500 to 499, z -500 to 499", both included, or
+/// "500 voxels around x 0, z 0". The heights are left out if all of them are inside.
 inline std::string border_text(const WorldBorder& border) {
   if (const auto* circle = std::get_if<BorderCircle>(&border)) {
     return std::to_string(circle->radius) + " voxels around x " + std::to_string(circle->x) +
@@ -53,8 +54,8 @@ inline std::string border_text(const WorldBorder& border) {
   return text + range("z", box.min.z, box.max.z);
 }
 
-/// Returns the border as programs read it: "box X Z X Z", the columns from the first up to and without
-/// the last, or "circle X Z RADIUS".
+/// Returns the border in the form for programs: "box X Z X Z" with the first column and the column
+/// behind the last, or "circle X Z RADIUS".
 inline std::string border_words(const WorldBorder& border) {
   const auto joined = [](const char* name, std::int32_t a, std::int32_t b, std::int32_t c) {
     return std::string(name) + " " + std::to_string(a) + " " + std::to_string(b) + " " +

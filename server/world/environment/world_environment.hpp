@@ -155,7 +155,7 @@ class WorldEnvironment {
   virtual void log_names(std::vector<NameChange> changes) = 0;
   /// Queues a line for the log of the chat. If that queue is full, the line is not logged.
   virtual void log_chat(const ChatEntry& /*entry*/) {}
-  /// Marks lines of a player in the log of the chat as withdrawn: those with these times.
+  /// Marks the lines of a player with these times as withdrawn in the log of the chat.
   virtual void withdraw_chat(const PublicKey& /*key*/, const std::vector<TimeUs>& /*times*/) {}
   /// Loads a chunk on a worker: its newest snapshot, else the base, else generated. Called at most
   /// once for a chunk until it is answered. Answer: WorldServer::chunk_loaded() or chunk_failed().

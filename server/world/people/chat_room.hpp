@@ -43,9 +43,9 @@ class ChatRoom {
   void tell_of_visit(const PublicKey& player, const std::string& text, const Clocks& now);
   /// Sends a session that has opened the newest lines, and then the message of the day.
   void send_recent(const Session& session, const Clocks& now);
-  /// Withdraws the newest lines of a player: the kChatKeptMax newest lines of all players that are
-  /// his, and those that wait. Clients hide them, players who join later do not get them, and the log
-  /// keeps them. Returns their number. Cost: O(kChatKeptMax + kChatLinesMax + sessions).
+  /// Withdraws the lines of a player that are among the kChatKeptMax newest lines of all players,
+  /// and the lines that wait. Clients hide them, players who join later do not get them, and the
+  /// log keeps them. Returns their number. Cost: O(kChatKeptMax + kChatLinesMax + sessions).
   std::size_t withdraw(const PublicKey& key);
   /// Sends the lines that wait to every session. Call it on every tick.
   void broadcast();

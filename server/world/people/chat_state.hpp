@@ -17,7 +17,7 @@ namespace runstone {
 /// Lines that a player who joins gets. One more is the message of the day.
 inline constexpr std::size_t kChatRecentMax = 50;
 static_assert(kChatRecentMax + 1 <= kChatLinesMax);
-/// Sent lines that can be withdrawn from everybody.
+/// The greatest number of sent lines that are kept. Only these can be withdrawn.
 inline constexpr std::size_t kChatKeptMax = 128;
 static_assert(kChatRecentMax <= kChatKeptMax && kChatKeptMax <= kChatWithdrawnMax);
 /// The lines that all players together may write. The bound exists because each line is sent to

@@ -68,8 +68,8 @@ class Rights {
   std::optional<std::vector<VoxelBox>> apply(const std::vector<EditRecord>& records);
   /// Closes the sessions that may not stay.
   void close_refused();
-  /// Lets the time go on to that of the log. Returns the grants that have ended since the last call, and
-  /// none at the first one. Cost: O(timed grants).
+  /// Advances the time to the time of the log. Returns the grants that have ended since the last
+  /// call. The first call returns none. Cost: O(timed grants).
   std::vector<GrantRole> end_grants();
 
   /// Notes that a player was refused something, for moderators.

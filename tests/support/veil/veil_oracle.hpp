@@ -1,5 +1,5 @@
-// Veil oracle: which voxels of a chunk are enclosed, and what they show, voxel by voxel on dense
-// chunks. It shares no code with common/veil.
+// Veil oracle: finds the enclosed voxels of a chunk and the materials that they show, voxel by
+// voxel on dense chunks. It shares no code with common/veil.
 #pragma once
 #include <array>
 #include <functional>
@@ -21,7 +21,7 @@ struct DenseScene {
                        const std::array<const RunChunk*, kDirectionCount>& neighbours);
 };
 
-/// Which materials cover, and how a missing neighbour counts.
+/// The materials that cover, the filler, and the treatment of a missing neighbour.
 struct VeilOracleRules {
   std::function<bool(Material)> covers;
   bool missing_covers = true;

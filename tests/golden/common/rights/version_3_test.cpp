@@ -46,7 +46,7 @@ TEST_CASE("the bytes of a grant with an end are pinned", "[rights][golden]") {
     static_cast<void>(read_rights_change(cut));
     CHECK_FALSE(cut.ok());
   }
-  // Without an end it has the bytes of a grant as it always was.
+  // A grant without an end has the bytes of earlier versions.
   Bytes without(golden.begin(), golden.begin() + 1 + 32 + 6);
   without.push_back(0);
   ByteReader endless(without);

@@ -208,7 +208,7 @@ TEST_CASE("a program in C joins, meshes what it is shown, edits and chats", "[c_
   runstone_chunk* none = nullptr;
   CHECK(runstone_client_chunk(player.get(), {4000, 0, 0}, &none) == RUNSTONE_NOT_FOUND);
 
-  // After close() what arrived stays readable, and nothing can be sent.
+  // After close(), received chunks and events stay readable, and no call can send.
   REQUIRE(runstone_client_close(player.get()) == RUNSTONE_OK);
   REQUIRE(runstone_client_close(player.get()) == RUNSTONE_OK);
   CHECK(runstone_client_step(player.get(), nullptr) == RUNSTONE_OK);
@@ -252,7 +252,7 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
   options = default_options(nobody);
   options.key_file = "/no/such/folder/key";
   CHECK(refused(options));
-  // Words that are too long are cut between two characters, wherever they begin.
+  // Texts that are too long are cut between two characters, wherever these begin.
   for (const std::string begin : {"/no/", "/nos/"}) {
     std::string folder = begin;
     for (int i = 0; i < 200; ++i) folder += "\u00e9";
@@ -263,7 +263,7 @@ TEST_CASE("wrong arguments of a client in C are refused with words", "[c_interfa
     CHECK(is_printable_utf8(runstone_last_error()));
   }
 
-  // Nobody listens: the calls that need a world are refused, and the event says why.
+  // No server listens: the calls that need a world are refused, and the event has the reason.
   CPlayer player(default_options(nobody));
   const runstone_place place{};
   CHECK(runstone_client_move(player.get(), &place) != RUNSTONE_OK);

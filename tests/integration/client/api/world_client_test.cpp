@@ -92,7 +92,7 @@ TEST_CASE("edits are confirmed, durable, rejected and refused, each with words",
   CHECK_FALSE(rejected.text.empty());
   CHECK(ada->material_at(far) == kEmpty);
 
-  // What the client knows itself is refused before it is sent.
+  // The client refuses an edit before it is sent if it knows itself that the edit is invalid.
   CHECK(ada->submit({FillSphere{near, 60'000}, {}, 1}).error().code == ErrorCode::limit_exceeded);
   CHECK_FALSE(ada->submit(voxel(near, 60'000)).error().text.empty());
   CHECK(ada->submit(clock_edit({})).error().code == ErrorCode::unknown_kind);
@@ -135,7 +135,7 @@ TEST_CASE("chat, commands and players reach a program as events", "[integration]
   CHECK(done.is_ok);
   CHECK_FALSE(done.lines.empty());
   ada.until([&] { return ada->material_at({2, 20, 2}) == kEmpty; });
-  // Answers do not gather: the next command waits until the program has drained the last one.
+  // At most one answer waits: the next command is refused until the program has drained it.
   REQUIRE(ben->command("no-such-command").has_value());
   std::string why = "the previous command is still running";
   for (int i = 0; i < 6'000 && why == "the previous command is still running"; ++i) {

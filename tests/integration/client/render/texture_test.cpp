@@ -342,7 +342,7 @@ TEST_CASE("holes of opaque cubes have the mean colour, and those of transparent 
   SECTION("transparent, before a blue cube") {
     MaterialInfo glass = material_row("glass");
     glass.visibility = Visibility::transparent;
-    glass.colour[3] = 72;  // the picture alone says that its frame is opaque
+    glass.colour[3] = 72;  // only the picture makes its frame opaque
     MaterialInfo blue = material_row("blue");
     blue.colour = {20, 20, 230, 255};
     blue.look = MaterialLook{0, 0, 100, 0, MaterialPattern::none};

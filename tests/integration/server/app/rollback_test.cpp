@@ -59,7 +59,7 @@ TEST_CASE("players undo and redo by a command, and other commands need rights",
   const Answer nothing = command(ana, "redo");
   CHECK_FALSE(nothing.is_ok);
   CHECK(nothing.text == "nothing to redo\n");
-  // Who may build may roll back on his own ground, and nowhere else.
+  // A player with the right `build` may roll back on the player's own ground only.
   const Answer refused = command(ana, "rollback preview author ben");
   CHECK_FALSE(refused.is_ok);
   INFO(refused.text);

@@ -129,7 +129,7 @@ TEST_CASE("cut quads give each corner of each face its occlusion", "[mesh][occlu
   SplitMix64 rng(Catch::rngSeed() + 951);
   RdmScratch scratch;
   ChunkMesh mesh;
-  OpaqueBits bits;  // one for all: what a scene left would darken the next
+  OpaqueBits bits;  // one for all scenes, so bits that stay from one scene would darken the next
   OccludedQuads opaque, transparent;
   std::map<int, std::size_t> corner_counts;
   for (int round = 0; round < 400; ++round) {

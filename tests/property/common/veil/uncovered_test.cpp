@@ -1,5 +1,5 @@
-// Shown chunks beside true ones under random edits: they differ only in enclosed voxels, and what
-// is sent tells nothing of voxels that were enclosed whenever it was sent.
+// Shown chunks and true chunks under random edits: they differ only in enclosed voxels, and the
+// sent data reveals nothing about voxels that were always enclosed when it was sent.
 #include "common/veil/uncovered.hpp"
 
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int32_t kWorldSide = 2;  // chunks along each axis
 
-/// What a client holds of a chunk, in an axis order of its own.
+/// The chunk that a client holds, in an axis order of its own.
 struct VeiledReplica {
   RunChunk voxels;
   Digest digest;
@@ -32,7 +32,7 @@ struct VeiledChunk {
 
   RunChunk truth, shown;  // in one axis order
   std::array<VeiledReplica, 2> replicas;
-  DenseChunk first;           // what was shown at first
+  DenseChunk first;           // the first shown chunk
   std::vector<bool> is_told;  // of the voxels in the order kVeilOrder: by an edit or a patch since
 };
 
@@ -61,7 +61,8 @@ class VeiledWorld {
     }
   }
 
-  /// Orders an edit. `by_result`: veiled sessions get what it changed for them, not the descriptor.
+  /// Orders an edit. If `by_result`, veiled sessions get the changes of the shown chunk in place of
+  /// the descriptor.
   void order(const EditDescriptor& edit, bool by_result) {
     std::map<ChunkCoord, DirtyLayers> dirty;
     for (auto& [at, chunk] : chunks_) {
@@ -69,7 +70,7 @@ class VeiledWorld {
       dirty[at] =
           apply_stack(chunk.truth, digest, origin_of(at, edge_), std::span(&edit, 1), apply_).dirty;
     }
-    // An edit that changes nothing of what is shown is not sent.
+    // An edit that changes no shown voxel is not sent.
     bool is_seen = false;
     for (auto& [at, chunk] : chunks_)
       is_seen = !uncovered(at, all_slow_layers(chunk.truth)).empty() || is_seen;
@@ -136,7 +137,7 @@ class VeiledWorld {
     return patch;
   }
 
-  /// Applies the descriptor to what is shown.
+  /// Applies the descriptor to the shown chunks.
   void send(const EditDescriptor& edit) {
     for (auto& [at, chunk] : chunks_) {
       const VoxelPos origin = origin_of(at, edge_);
@@ -152,7 +153,7 @@ class VeiledWorld {
     }
   }
 
-  /// Sends what is uncovered in the layers.
+  /// Sends the voxels that are uncovered in the layers.
   void patch(ChunkCoord at, SlowLayers layers) {
     VeiledChunk& chunk = chunks_.at(at);
     const VeilPatch patch = in_order(uncovered(at, layers), kVeilOrder);
@@ -217,7 +218,7 @@ TEST_CASE("what veiled replicas hold differs from the truth in enclosed voxels a
       const EditDescriptor edit = rng.below(6) == 0 ? random_edit_near(rng, origin, world.extent())
                                                     : small_edit(rng, origin, edge);
       CAPTURE(Catch::rngSeed(), edge, step, edit);
-      // A replica would apply a mask for a material to what it holds.
+      // A replica would apply a mask for a material to its own voxels.
       world.order(edit, edit.mask.kind == MaskKind::only_material || rng.below(3) == 0);
       world.check();
     }
@@ -232,7 +233,7 @@ TEST_CASE("what veiled replicas hold differs from the truth in enclosed voxels a
 
 TEST_CASE("a mask for a material parts truth and veil, unless the result is sent",
           "[veil][property]") {
-  // The edit replaces ore by water in rock: applied to what is shown it would find nothing.
+  // The edit replaces ore by water in rock. In the shown chunk it would find no ore.
   const Extent extent = Extent::cube(8);
   RunChunk truth = uniform_chunk(extent, kStone, kVeilOrder);
   const VoxelIndex ore = index_of({4, 4, 4}, extent, kVeilOrder);

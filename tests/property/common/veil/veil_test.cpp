@@ -1,4 +1,5 @@
-// Veils of chunks against an oracle, on random ground, and what they must not change.
+// Veils of chunks against an oracle, on random ground. The test also checks the properties that a
+// veil must not change.
 #include "common/veil/veil.hpp"
 
 #include <algorithm>

@@ -32,7 +32,7 @@ Owned<runstone_visibility> shaped_visibility(const std::vector<std::uint8_t>& ro
 const std::vector<std::uint8_t> kRows = {RUNSTONE_EMPTY, RUNSTONE_OPAQUE, RUNSTONE_TRANSPARENT,
                                          RUNSTONE_OPAQUE, RUNSTONE_TRANSPARENT};
 
-/// What meshers of the C++ libraries read of the same materials.
+/// The properties of the same materials that meshers of the C++ libraries read.
 MeshMaterials shaped_materials() {
   using enum Visibility;
   MeshMaterials out(VisibilityTable(std::array{empty, opaque, transparent, opaque, transparent}));

@@ -1,5 +1,5 @@
-// The file for shaders, compiled as C++: its types and functions are those of GLSL, which this test
-// gives. So the text that shaders include is the text that is checked.
+// The file for shaders, compiled as C++. This test defines the types and functions of GLSL that the
+// file uses. So the checked text is the text that shaders include.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <fstream>

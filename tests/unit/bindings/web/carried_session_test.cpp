@@ -26,7 +26,7 @@ struct CarriedBench {
     return out;
   }
 
-  /// Returns what the session sends, as the server reads it. Each frame is a message of a
+  /// Returns the messages of the session, as the server reads them. Each frame is a message of a
   /// WebSocket.
   std::vector<Message> sent() {
     std::vector<Message> messages;
@@ -112,8 +112,8 @@ TEST_CASE("a carried session joins, loads its view and meshes it once", "[web_co
 
   bench.load();
   CHECK(bench.session.session().loaded());
-  // Below y = 0 all is stone: each of the five columns shows a quad to the top, and the sides and
-  // bottoms at the end of the view.
+  // All voxels below y = 0 are stone. Each of the five columns shows a quad to the top, and quads
+  // at the sides and the bottom of the view.
   const auto meshes = bench.meshes();
   CHECK(meshes.size() == 5);
   for (const auto& [at, quads] : meshes) {
@@ -220,7 +220,7 @@ TEST_CASE("a carried session says why a connection ended, and begins another one
   bench.from_client = FrameReader(Sender::client);
   bench.to_client = FrameWriter();
   bench.open();
-  // The materials are those of before.
+  // The materials are the same as before.
   const auto notices = bench.notices();
   REQUIRE(notices.size() == 1);
   CHECK(notices[0].kind == CarriedNoticeKind::opened);

@@ -25,7 +25,7 @@ TEST_CASE("a full queue drops the oldest event of the same kind", "[client_api]"
   const std::vector<WorldEvent> drained = events.drain();
   CHECK(drained.size() == 1 + 3 * (EventQueue::kEventsMax + 1) - 1);
   CHECK(std::holds_alternative<ChunkMissing>(drained[0]));
-  CHECK(std::holds_alternative<ChunkRemoved>(drained[1]));  // the line before it is gone
+  CHECK(std::holds_alternative<ChunkRemoved>(drained[1]));  // the line before it was dropped
   CHECK(events.edit_events() == 0);
   CHECK(events.drain().empty());
 }
@@ -42,7 +42,7 @@ TEST_CASE("edits of others that name many chunks do not fill the memory", "[clie
   CHECK(std::get<OthersEdit>(drained[1]).sequence == 2);
   CHECK(std::get<OthersEdit>(drained[2]).sequence == 3);
 
-  // One that names more than there may be stays alone, until the next one.
+  // An event that names more chunks than the bound stays alone, until the next one comes.
   events.push(edit_of(4, EventQueue::kNamedChunksMax));
   events.push(edit_of(5, EventQueue::kNamedChunksMax + 1));
   events.push(edit_of(6, 0));

@@ -1,5 +1,6 @@
 // Measurements that a person starts: unit_client_tools "[.time]". They print microseconds of
-// processor time of the thread and bytes, and check no bound, because another machine has other times.
+// processor time of the thread and bytes, and check no bound, because another machine has other
+// times.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -81,7 +81,7 @@ TEST_CASE("random bytes of patches come back or are refused", "[veil]") {
     const auto read = read_patch_bytes(bytes, kBytesExtent);
     REQUIRE(read.has_value());
     CHECK(*read == patch);
-    // Whatever is accepted has these bytes and no others.
+    // A patch that is accepted has these bytes and no others.
     bytes[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^=
         static_cast<std::uint8_t>(1 + rng.below(255));
     const auto other = read_patch_bytes(bytes, kBytesExtent);

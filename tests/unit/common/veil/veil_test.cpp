@@ -49,7 +49,7 @@ TEST_CASE("a voxel on the border keeps its material only where its neighbour doe
   beyond.fill(&rock);
   beyond[static_cast<std::size_t>(Direction::pos_x)] = &hollow;
   const RunChunk veil = veil_among(chunk, beyond);
-  // The only voxel that can be seen gives its material to all others.
+  // Only one voxel can be seen. It gives its material to all others.
   CHECK(material_at(veil, {7, 3, 3}) == kOre);
   CHECK(veil.is_uniform());
 }

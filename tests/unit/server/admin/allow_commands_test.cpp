@@ -1,4 +1,4 @@
-// Lists of players who may join: what is read of a file, and what the command makes of it.
+// Lists of players who may join: the entries of a file, and the answers and effects of the command.
 #include "server/admin/allow_commands.hpp"
 
 #include <catch2/catch.hpp>

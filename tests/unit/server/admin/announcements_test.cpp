@@ -1,4 +1,4 @@
-// Lines that the host announces again and again, or at a time of the day.
+// Lines that the server announces at an interval, or at a time of the day.
 #include "server/admin/announcements.hpp"
 
 #include <catch2/catch.hpp>
@@ -73,7 +73,7 @@ TEST_CASE("a line comes again and again, also after the settings were read anew"
   bench.announcements.set_configured(rules);
   bench.tick(kMinuteUs);
   CHECK(bench.take() == Said{"rules"});
-  bench.tick(90 * kMinuteUs);  // those that were missed come once
+  bench.tick(90 * kMinuteUs);  // missed lines come once
   CHECK(bench.take() == Said{"rules"});
   bench.announcements.set_configured({});
   bench.tick(90 * kMinuteUs);

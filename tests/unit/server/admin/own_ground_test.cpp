@@ -11,7 +11,7 @@ namespace {
 
 constexpr VoxelBox kDug{{0, 0, 0}, {8, 1, 1}}, kHome{{0, 0, 0}, {4, 4, 4}};
 
-/// The griefer has built in and beside what is the builder's home from then on.
+/// The griefer has built in and beside a box that becomes the builder's home.
 struct OwnGroundBench : CommandBench {
   OwnGroundBench()
       : services{bench.server,
@@ -80,7 +80,7 @@ TEST_CASE("the owner of ground takes edits of others back there, and nothing bes
 
   const std::string id = std::to_string(newest.version.seq);
   CHECK(contains(bench.player(kGriefer, "rollback undo " + id).text, "is not one of yours"));
-  // Of two undos at once the second one is refused.
+  // If two undos are given at once, the second one is refused.
   bench.answers.clear();
   for (int i = 0; i < 2; ++i) {
     const CommandCaller caller{kBuilder, {OwnGroundBench::key_of(kBuilder), false}};

@@ -89,7 +89,7 @@ TEST_CASE("a box becomes as it was at a moment of a backup", "[admin][backup]") 
   INFO(done.text);
   REQUIRE(done.is_ok);
   CHECK(bench.at({0, 0, 0}) == 2);
-  CHECK(bench.at({7, 7, 7}) == kEmpty);  // what was built since is gone, too
+  CHECK(bench.at({7, 7, 7}) == kEmpty);  // a voxel that was built since is removed, too
 }
 
 TEST_CASE("bad backups, boxes and callers are refused with words", "[admin][backup]") {

@@ -52,7 +52,7 @@ struct WithdrawalBench : CommandBench {
   CommandAnswer player(std::uint8_t who, const std::string& line) {
     return give({who, {key_of(who), false}}, line);
   }
-  /// Returns how many lines the reader was told to hide.
+  /// Returns the number of lines that the reader was asked to hide.
   std::size_t hidden() const {
     std::size_t count = 0;
     for (const auto& message : bench.environment.messages<ChatWithdrawn>(kReader, kEdge))

@@ -1,5 +1,5 @@
-// Retention moves the beginning of a log into the base in parts, and loses nothing, also if power or
-// disk fail between or in them.
+// Retention moves the beginning of a log into the base in parts. No data is lost, also if power or
+// disk fail in a part or between two parts.
 #include "server/history/fold_maker.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr Sequence kCutOff = 90;
 
-/// What a retention must never remove.
+/// The data that a retention must never remove.
 struct KeptRows {
   std::vector<Sequence> rights;
   MaterialTable materials;
@@ -239,7 +239,7 @@ TEST_CASE("a moment that was opened before goes on while the log is folded", "[s
   auto world = WorldAt::open(*reader, *generator, 80);
   REQUIRE(world.has_value());
   REQUIRE(world->stored_at() == 60);
-  // This cache has read nothing but the log from its begin.
+  // This cache has only read the log from its beginning.
   Moments moments(folder.path(), *generator);
   REQUIRE(moments.open(55).has_value());
   const MomentChunks earlier = moment_chunks(*store, 55);
@@ -332,7 +332,7 @@ TEST_CASE("space goes back to the disk in parts, and an older file gets that by 
     CHECK(std::filesystem::file_size(file) < bytes);
     CHECK(store->check().has_value());
   }
-  // As a program without retention made it.
+  // The file is as a program without retention made it.
   REQUIRE(raw_sql(file, "PRAGMA auto_vacuum = NONE; VACUUM; PRAGMA auto_vacuum") == "0");
   const auto store = opened_retention_world(folder.path(), StoreAccess::read_write);
   REQUIRE(fold_up_to(*store, kRetentionEdits - 1, {}).has_value());
@@ -354,7 +354,7 @@ TEST_CASE("the size of a part follows the time of the log writer", "[server][ret
   CHECK(next_fold_size({4'096, 128}, microseconds(1)).chunks_max == 128);
 }
 
-// Prints the sizes and the times of the parts. Takes a minute.
+// This case prints the sizes and the times of the parts. It takes a minute.
 TEST_CASE("the size of a world after a retention of 30 of 365 days", "[.][retention-size]") {
   constexpr Sequence kAll = 100'000, kBatch = 4'096;
   constexpr TimeUs kYear = 365 * 24 * kRetentionHour;

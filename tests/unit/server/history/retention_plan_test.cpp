@@ -1,4 +1,4 @@
-// What a retention would remove, before it acts.
+// The plan of a retention: the edits that it would remove.
 #include "server/history/retention_plan.hpp"
 
 #include <catch2/catch.hpp>
@@ -135,7 +135,8 @@ TEST_CASE("edits that a wrong clock dated into the future stay until their era i
   records[29].edit = rights_edit(CorrectTime{-2'000 * kRetentionDay, 20});
   const TempFolder folder;
   const auto store = world_of(folder.path(), records);
-  // A day before the newest edit lies behind the correction: all before goes, and no doubt is left.
+  // A day before the newest edit lies behind the correction. All edits before are removed, and
+  // there is no doubt.
   const auto plan = plan_retention(*store, 1, records.back().time_us);
   REQUIRE(plan.has_value());
   CHECK(plan->cut.version.seq == 36);

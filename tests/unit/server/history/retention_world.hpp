@@ -1,5 +1,5 @@
-// A small world for tests of retention: an hour between two edits, changes of rights and new materials
-// among them, snapshots up to the end, and keyframes.
+// A small world for tests of retention: an hour between two edits, changes of rights and new
+// materials among them, snapshots up to the end, and keyframes.
 #pragma once
 #include <catch2/catch.hpp>
 #include <map>
@@ -88,8 +88,8 @@ inline void make_keyframe_at(Store& store, Sequence at) {
   if (!made) FAIL(made.error().message());
 }
 
-/// Makes a closed world of kRetentionEdits edits, with a snapshot of each chunk and the checkpoint at
-/// the end.
+/// Makes a closed world of kRetentionEdits edits, with a snapshot of each chunk and the checkpoint
+/// at the end.
 inline void make_retention_world(const std::string& folder, SplitMix64& rng,
                                  const std::vector<Sequence>& keyframes,
                                  const SqliteOptions& options = {}) {

@@ -108,7 +108,7 @@ TEST_CASE("new days end a run of the policy, and the next one does not begin at 
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   CHECK_FALSE(bench.retention->state().is_running);
   CHECK(bench.retention->state().days == 1);
-  // An order of a person does not wait.
+  // A run that a person has ordered does not wait.
   REQUIRE(bench.retention->run_now(3));
   bench.await([](const RetentionState& state) { return state.runs == 2; });
   CHECK(bench.stopped_head() == 48);

@@ -333,7 +333,8 @@ TEST_CASE("withdrawn lines are hidden from everybody, and from players who join 
   CHECK(bench.texts(4) == Texts{"hello"});
   CHECK(bench.environment.messages<ChatWithdrawn>(4, kEdge).empty());
 
-  // The log has all lines, and says which are withdrawn. They still count as written.
+  // The log has all lines and marks the withdrawn ones. Withdrawn lines still count as lines that
+  // the player wrote.
   std::vector<std::pair<std::string, bool>> logged;
   for (const ChatEntry& entry : bench.environment.chat)
     logged.emplace_back(entry.line.text, entry.is_withdrawn);
