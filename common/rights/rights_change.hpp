@@ -131,7 +131,7 @@ void encode(const RightsChange& change, Bytes& out);
 /// Reads one change, up to the end of the input. The result is valid if the reader is ok.
 RightsChange read_rights_change(ByteReader& in);
 
-/// Returns true for a grant with an end, which programs of world format 12 and earlier cannot read.
+/// Returns true for a grant with an end, which programs of world format 11 and earlier cannot read.
 bool is_timed_grant(const RightsChange& change);
 
 /// Returns the ground that the change is about; nullopt for a change that has no place, which

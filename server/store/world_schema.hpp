@@ -38,7 +38,7 @@ inline constexpr std::uint32_t kWorldFormatOfClock = 10;
 /// programs of format 10 do not know. It has the tables of a library only if it has a library.
 inline constexpr std::uint32_t kWorldFormatOfGaps = 11;
 /// The format of a world in which a player was given a role for some time (kTimedGrantsKey): its log has
-/// records that programs of format 12 do not know.
+/// records that programs of format 11 do not know.
 inline constexpr std::uint32_t kWorldFormatOfTimedGrants = 12;
 /// The newest format that this program knows.
 inline constexpr std::uint32_t kWorldFormatNewest = kWorldFormatOfTimedGrants;
