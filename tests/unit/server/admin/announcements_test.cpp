@@ -92,7 +92,7 @@ TEST_CASE("a line comes once a day at its time, and not when the clock jumps",
   bench.tick(kMinuteUs);
   CHECK(bench.take().empty());
   bench.wall_us -= 3 * kMinuteUs;  // the clock was set back
-  bench.tick(kMinuteUs);
+  for (int minute = 0; minute < 5; ++minute) bench.tick(kMinuteUs);  // the time comes again
   CHECK(bench.take().empty());
   bench.wall_us += 2 * kDayOfTestUs;  // and far ahead
   bench.tick(kMinuteUs);
