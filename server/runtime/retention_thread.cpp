@@ -75,7 +75,8 @@ bool RetentionThread::run_now(std::uint64_t days) {
 bool RetentionThread::cancel() {
   {
     const std::lock_guard guard(mutex_);
-    if (!state_.is_running) return false;
+    if (!state_.is_running && !ordered_) return false;
+    ordered_.reset();
     is_cancelled_ = true;
   }
   changed_.notify_all();

@@ -58,7 +58,8 @@ class RetentionThread {
   /// Begins a run now, which keeps the edits of so many days, and plans again what it removes. It does
   /// not wait for a person's word. Returns false if a run is under way.
   bool run_now(std::uint64_t days);
-  /// Ends the run under way after its present part. Returns false if there is none.
+  /// Ends the run under way after its present part, or one that has not begun yet. Returns false if
+  /// there is none.
   bool cancel();
   /// A run pauses while it is held.
   void hold(bool is_held) { is_held_.store(is_held); }
