@@ -64,7 +64,7 @@ void set_spawn(const CommandCall& call, const SpawnCommand& command) {
   if (!is_in_world(at.x) || !is_in_world(at.y) || !is_in_world(at.z))
     return call.refuse("spawn: that place is outside the world");
   const auto& border = call.world().border();
-  if (border && !is_within(*border, voxel_of_point(at)))
+  if (border && !holds_voxel(*border, voxel_of_point(at)))
     return call.refuse("spawn: that place is beyond the border of this world: " +
                        border_text(*border));
   call.world().set_spawn(at, call.now);

@@ -126,7 +126,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   world_ = std::make_unique<WorldServer>(
       std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
-  if (config_.border && !is_within(*config_.border, voxel_of_point(store_.meta().spawn))) {
+  if (config_.border && !holds_voxel(*config_.border, voxel_of_point(store_.meta().spawn))) {
     logger("world").warn(
         "border: the spawn of the world lies outside ({}): players who join there cannot edit",
         border_text(*config_.border));

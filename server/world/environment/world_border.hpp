@@ -38,7 +38,7 @@ inline bool is_within(const WorldBorder& border, const VoxelBox& box) {
 }
 
 /// Returns true if a voxel of the world lies within the border.
-inline bool is_within(const WorldBorder& border, const VoxelPos& at) {
+inline bool holds_voxel(const WorldBorder& border, const VoxelPos& at) {
   return is_within(border, VoxelBox{at, {at.x + 1, at.y + 1, at.z + 1}});
 }
 
