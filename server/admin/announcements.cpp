@@ -142,8 +142,11 @@ std::string Announcements::list() const {
 }
 
 void Announcements::tick(TimeUs steady_us, TimeUs utc_us, const Say& say) {
-  const TimeUs since_us = std::exchange(ticked_utc_us_, utc_us).value_or(utc_us);
-  const bool is_steady = since_us <= utc_us && utc_us - since_us <= kClockJumpUsMax;
+  const TimeUs since_us = ticked_utc_us_.value_or(utc_us);
+  const bool is_steady =
+      utc_us - since_us <= kClockJumpUsMax && since_us - utc_us <= kClockJumpUsMax;
+  // A clock that is put back a little does not let a time of the day come again.
+  ticked_utc_us_ = is_steady ? std::max(since_us, utc_us) : utc_us;
   for (Entry& entry : entries_) {
     if (entry.what.every_us == 0) {
       if (is_steady && has_come(entry.what.at_ms, since_us, utc_us)) say(entry.what.text);

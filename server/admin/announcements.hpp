@@ -52,7 +52,8 @@ class Announcements {
   /// Returns a line for each announcement, with its number from 1.
   std::string list() const;
   /// Calls `say` for each line that is due. A line that was due while the clock jumped by more than
-  /// ten minutes, or before the first call, is left out. Cost: O(announcements).
+  /// ten minutes, or before the first call, is left out. If the clock is put back by ten minutes or
+  /// less, no time of the day comes again. Cost: O(announcements).
   void tick(TimeUs steady_us, TimeUs utc_us, const Say& say);
 
  private:
@@ -61,8 +62,8 @@ class Announcements {
     bool is_configured = false;
     std::optional<TimeUs> next_us;  // steady clock; nullopt: tick() has not seen it yet
   };
-  std::vector<Entry> entries_;  // those of the setting first
-  std::optional<TimeUs> ticked_utc_us_;
+  std::vector<Entry> entries_;           // those of the setting first
+  std::optional<TimeUs> ticked_utc_us_;  // the latest UTC time of tick() since the clock jumped
 };
 
 }  // namespace runstone

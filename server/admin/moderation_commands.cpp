@@ -273,7 +273,8 @@ std::string exempt_by_default(const RightsState& rights) {
          " administers (role default visitor changes it)";
 }
 
-/// Returns the connected players to whom a restriction applies.
+/// Returns the player of a restriction. For a restriction of addresses, returns the connected
+/// players to whom it applies.
 std::vector<PublicKey> present_players(const CommandCall& call, const RestrictionSubject& subject) {
   if (const auto* key = std::get_if<PublicKey>(&subject)) return {*key};
   std::vector<PublicKey> keys;
@@ -288,12 +289,11 @@ std::vector<PublicKey> present_players(const CommandCall& call, const Restrictio
 /// the sentence for the answer, or an empty text if no line was withdrawn.
 std::string withdraw_lines_of_gone(const CommandCall& call, const std::vector<PublicKey>& players) {
   People& people = call.world().people();
+  const std::vector<OnlinePlayer> online = people.online();
   std::size_t lines = 0;
   for (const PublicKey& key : players) {
-    const auto online = people.online();
-    const bool is_here =
-        std::ranges::any_of(online, [&](const OnlinePlayer& player) { return player.key == key; });
-    if (!is_here) lines += people.chat().withdraw(key);
+    if (std::ranges::find(online, key, &OnlinePlayer::key) == online.end())
+      lines += people.chat().withdraw(key);
   }
   return lines == 0 ? "" : "; lines of the chat withdrawn: " + std::to_string(lines);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <string>
@@ -11,6 +10,7 @@
 #include "common/core/key_text.hpp"
 #include "common/core/text.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/core/world_pos.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/rules/chat_text.hpp"
@@ -49,9 +49,7 @@ void take_report(const CommandCall& call, const std::string& text) {
   report.from = player->from;
   report.who = player->name + " #" + std::to_string(player->author) + " " + key_fingerprint(key);
   report.time_us = call.rights_time();
-  report.at = {static_cast<std::int32_t>(std::floor(player->at.x)),
-               static_cast<std::int32_t>(std::floor(player->at.y)),
-               static_cast<std::int32_t>(std::floor(player->at.z))};
+  report.at = voxel_of_point(player->at);
   report.text = text;
   const auto number = call.services.reports.add(report, call.now.steady_us);
   if (!number) return call.refuse("report: " + number.error());

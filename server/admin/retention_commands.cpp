@@ -7,6 +7,7 @@
 #include "common/core/utc_text.hpp"
 #include "server/admin/amount_text.hpp"
 #include "server/admin/command_call.hpp"
+#include "server/admin/rollback_commands.hpp"
 #include "server/rollback/count_text.hpp"
 #include "server/store/removed_history.hpp"
 
@@ -15,19 +16,11 @@ namespace {
 
 constexpr const char* kNoRetention = "this server cannot do that";
 
-/// The names of causes, in the order of their numbers.
-constexpr std::array<const char*, 12> kCauseWords = {
-    "of players",     "of the console", "of rollbacks", "of undos",
-    "of redos",       "of imports",     "of rights",    "with new materials",
-    "of the library", "of the clock",   "of textures",  "gaps"};
-
 std::string causes_text(const LogVolume& volume) {
   std::string text;
-  for (const auto& [cause, edits] : volume.causes) {
-    const auto place = static_cast<std::size_t>(cause);
-    if (place >= kCauseWords.size()) continue;
-    text += (text.empty() ? ", of them " : ", ") + std::to_string(edits) + " " + kCauseWords[place];
-  }
+  for (const auto& [cause, edits] : volume.causes)
+    text += (text.empty() ? ", of them by cause: " : ", ") + std::string(name_of(cause)) + " " +
+            std::to_string(edits);
   return text;
 }
 

@@ -6,11 +6,11 @@
 #include "server/store/removed_history.hpp"
 
 namespace runstone {
+
 std::string retention_state_text(const RetentionState& state) {
   std::string text = state.days == 0
                          ? "retention: off, every edit stays in the log (retention_days = 0)"
-                         : "retention: edits stay in the log for " + std::to_string(state.days) +
-                               (state.days == 1 ? " day" : " days");
+                         : "retention: edits stay in the log for " + counted(state.days, "day");
   if (state.head.version.seq > 0)
     text += "\nhistory: " + removed_up_to(state.head) +
             "; time travel, rollback and undo reach back to there";
@@ -21,7 +21,7 @@ std::string retention_state_text(const RetentionState& state) {
     if (!state.waits_for.empty()) text += "; it waits: " + state.waits_for;
   }
   text += "\nsince the start: " + counted(state.edits, "edit") + " removed in " +
-          std::to_string(state.parts) + (state.parts == 1 ? " part" : " parts");
+          counted(state.parts, "part");
   if (state.parts > 0)
     text += ", of " + std::to_string(state.writer_us / state.parts / 1000) +
             " ms of the log writer (" + std::to_string(state.writer_us_max / 1000) + " ms at most)";
@@ -29,8 +29,7 @@ std::string retention_state_text(const RetentionState& state) {
     text += "\nRETENTION WAITS: " + state.doubt +
             "; if that is right, `retention run DAYS anyway` removes the edits before it";
   if (!state.failure.empty())
-    text += "\nRETENTION FAILS, " + std::to_string(state.failures) +
-            (state.failures == 1 ? " time: " : " times: ") + state.failure;
+    text += "\nRETENTION FAILS, " + counted(state.failures, "time") + ": " + state.failure;
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/core/world_pos.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/admin/rights_change_text.hpp"
 #include "server/world/environment/world_border.hpp"
@@ -16,11 +17,6 @@ namespace {
 
 constexpr CommandRule kSpawnKeepers = needs(Right::administer);
 
-VoxelPos voxel_of_spawn(const WorldPos& at) {
-  const auto whole = [](double c) { return static_cast<std::int32_t>(std::floor(c)); };
-  return {whole(at.x), whole(at.y), whole(at.z)};
-}
-
 std::string spawn_text(const WorldPos& at) {
   return fmt::format("{:.1f} {:.1f} {:.1f}", at.x, at.y, at.z);
 }
@@ -29,7 +25,7 @@ std::string spawn_text(const WorldPos& at) {
 std::string kept_text(const CommandCall& call) {
   const Decided<ProtectedBox>* box = call.rights().find_box(kSpawnBox);
   if (box == nullptr) return "; no ground is kept clear (spawn keep-clear R)";
-  const VoxelPos at = voxel_of_spawn(call.world().spawn());
+  const VoxelPos at = voxel_of_point(call.world().spawn());
   const bool has_spawn = box->value.box.contains(at);
   return "; the box " + std::string(kSpawnBox) + " protects " + ground_text(box->value.box) +
          (has_spawn ? "" : ", which does not hold the spawn (spawn keep-clear R moves it)");
@@ -67,10 +63,8 @@ void set_spawn(const CommandCall& call, const SpawnCommand& command) {
   const auto is_in_world = [](double c) { return std::isfinite(c) && std::abs(c) < kWorldLimit; };
   if (!is_in_world(at.x) || !is_in_world(at.y) || !is_in_world(at.z))
     return call.refuse("spawn: that place is outside the world");
-  const VoxelPos voxel = voxel_of_spawn(at);
   const auto& border = call.world().border();
-  const VoxelBox one{voxel, {voxel.x + 1, voxel.y + 1, voxel.z + 1}};
-  if (border && !is_within(*border, one))
+  if (border && !holds_voxel(*border, voxel_of_point(at)))
     return call.refuse("spawn: that place is beyond the border of this world: " +
                        border_text(*border));
   call.world().set_spawn(at, call.now);
@@ -95,7 +89,7 @@ void keep_clear(const CommandCall& call, const std::int64_t& wanted) {
     if (old == nullptr) return call.refuse("no ground is kept clear");
     return call.change_rights(Unprotect{kSpawnBox}, "the ground around the spawn is free");
   }
-  const VoxelPos at = voxel_of_spawn(call.world().spawn());
+  const VoxelPos at = voxel_of_point(call.world().spawn());
   const auto low = [&](std::int32_t c) { return std::max(c - radius, -kWorldLimit); };
   const auto high = [&](std::int32_t c) { return std::min(c + radius + 1, kWorldLimit); };
   ProtectedBox box = old == nullptr ? ProtectedBox{} : old->value;

@@ -1,6 +1,5 @@
 #include "server/admin/world_lists.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -8,6 +7,7 @@
 #include "common/core/hex.hpp"
 #include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
+#include "common/core/world_pos.hpp"
 #include "protocol/codec/key_fingerprint.hpp"
 #include "server/rollback/count_text.hpp"
 
@@ -20,10 +20,6 @@ constexpr std::size_t kAbsentListed = 500;
 std::string line_of(const PlayerRow& row) {
   return row.name + " #" + std::to_string(row.author) + " " + key_fingerprint(row.key) + " key " +
          to_hex(row.key);
-}
-
-std::int32_t voxel_of(double coordinate) {
-  return static_cast<std::int32_t>(std::floor(coordinate));
 }
 
 }  // namespace
@@ -53,9 +49,8 @@ std::string player_list(const std::vector<PlayerRow>& stored,
   }
   for (const PlayerRow& row : visitors) lines[row.author] = line_of(row) + " left without an edit";
   for (const OnlinePlayer& player : present) {
-    lines[player.author] =
-        line_of({player.author, player.key, player.name}) + " is here, at " +
-        text_of(VoxelPos{voxel_of(player.at.x), voxel_of(player.at.y), voxel_of(player.at.z)});
+    lines[player.author] = line_of({player.author, player.key, player.name}) + " is here, at " +
+                           text_of(voxel_of_point(player.at));
   }
   std::size_t unlisted = stored.size();
   for (const PlayerRow& row : stored) unlisted -= lines.contains(row.author) ? 1 : 0;

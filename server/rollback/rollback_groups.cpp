@@ -102,13 +102,15 @@ std::map<Sequence, Sequence> undos_in_force(const Groups& groups) {
 
 }  // namespace
 
-StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max) {
+StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max,
+                                                        std::optional<AuthorId> author) {
   auto groups = read_groups(reader);
   if (!groups) return failure(groups.error());
   const std::map<Sequence, Sequence> taken_back_by = undos_in_force(*groups);
   std::vector<RollbackGroup> out;
   out.reserve(groups->rollbacks.size());
   for (auto& [key, group] : groups->rollbacks) {
+    if (author && group.op.author != *author) continue;
     if (const auto by = taken_back_by.find(group.id); by != taken_back_by.end())
       group.taken_back_by = by->second;
     out.push_back(std::move(group));

@@ -3,6 +3,7 @@
 // kGroupBegins. Its id is the sequence of its first edit. A player's undo or redo of an action is
 // no group: its client sequences are greater. All functions block on the disk.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "server/store/log_reader.hpp"
@@ -28,8 +29,9 @@ struct RollbackGroup {
 /// O(later edits with its cause).
 StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id);
 
-/// Returns the newest `count_max` groups with cause rollback, oldest first. Cost: O(edits with
-/// cause rollback or undo).
-StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max);
+/// Returns the newest `count_max` groups with cause rollback, oldest first. With an author, only the
+/// groups of this author count. Cost: O(edits with cause rollback or undo).
+StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max,
+                                                        std::optional<AuthorId> author);
 
 }  // namespace runstone

@@ -417,9 +417,16 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
     workers_.run(
         [found, is_foreign, seq, author, scope, should_continue = should_continue()](
             WorldReader& reader, const Generator&) {
+          if (scope == Scope::own) {
+            // One record tells it. The group may have many.
+            const auto first = reader.read_log(seq, seq, [&](const EditRecord& record) {
+              *is_foreign = record.op.author != author;
+              return false;
+            });
+            if (!first) *found = failure(first.error());
+            if (!first || *is_foreign) return;
+          }
           const auto group = rollback_group(reader, seq);
-          *is_foreign = group && scope == Scope::own && group->op.author != author;
-          if (*is_foreign) return;
           *found = group ? select_edits(reader, group->edits, should_continue)
                          : StoreResult<Selection>(failure(group.error()));
         },
@@ -463,15 +470,15 @@ void RollbackService::list(CommandReply reply, AuthorId author, Scope scope) {
   auto groups =
       std::make_shared<StoreResult<std::vector<RollbackGroup>>>(std::vector<RollbackGroup>());
   workers_.run(
-      [groups](WorldReader& reader, const Generator&) {
-        *groups = rollback_groups(reader, kListedMax);
+      [groups, of = scope == Scope::own ? std::optional(author) : std::nullopt](WorldReader& reader,
+                                                                                const Generator&) {
+        *groups = rollback_groups(reader, kListedMax, of);
       },
-      [groups, text, author, scope, reply](const std::string& error) {
+      [groups, text, reply](const std::string& error) {
         if (!error.empty()) return refuse(reply, "rollback list: " + error);
         if (!*groups) return refuse(reply, "rollback list: " + groups->error().message());
         std::string all = text;
         for (const RollbackGroup& group : **groups) {
-          if (scope == Scope::own && group.op.author != author) continue;
           all += "rollback " + std::to_string(group.id) + " " + utc_text(group.time_us) + " by " +
                  (group.op.author == 0 ? "the server" : "#" + std::to_string(group.op.author)) +
                  ": " + counted(group.edits.size(), "edit");

@@ -50,7 +50,7 @@ class CommandRunner final : private RollbackService::Workers {
   /// Returns false while rollbacks, undos, redos or placed builds are under way.
   bool is_idle() const { return rollback_.is_idle() && placing_.is_idle(); }
   /// Returns true while one of these jobs, or a preview of a rollback, reads the log of the past.
-  bool reads_log() const { return !is_idle() || rollback_.reads_log(); }
+  bool reads_log() const { return rollback_.reads_log() || !placing_.is_idle(); }
   /// Makes jobs and workers end soon. Call it when the server stops.
   void stop() { rollback_.stop(); }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/runtime/logging.hpp"
+#include "server/runtime/writer_answer.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -22,14 +23,6 @@ constexpr Sequence kPortionEdits = 1024;
 // earlier keyframe.
 constexpr int kOutrunsMax = 100;
 constexpr std::chrono::seconds kOutrunRest{1};
-
-/// The result of a slice that the writer saves. It is shared with the writer, which may answer
-/// after the wait has ended.
-struct Answer {
-  std::mutex mutex;
-  std::condition_variable arrived;
-  std::optional<StoreResult<void>> result;
-};
 
 }  // namespace
 
@@ -78,19 +71,13 @@ bool KeyframeThread::rest(std::chrono::nanoseconds time) {
 
 StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
                                        const std::optional<Keyframe>& keyframe) {
-  auto answer = std::make_shared<Answer>();
-  const bool taken =
-      writer_.save_keyframe(std::move(chunks), keyframe, [answer](StoreResult<void> result) {
-        const std::lock_guard guard(answer->mutex);
-        answer->result = std::move(result);
-        answer->arrived.notify_one();
-      });
-  if (!taken)
-    return failure(
-        StoreError{StoreError::Kind::cancelled, place_, "keyframe", "the log writer has ended"});
-  std::unique_lock lock(answer->mutex);
-  answer->arrived.wait(lock, [&] { return answer->result.has_value(); });
-  return *answer->result;
+  const auto answer = std::make_shared<WriterAnswer<void>>();
+  const bool is_taken =
+      writer_.save_keyframe(std::move(chunks), keyframe,
+                            [answer](StoreResult<void> result) { answer->set(std::move(result)); });
+  if (is_taken) return answer->wait();
+  return failure(
+      StoreError{StoreError::Kind::cancelled, place_, "keyframe", "the log writer has ended"});
 }
 
 void KeyframeThread::run() {

@@ -6,6 +6,7 @@
 
 #include "common/os/low_priority.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/writer_answer.hpp"
 #include "server/store/removed_history.hpp"
 
 namespace runstone {
@@ -15,26 +16,6 @@ using RetentionClock = std::chrono::steady_clock;
 
 // A part that gives space back takes about a millisecond for 64 pages.
 constexpr std::uint32_t kPagesBack = 256;
-
-/// The answer of the log writer to one job. The writer shares it, because it may answer after the
-/// wait has ended.
-template <class T>
-struct WriterAnswer {
-  std::mutex mutex;
-  std::condition_variable arrived;
-  std::optional<StoreResult<T>> result;
-
-  void set(StoreResult<T> value) {
-    const std::lock_guard guard(mutex);
-    result = std::move(value);
-    arrived.notify_one();
-  }
-  StoreResult<T> wait() {
-    std::unique_lock lock(mutex);
-    arrived.wait(lock, [this] { return result.has_value(); });
-    return *result;
-  }
-};
 
 }  // namespace
 
@@ -75,7 +56,8 @@ bool RetentionThread::run_now(std::uint64_t days) {
 bool RetentionThread::cancel() {
   {
     const std::lock_guard guard(mutex_);
-    if (!state_.is_running) return false;
+    if (!state_.is_running && !ordered_) return false;
+    ordered_.reset();
     is_cancelled_ = true;
   }
   changed_.notify_all();

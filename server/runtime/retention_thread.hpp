@@ -58,7 +58,8 @@ class RetentionThread {
   /// Begins a run now, which keeps the edits of so many days. The run makes a new plan. It does not
   /// wait for a confirmation. Returns false if a run is under way.
   bool run_now(std::uint64_t days);
-  /// Ends the run under way after its present part. Returns false if there is none.
+  /// Ends the run under way after its present part, or one that has not begun yet. Returns false if
+  /// there is none.
   bool cancel();
   /// Pauses the run while `is_held` is true.
   void hold(bool is_held) { is_held_.store(is_held); }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <span>
 
 #include "common/core/version.hpp"
+#include "common/core/world_pos.hpp"
 #include "common/os/clock_service.hpp"
 #include "common/os/process_memory.hpp"
 #include "common/os/steady_clock.hpp"
@@ -126,11 +126,7 @@ Result<void, std::string> ServerCore::make_world(WorldStart& start) {
   world_ = std::make_unique<WorldServer>(
       std::move(world_config), start, environment_,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
-  const WorldPos& spawn = store_.meta().spawn;
-  const auto whole = [](double at) { return static_cast<std::int32_t>(std::floor(at)); };
-  const VoxelPos spawn_voxel{whole(spawn.x), whole(spawn.y), whole(spawn.z)};
-  const VoxelBox spawn_box{spawn_voxel, {spawn_voxel.x + 1, spawn_voxel.y + 1, spawn_voxel.z + 1}};
-  if (config_.border && !is_within(*config_.border, spawn_box)) {
+  if (config_.border && !holds_voxel(*config_.border, voxel_of_point(store_.meta().spawn))) {
     logger("world").warn(
         "border: the spawn of the world lies outside ({}): players who join there cannot edit",
         border_text(*config_.border));
@@ -373,9 +369,15 @@ std::string ServerCore::all_counters(std::uint64_t memory_bytes) const {
 }
 
 RetentionState ServerCore::retention_state() const {
-  if (log_) return log_->retention().state();
   RetentionState state;
   state.days = running_.retention_days;
+  if (log_) state = log_->retention().state();
+  // A log writer counts from its own start, which a takeover makes anew.
+  const LogWriter::Counters all = log_counters_now();
+  state.edits = all.folded_edits;
+  state.parts = all.folds;
+  state.writer_us = all.fold_us;
+  state.writer_us_max = all.fold_us_max;
   return state;
 }
 
@@ -387,6 +389,10 @@ LogWriter::Counters ServerCore::log_counters_now() const {
   all.records += now.records;
   all.snapshots += now.snapshots;
   all.keyframes += now.keyframes;
+  all.folds += now.folds;
+  all.folded_edits += now.folded_edits;
+  all.fold_us += now.fold_us;
+  all.fold_us_max = std::max(all.fold_us_max, now.fold_us_max);
   all.queued_records = now.queued_records;
   return all;
 }

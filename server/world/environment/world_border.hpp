@@ -38,6 +38,11 @@ inline bool is_within(const WorldBorder& border, const VoxelBox& box) {
          is_inside(x, z);
 }
 
+/// Returns true if a voxel of the world lies within the border.
+inline bool holds_voxel(const WorldBorder& border, const VoxelPos& at) {
+  return is_within(border, VoxelBox{at, {at.x + 1, at.y + 1, at.z + 1}});
+}
+
 /// Returns text such as "x -500 to 499, z -500 to 499", both included, or
 /// "500 voxels around x 0, z 0". The heights are left out if all of them are inside.
 inline std::string border_text(const WorldBorder& border) {

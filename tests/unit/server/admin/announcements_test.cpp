@@ -91,8 +91,8 @@ TEST_CASE("a line comes once a day at its time, and not when the clock jumps",
   CHECK(bench.take() == Said{"ten past"});
   bench.tick(kMinuteUs);
   CHECK(bench.take().empty());
-  bench.wall_us -= 3 * kMinuteUs;  // the clock was set back
-  bench.tick(kMinuteUs);
+  bench.wall_us -= 3 * kMinuteUs;                                    // the clock was set back
+  for (int minute = 0; minute < 5; ++minute) bench.tick(kMinuteUs);  // the time comes again
   CHECK(bench.take().empty());
   bench.wall_us += 2 * kDayOfTestUs;  // and far ahead
   bench.tick(kMinuteUs);

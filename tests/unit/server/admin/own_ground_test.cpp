@@ -79,6 +79,8 @@ TEST_CASE("the owner of ground takes edits of others back there, and nothing bes
   CHECK(newest.op.author == kBuilder);
 
   const std::string id = std::to_string(newest.version.seq);
+  CHECK(contains(bench.player(kBuilder, "rollback list").text, "rollback " + id + " "));
+  CHECK_FALSE(contains(bench.player(kGriefer, "rollback list").text, "rollback " + id));
   CHECK(contains(bench.player(kGriefer, "rollback undo " + id).text, "is not one of yours"));
   // If two undos are given at once, the second one is refused.
   bench.answers.clear();

@@ -65,8 +65,8 @@ TEST_CASE("a plan as text names what goes, what stays, the bytes and the reach",
           "[admin][retention]") {
   CHECK(
       retention_plan_text(sample_plan()) ==
-      "goes        900 edits up to seq=900 (2023-11-14T22:13:20Z), of them 4 of rollbacks, 1 of "
-      "imports; 2 keyframes\n"
+      "goes        900 edits up to seq=900 (2023-11-14T22:13:20Z), of them by cause: rollback 4, "
+      "import 1; 2 keyframes\n"
       "stays       100 edits of 30 days before the newest one (2023-12-19T15:33:20Z); the ground as "
       "it is; rights, materials, shapes, textures, clock, names, watermarks and the library\n"
       "bytes       about 82.0 KiB of edits and 4.8 KiB of keyframes; the base takes at most 8.7 KiB "
