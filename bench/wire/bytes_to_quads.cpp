@@ -3,15 +3,17 @@
 #include <fmt/ostream.h>
 #include <zstd.h>
 
-#include <map>
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "bench/harness/clocks.hpp"
 #include "bench/harness/machine_json.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/wire/chunks_beside.hpp"
 #include "bench/worlds/measured_worlds.hpp"
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -35,7 +37,7 @@ struct StageTimes {
 /// A chunk in both forms, with what its meshes need of its neighbours.
 struct WireChunk {
   const Volume* volume = nullptr;
-  std::array<std::optional<std::size_t>, kDirectionCount> beside;  // chunks of the same world
+  IndicesBeside beside;  // chunks of the same world
 
   Bytes packed;
   ChunkBorders borders;
@@ -77,10 +79,11 @@ std::optional<WireChunk> wire_chunk(const Volume& volume, const VisibilityTable&
   return out;
 }
 
-/// Returns the chunks of a world that are not uniform.
+/// Returns the chunks of a world that are not uniform. Counts those with too many materials for a
+/// dense form in left_out instead.
 std::vector<WireChunk> chunks_of(const MeasuredWorld& world, std::size_t& left_out) {
-  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::size_t> places;
   std::vector<WireChunk> out;
+  std::vector<const Volume*> volumes;
   for (const Volume& volume : world.volumes) {
     if (volume.scene.chunk.is_uniform()) continue;
     auto chunk = wire_chunk(volume, *world.visibility);
@@ -88,22 +91,11 @@ std::vector<WireChunk> chunks_of(const MeasuredWorld& world, std::size_t& left_o
       ++left_out;
       continue;
     }
-    places[{volume.origin.x, volume.origin.y, volume.origin.z}] = out.size();
+    volumes.push_back(&volume);
     out.push_back(*std::move(chunk));
   }
-  for (WireChunk& chunk : out) {
-    for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      const auto& beside = chunk.volume->scene.neighbours[d];
-      if (!beside) continue;
-      const ChunkCoord step = neighbour({}, static_cast<Direction>(d));
-      const auto edge = static_cast<std::int32_t>(chunk.volume->edge);
-      const VoxelPos origin = chunk.volume->origin;
-      const auto found = places.find(
-          {origin.x + edge * step.x, origin.y + edge * step.y, origin.z + edge * step.z});
-      if (found != places.end() && out[found->second].volume->scene.chunk == *beside)
-        chunk.beside[d] = found->second;
-    }
-  }
+  const std::vector<IndicesBeside> beside = indices_beside(volumes);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].beside = beside[i];
   return out;
 }
 

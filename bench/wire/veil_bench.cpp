@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include "bench/harness/clocks.hpp"
 #include "bench/harness/machine_json.hpp"
 #include "bench/harness/statistics.hpp"
+#include "bench/wire/chunks_beside.hpp"
 #include "bench/worlds/measured_worlds.hpp"
 #include "common/core/assert.hpp"
 #include "common/materials/veil_visibility.hpp"
@@ -37,7 +35,7 @@ constexpr std::size_t kForms = 3;  // plain, veiled, turned
 
 struct VeilChunk {
   const Volume* volume = nullptr;
-  std::array<std::optional<std::size_t>, kDirectionCount> beside;  // chunks of the same world
+  IndicesBeside beside;  // chunks of the same world
   std::array<VeilForm, kForms> forms;
   std::vector<double> veil_us, uncover_us;
 };
@@ -46,25 +44,15 @@ double veil_us_since(std::uint64_t start) { return static_cast<double>(now_ns() 
 
 /// Returns the chunks of a world that are not uniform, without forms.
 std::vector<VeilChunk> veil_chunks_of(const MeasuredWorld& world) {
-  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::size_t> places;
-  std::vector<VeilChunk> out;
+  std::vector<const Volume*> volumes;
   for (const Volume& volume : world.volumes) {
-    if (volume.scene.chunk.is_uniform()) continue;
-    places[{volume.origin.x, volume.origin.y, volume.origin.z}] = out.size();
-    out.emplace_back().volume = &volume;
+    if (!volume.scene.chunk.is_uniform()) volumes.push_back(&volume);
   }
-  for (VeilChunk& chunk : out) {
-    for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      const auto& beside = chunk.volume->scene.neighbours[d];
-      if (!beside) continue;
-      const ChunkCoord step = neighbour({}, static_cast<Direction>(d));
-      const auto edge = static_cast<std::int32_t>(chunk.volume->edge);
-      const VoxelPos origin = chunk.volume->origin;
-      const auto found = places.find(
-          {origin.x + edge * step.x, origin.y + edge * step.y, origin.z + edge * step.z});
-      if (found != places.end() && out[found->second].volume->scene.chunk == *beside)
-        chunk.beside[d] = found->second;
-    }
+  const std::vector<IndicesBeside> beside = indices_beside(volumes);
+  std::vector<VeilChunk> out(volumes.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].volume = volumes[i];
+    out[i].beside = beside[i];
   }
   return out;
 }

@@ -2,11 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -25,103 +23,120 @@ using namespace runstone::c_interface;
 
 namespace {
 
-/// An event as a program in C sees it.
-struct EventView {
-  runstone_event fields{};
+std::uint32_t flag_if(bool is_set, std::uint32_t flag) { return is_set ? flag : 0; }
+
+runstone_event event_of_kind(std::uint32_t kind) {
+  runstone_event out{};
+  out.kind = kind;
+  return out;
+}
+runstone_event event_of_chunk(std::uint32_t kind, const ChunkCoord& at) {
+  runstone_event out = event_of_kind(kind);
+  out.at = {at.x, at.y, at.z};
+  return out;
+}
+runstone_event event_of_edit(std::uint32_t kind, EditNumber edit) {
+  runstone_event out = event_of_kind(kind);
+  out.edit = edit;
+  return out;
+}
+
+// fields_of() allocates nothing, so that no event is lost if memory runs out.
+
+runstone_event fields_of(const WorldOpened& event) {
+  runstone_event out = event_of_kind(RUNSTONE_EVENT_WORLD_OPENED);
+  out.flags = flag_if(event.is_another, RUNSTONE_FLAG_ANOTHER_WORLD) |
+              flag_if(event.is_first_contact, RUNSTONE_FLAG_FIRST_CONTACT);
+  return out;
+}
+runstone_event fields_of(const ConnectionLost& event) {
+  runstone_event out = event_of_kind(RUNSTONE_EVENT_CONNECTION_LOST);
+  out.flags = flag_if(event.is_final, RUNSTONE_FLAG_FINAL) |
+              flag_if(event.lacks_password, RUNSTONE_FLAG_LACKS_PASSWORD);
+  return out;
+}
+runstone_event fields_of(const ChunkChanged& event) {
+  runstone_event out = event_of_chunk(RUNSTONE_EVENT_CHUNK_CHANGED, event.source.at);
+  out.detail = static_cast<std::uint32_t>(event.cause);
+  return out;
+}
+runstone_event fields_of(const ChunkRemoved& event) {
+  return event_of_chunk(RUNSTONE_EVENT_CHUNK_REMOVED, event.at);
+}
+runstone_event fields_of(const ChunkMissing& event) {
+  return event_of_chunk(RUNSTONE_EVENT_CHUNK_MISSING, event.at);
+}
+runstone_event fields_of(const EditConfirmed& event) {
+  runstone_event out = event_of_edit(RUNSTONE_EVENT_EDIT_CONFIRMED, event.edit);
+  out.sequence = event.sequence;
+  return out;
+}
+runstone_event fields_of(const EditRejected& event) {
+  return event_of_edit(RUNSTONE_EVENT_EDIT_REJECTED, event.edit);
+}
+runstone_event fields_of(const EditDurable& event) {
+  return event_of_edit(RUNSTONE_EVENT_EDIT_DURABLE, event.edit);
+}
+runstone_event fields_of(const EditUnseen& event) {
+  return event_of_edit(RUNSTONE_EVENT_EDIT_UNSEEN, event.edit);
+}
+runstone_event fields_of(const OthersEdit& event) {
+  runstone_event out = event_of_kind(RUNSTONE_EVENT_OTHERS_EDIT);
+  out.author = event.author;
+  out.sequence = event.sequence;
+  return out;
+}
+runstone_event fields_of(const ChatReceived& event) {
+  runstone_event out = event_of_kind(RUNSTONE_EVENT_CHAT);
+  out.detail = static_cast<std::uint32_t>(event.from);
+  out.utc_us = event.utc_us;
+  return out;
+}
+runstone_event fields_of(const CommandDone& event) {
+  runstone_event out = event_of_kind(RUNSTONE_EVENT_COMMAND_DONE);
+  out.flags = flag_if(event.is_ok, RUNSTONE_FLAG_OK) |
+              flag_if(event.is_answer_lost, RUNSTONE_FLAG_ANSWER_LOST);
+  return out;
+}
+runstone_event fields_of(const MaterialsChanged&) {
+  return event_of_kind(RUNSTONE_EVENT_MATERIALS_CHANGED);
+}
+runstone_event fields_of(const PlayersChanged&) {
+  return event_of_kind(RUNSTONE_EVENT_PLAYERS_CHANGED);
+}
+runstone_event fields_of(const ClientWarning&) { return event_of_kind(RUNSTONE_EVENT_WARNING); }
+
+struct EventTexts {
   std::string text, more;
 };
 
-std::uint32_t flag_if(bool is_set, std::uint32_t flag) { return is_set ? flag : 0; }
-
-void set_place(EventView& out, const ChunkCoord& at) { out.fields.at = {at.x, at.y, at.z}; }
-
-void view(const WorldOpened& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_WORLD_OPENED;
-  out.fields.flags = flag_if(event.is_another, RUNSTONE_FLAG_ANOTHER_WORLD) |
-                     flag_if(event.is_first_contact, RUNSTONE_FLAG_FIRST_CONTACT);
-}
-void view(const ConnectionLost& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_CONNECTION_LOST;
-  out.fields.flags = flag_if(event.is_final, RUNSTONE_FLAG_FINAL) |
-                     flag_if(event.lacks_password, RUNSTONE_FLAG_LACKS_PASSWORD);
-  out.text = event.headline;
-  out.more = event.detail;
-}
-void view(const ChunkChanged& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_CHUNK_CHANGED;
-  out.fields.detail = static_cast<std::uint32_t>(event.cause);
-  set_place(out, event.source.at);
-}
-void view(const ChunkRemoved& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_CHUNK_REMOVED;
-  set_place(out, event.at);
-}
-void view(const ChunkMissing& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_CHUNK_MISSING;
-  set_place(out, event.at);
-}
-void view(const EditConfirmed& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_EDIT_CONFIRMED;
-  out.fields.edit = event.edit;
-  out.fields.sequence = event.sequence;
-}
-void view(const EditRejected& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_EDIT_REJECTED;
-  out.fields.edit = event.edit;
-  out.text = event.text;
-  out.more = event.reason;
-}
-void view(const EditDurable& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_EDIT_DURABLE;
-  out.fields.edit = event.edit;
-}
-void view(const EditUnseen& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_EDIT_UNSEEN;
-  out.fields.edit = event.edit;
-}
-void view(const OthersEdit& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_OTHERS_EDIT;
-  out.fields.author = event.author;
-  out.fields.sequence = event.sequence;
-}
-void view(const ChatReceived& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_CHAT;
-  out.fields.detail = static_cast<std::uint32_t>(event.from);
-  out.fields.utc_us = event.utc_us;
-  out.text = event.text;
-  out.more = event.name;
-}
-void view(const CommandDone& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_COMMAND_DONE;
-  out.fields.flags = flag_if(event.is_ok, RUNSTONE_FLAG_OK) |
-                     flag_if(event.is_answer_lost, RUNSTONE_FLAG_ANSWER_LOST);
+EventTexts texts_of(const ConnectionLost& event) { return {event.headline, event.detail}; }
+EventTexts texts_of(const EditRejected& event) { return {event.text, event.reason}; }
+EventTexts texts_of(const ChatReceived& event) { return {event.text, event.name}; }
+EventTexts texts_of(const CommandDone& event) {
+  EventTexts out;
   for (const std::string& line : event.lines) {
     if (!out.text.empty()) out.text += '\n';
     out.text += line;
   }
-}
-void view(const MaterialsChanged&, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_MATERIALS_CHANGED;
-}
-void view(const PlayersChanged&, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_PLAYERS_CHANGED;
-}
-void view(const ClientWarning& event, EventView& out) {
-  out.fields.kind = RUNSTONE_EVENT_WARNING;
-  out.text = event.text;
-}
-
-EventView view_of(const WorldEvent& event) {
-  EventView out;
-  std::visit([&out](const auto& of) { view(of, out); }, event);
   return out;
+}
+EventTexts texts_of(const ClientWarning& event) { return {event.text, {}}; }
+template <class Event>
+EventTexts texts_of(const Event&) {
+  static_assert(!requires(const Event& event) { event.text; });
+  return {};
 }
 
 const WorldEvent& event_at(runstone_client* client, std::size_t index) {
-  const auto& drained = live(client, "client").drained;
+  const std::span<const WorldEvent> drained = live(client, "client").drained();
   if (index >= drained.size())
     refuse(RUNSTONE_NOT_FOUND, "index", "is not that of an event of the last call that drained");
   return drained[index];
+}
+
+EventTexts texts_at(runstone_client* client, std::size_t index) {
+  return std::visit([](const auto& of) { return texts_of(of); }, event_at(client, index));
 }
 
 const MeshSource& source_at(runstone_client* client, std::size_t index) {
@@ -148,35 +163,26 @@ runstone_status runstone_client_drain(runstone_client* client, size_t chunks_max
     if (capacity == 0) refuse(RUNSTONE_BAD_ARGUMENT, "capacity", "is 0");
     if (event_size < sizeof(runstone_event) || event_size % alignof(runstone_event) != 0)
       refuse(RUNSTONE_BAD_ARGUMENT, "event_size", "is not the size of the struct");
-    if (of.waiting.empty()) {
-      auto events = of.client.drain(chunks_max);
-      std::move(events.begin(), events.end(), std::back_inserter(of.waiting));
-    }
-    const std::size_t fitting = std::min(capacity, of.waiting.size());
-    of.drained.clear();
-    of.drained.reserve(fitting);
-    auto* const bytes = reinterpret_cast<std::uint8_t*>(out);
-    for (std::size_t i = 0; i < fitting; ++i) {
-      of.drained.push_back(std::move(of.waiting.front()));
-      of.waiting.pop_front();
-      runstone_event fields = view_of(of.drained.back()).fields;
+    const std::span<const WorldEvent> drained = of.drain(chunks_max, capacity);
+    auto* bytes = reinterpret_cast<std::uint8_t*>(out);
+    for (const WorldEvent& event : drained) {
+      runstone_event fields = std::visit([](const auto& each) { return fields_of(each); }, event);
       fields.struct_size = static_cast<std::uint32_t>(event_size);
-      std::memcpy(bytes + i * event_size, &fields, sizeof fields);
+      std::memcpy(bytes, &fields, sizeof fields);
+      bytes += event_size;
     }
-    *count = fitting;
+    *count = drained.size();
   });
 }
 
 runstone_status runstone_client_event_text(runstone_client* client, size_t index, char* out,
                                            size_t capacity, size_t* count) {
-  return answer(
-      [&] { write_event_text(view_of(event_at(client, index)).text, out, capacity, count); });
+  return answer([&] { write_event_text(texts_at(client, index).text, out, capacity, count); });
 }
 
 runstone_status runstone_client_event_more(runstone_client* client, size_t index, char* out,
                                            size_t capacity, size_t* count) {
-  return answer(
-      [&] { write_event_text(view_of(event_at(client, index)).more, out, capacity, count); });
+  return answer([&] { write_event_text(texts_at(client, index).more, out, capacity, count); });
 }
 
 runstone_status runstone_client_event_chunks(runstone_client* client, size_t index,

@@ -67,16 +67,18 @@ void CarriedSession::on_received(LinkReceived received) {
   const Welcome& welcome = *session_.welcome();
   if (world_ && *world_ != welcome.world_id) {
     material_count_ = 0;
-    has_moved_ = false;
+    moved_to_.reset();
     waiting_again_.clear();
     numbers_.clear();
   }
   world_ = welcome.world_id;
   update_materials();
-  if (!has_moved_) {
+  if (moved_to_) {
+    centre_view(*moved_to_);
+  } else {
     const auto& place = session_.place();
     move(place ? place->at : welcome.spawn, 0, 0);
-    has_moved_ = false;
+    moved_to_.reset();
   }
   note(CarriedNoticeKind::opened, 0, "");
 }
@@ -202,7 +204,11 @@ void CarriedSession::move(const WorldPos& eye, double yaw, double pitch) {
   pose.yaw = static_cast<std::uint16_t>(std::llround((turns - std::floor(turns)) * 65536) & 65535);
   pose.pitch = static_cast<std::int16_t>(std::lround(std::clamp(pitch / kPi, -0.5, 0.5) * 32767));
   session_.set_pose(pose);
-  has_moved_ = true;
+  moved_to_ = eye;
+  centre_view(eye);
+}
+
+void CarriedSession::centre_view(const WorldPos& eye) {
   const std::int32_t edge = session_.replica().chunk_edge();
   if (edge == 0) return;
   const auto voxel = [](double along) { return static_cast<std::int32_t>(std::floor(along)); };

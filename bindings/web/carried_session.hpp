@@ -83,7 +83,8 @@ class CarriedSession final : private MessageSink {
   /// sent.
   bool wants_close() const;
 
-  /// Moves the player, and the view with it. Requires a position within the world.
+  /// Moves the player, and the view with it. Before a world is open, the view moves when it opens.
+  /// Requires a position within the world.
   void move(const WorldPos& eye, double yaw, double pitch);
   /// Shows an edit at once and sends it. Fails as ClientSession::offer() does, with words.
   Result<ClientSequence, std::string> edit(const EditDescriptor& edit, TimeUs now_us);
@@ -110,6 +111,8 @@ class CarriedSession final : private MessageSink {
   void on_received(LinkReceived received) override;
   void queue_outgoing();
   void take_changes();
+  /// Moves the view to the chunk of the eye. Does nothing before the first world.
+  void centre_view(const WorldPos& eye);
   /// Returns the number of an edit: the sequence with which it was offered first.
   ClientSequence number_of(ClientSequence seq) const;
   void note_outcomes(const ReplicaChanges& changes);
@@ -129,7 +132,7 @@ class CarriedSession final : private MessageSink {
 
   std::uint64_t opened_ = 0;  // connect_count() of the newest notice
   std::optional<WorldId> world_;
-  bool has_moved_ = false;  // move() was called for this world
+  std::optional<WorldPos> moved_to_;  // by the last move() for this world, or before there was one
   std::size_t material_count_ = 0;
   std::uint64_t shapes_number_ = 0;
   MeshMaterials materials_;

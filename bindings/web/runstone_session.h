@@ -70,7 +70,8 @@ RUNSTONE_API runstone_status runstone_session_get_material(const runstone_sessio
                                                            uint32_t material,
                                                            runstone_session_material* out,
                                                            const char** name, size_t* name_bytes);
-/* Moves the eye. Yaw 0 looks along +z and grows towards +x; pitch is positive upward; radians. */
+/* Moves the eye, and the view with it. Before the world is open, the view moves when it opens. Yaw 0
+ * looks along +z and grows towards +x; pitch is positive upward; radians. */
 RUNSTONE_API runstone_status runstone_session_move(runstone_session* session, runstone_vec eye,
                                                    double yaw, double pitch);
 /* Shows an edit at once and sends it. *number names the edit in later notices. */

@@ -9,7 +9,10 @@ std::string preview_words(const ToolBox& box) {
   const EditPreview& edits = box.preview();
   const BuildPreview& builds = box.build_preview();
   const std::uint64_t set = edits.placed_voxels() + builds.placed_voxels();
-  if (box.previews_choice()) return "selects " + std::to_string(set) + " voxels";
+  if (const auto choice = box.previewed_choice()) {
+    const char* const verb = *choice == SelectMode::remove ? "deselects " : "selects ";
+    return verb + std::to_string(set) + " voxels";
+  }
   if (box.previews_copy()) return "copies " + std::to_string(set) + " voxels";
   const std::uint64_t removed = edits.removed_voxels() + builds.removed_voxels();
   // Builds are not compared with the world: unless they are differences, their numbers are upper

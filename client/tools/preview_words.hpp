@@ -6,8 +6,8 @@
 
 namespace runstone {
 
-/// Returns how many voxels the next click sets, removes or copies, as its preview counts them.
-/// Requires a preview that is complete.
+/// Returns how many voxels the next click sets, removes, copies, selects or deselects, as its
+/// preview counts them. Requires a preview that is complete.
 std::string preview_words(const ToolBox& box);
 
 }  // namespace runstone

@@ -822,7 +822,7 @@ void ToolBox::show(ToolAction made, std::int32_t chunk_edge) {
     builds.push_back({paste.build, paste.at, false, paste.is_difference});
   // Voxels that are only copied are shown where they are.
   previews_copy_ = made.copied && made.empty();
-  previews_choice_ = made.chosen != nullptr;
+  previewed_choice_ = made.chosen ? std::optional(made.chosen_mode) : std::nullopt;
   if (previews_copy_) builds.push_back({made.copied->build, made.copied->at});
   // A box of more chunks than a preview compares is drawn as a build of its material.
   std::erase_if(made.edits, [&](const EditDescriptor& edit) {

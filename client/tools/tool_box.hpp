@@ -198,8 +198,12 @@ class ToolBox {
   const std::vector<GhostChunk>& ghosts() const { return ghosts_; }
   /// Returns true if the preview shows voxels that the next click only copies.
   bool previews_copy() const { return previews_copy_; }
-  /// Returns true if the preview shows voxels that the next click selects.
-  bool previews_choice() const { return previews_choice_; }
+  /// Returns what the next click does with the selection, if the preview shows voxels that it
+  /// selects or deselects.
+  std::optional<SelectMode> previewed_choice() const {
+    return previewed_choice_ ? std::optional(held_mode_.value_or(*previewed_choice_))
+                             : std::nullopt;
+  }
   /// Returns why the next click would be refused, or an empty text.
   const std::string& preview_refusal() const { return preview_refusal_; }
 
@@ -282,7 +286,8 @@ class ToolBox {
   BuildPreview selected_preview_;  // of the selected voxels that are no boxes
   PatternPreview pattern_;
   std::vector<GhostChunk> ghosts_;
-  bool previews_copy_ = false, previews_choice_ = false;
+  bool previews_copy_ = false;
+  std::optional<SelectMode> previewed_choice_;  // without a held key
   std::string preview_refusal_;
   unsigned refused_calls_ = 0;  // of step_preview() with a refusal
   ReplicaMark planned_on_;      // the replica when the preview was last planned

@@ -236,28 +236,27 @@ py::object event_cause(const EventSelf& self) {
   }
 }
 
-py::object event_edit(const EventSelf& self) {
+/// Returns the number that `field` reads, or None for events without it.
+template <class Field>
+py::object number_or_none(const WorldEvent& event, Field field) {
   return std::visit(
-      [](const auto& of) -> py::object {
-        if constexpr (requires { of.edit; }) {
-          return py::int_(of.edit);
+      [&](const auto& of) -> py::object {
+        if constexpr (requires { field(of); }) {
+          return py::int_(field(of));
         } else {
           return py::none();
         }
       },
-      self->event);
+      event);
+}
+
+py::object event_edit(const EventSelf& self) {
+  return number_or_none(self->event, [](const auto& of) -> decltype(of.edit) { return of.edit; });
 }
 
 py::object event_sequence(const EventSelf& self) {
-  return std::visit(
-      [](const auto& of) -> py::object {
-        if constexpr (requires { of.sequence; }) {
-          return py::int_(of.sequence);
-        } else {
-          return py::none();
-        }
-      },
-      self->event);
+  return number_or_none(self->event,
+                        [](const auto& of) -> decltype(of.sequence) { return of.sequence; });
 }
 
 py::list event_chunks(const EventSelf& self) {

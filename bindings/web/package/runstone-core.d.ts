@@ -209,7 +209,10 @@ export class Session {
   readonly materials: readonly Material[];
   /** The id of a material of this name. */
   material(name: string): number;
-  /** Moves the eye, and the view with it. Yaw 0 looks along +z and grows towards +x; radians. */
+  /**
+   * Moves the eye, and the view with it. Before the world is open, the view moves when it opens. Yaw 0 looks along +z
+   * and grows towards +x; radians.
+   */
   move(eye: Vec, yaw?: number, pitch?: number): void;
   /**
    * Makes meshes that are out of date. `mesh` is valid until the next one. null: remove the mesh of

@@ -183,7 +183,8 @@ export class Session {
     return found.id;
   }
 
-  // Moves the eye, and the view with it. Yaw 0 looks along +z and grows towards +x; radians.
+  // Moves the eye, and the view with it. Before the world is open, the view moves when it opens. Yaw 0 looks along +z
+  // and grows towards +x; radians.
   move(eye, yaw = 0, pitch = 0) {
     use((room) => call("session_move", this.#handle.at, room.vec(eye), yaw, pitch));
   }

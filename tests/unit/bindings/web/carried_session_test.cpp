@@ -205,6 +205,17 @@ TEST_CASE("a carried session drops the meshes of chunks that leave its view", "[
   CHECK(bench.meshes().size() == 5);
 }
 
+TEST_CASE("a carried session that was moved before its world opens has its view there",
+          "[web_core]") {
+  CarriedBench bench;
+  bench.session.move({1000.5, 0.5, 0.5}, 0, 0);
+  bench.open();
+  bench.session.step(bench.now += 10'000);
+  const auto views = session_bench::take<View>(bench.sent());
+  REQUIRE(!views.empty());
+  CHECK(views.back().centre == chunk_of({1000, 0, 0}, session_bench::kEdge));
+}
+
 TEST_CASE("a carried session says why a connection ended, and begins another one", "[web_core]") {
   CarriedBench bench;
   REQUIRE_FALSE(bench.session.receive(Bytes{1, 2, 3}, bench.now).has_value());

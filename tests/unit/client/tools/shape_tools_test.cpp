@@ -4,6 +4,7 @@
 #include <ios>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "client/lettering/font_file.hpp"
 #include "client/lettering/text_build.hpp"
@@ -189,6 +190,16 @@ TEST_CASE_METHOD(ShapeBench, "the wand copies exactly the connected voxels, and 
   };
   CHECK(words(ToolButton::place) == "copies 6 voxels");
   CHECK(words(ToolButton::clear) == "sets 0 and removes 6 voxels");
+  for (const auto& [result, expected] :
+       {std::pair{1, "selects 6 voxels"}, {2, "selects 6 voxels"}, {3, "deselects 6 voxels"}}) {
+    REQUIRE(box.set_parameter("result", result));
+    CHECK(words(ToolButton::place) == expected);
+    CHECK(words(ToolButton::clear) == "deselects 6 voxels");
+  }
+  box.hold_select_mode(SelectMode::add);
+  CHECK(preview_words(box) == "selects 6 voxels");
+  box.hold_select_mode(std::nullopt);
+  REQUIRE(box.set_parameter("result", 0));
   CHECK(press({0, 0, 0}).empty());
   CHECK(held_voxels() == before);
   CHECK(box.clipboard_changes() == changes + 1);
