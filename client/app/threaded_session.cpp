@@ -165,7 +165,8 @@ std::optional<std::string> ThreadedSession::refusal() const {
 
 FailureWords ThreadedSession::failure_words() const {
   const auto& end = session().end();
-  return end && end->final ? words_of(*end) : last_words_;
+  if (end && end->final) return words_of(*end);
+  return last_failure_.empty() ? words_of_link("", to_string(options_.server)) : last_words_;
 }
 
 double ThreadedSession::seconds_left(TimeUs now_us) const {
@@ -176,7 +177,8 @@ double ThreadedSession::seconds_left(TimeUs now_us) const {
 std::optional<std::string> ThreadedSession::timeout(TimeUs now_us) const {
   if (!lost_us_ || static_cast<double>(now_us - *lost_us_) <= options_.reconnect_seconds * 1e6)
     return std::nullopt;
-  return fmt::format("no server at {}: {}", to_string(options_.server), last_failure_);
+  return fmt::format("no server at {}: {}", to_string(options_.server),
+                     last_failure_.empty() ? "it has not answered yet" : last_failure_);
 }
 
 NetCounts ThreadedSession::net_counts() const { return runstone::net_counts(threads_.net_stats()); }

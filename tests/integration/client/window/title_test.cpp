@@ -57,7 +57,7 @@ TEST_CASE("the client says in words why it is not on a server, and goes on", "[i
   const std::string address = "127.0.0.1:" + std::to_string(server->port());
   const std::string key = bench.folder / "ana.key";
   const std::vector<std::string> join = {
-      "--connect", address, "--key", key, "--name", "ana", "--reconnect-seconds", "1"};
+      "--connect", address, "--key", key, "--name", "ana", "--reconnect-seconds", "20"};
   bench.start(join);
   REQUIRE(bench.logs("ground in view"));
   CHECK(text_in(bench.folder / "state/runstone/servers.toml").find(address) != std::string::npos);
