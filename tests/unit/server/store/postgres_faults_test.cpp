@@ -301,6 +301,7 @@ TEST_CASE("no fault at any statement leaves a part of a new world or has wrong w
       proxy.wait_for_ends();
       const auto store = open_world(world.place(), StoreAccess::read_only);
       if (store) require_sound(**store);
+      CAPTURE(store ? "" : store.error().message());
       CHECK((store.has_value() || store.error().kind == StoreError::Kind::not_a_world));
       CHECK((store.has_value() || !is_made));
       if (store && !is_made) {
