@@ -24,6 +24,10 @@ ChunkKey beside(const ChunkKey& key, Direction direction) {
   return {key.lod, neighbour(key.at, direction)};
 }
 
+/// Returns the version of a chunk that is made or uncovered when this record is the newest one. In a
+/// world without records all versions are the base.
+Version version_at(const Version& newest) { return newest.seq == 0 ? Version{} : newest; }
+
 }  // namespace
 
 ShownChunks::ShownChunks(const WorldChunks& chunks, std::int32_t edge,
@@ -72,8 +76,7 @@ ChunkPtr ShownChunks::make(const ChunkKey& key, const Version& newest) {
   RUNSTONE_ASSERT(held->version.seq <= newest.seq);
   RunChunk veil = veil_of(held->voxels, neighbours(key, {}), {*covers_, filler_}, scratch_);
   const Digest digest = digest_of(veil);
-  // Nothing was ever sent of a world without records, so all of its versions are the base.
-  const Version version = newest.seq == 0 ? Version{} : newest;
+  const Version version = version_at(newest);
   Entry& entry = entries_[key];
   ++count_;
   if (held->voxels.order == kVeilOrder) {
@@ -122,8 +125,10 @@ ShownChunks::Neighbours ShownChunks::neighbours(const ChunkKey& key, const Betwe
 bool ShownChunks::find_changes(const ChunkKey& key, const Entry& entry, SlowLayers layers,
                                const Between& between) {
   const RunChunk& voxels = *truth(key, between);
-  const VeilBorders borders(voxels, neighbours(key, between), *covers_, MissingSide::closed, layers);
-  find_uncovered(voxels, borders, entry.shown->voxels, {*covers_, filler_}, layers, scratch_, patch_);
+  const VeilBorders borders(voxels, neighbours(key, between), *covers_, MissingSide::closed,
+                            layers);
+  find_uncovered(voxels, borders, entry.shown->voxels, {*covers_, filler_}, layers, scratch_,
+                 patch_);
   return !patch_.empty();
 }
 
@@ -188,7 +193,8 @@ ShownEdit ShownChunks::apply_edit(const OrderedEdit& ordered, const Version& ver
     for (int d = 0; d < kDirectionCount; ++d) {
       const auto direction = static_cast<Direction>(d);
       const ChunkKey other = beside(key, direction);
-      if (border_dirty(changed, direction, static_cast<unsigned>(edge_)) && entries_.contains(other))
+      if (border_dirty(changed, direction, static_cast<unsigned>(edge_)) &&
+          entries_.contains(other))
         near.insert(other);
     }
     dirty.emplace(key, changed);
@@ -234,10 +240,12 @@ ShownEdit ShownChunks::apply_edit(const OrderedEdit& ordered, const Version& ver
   return out;
 }
 
-std::vector<ShownPatch> ShownChunks::uncover_beside(const ChunkKey& arrived, const Version& newest) {
+std::vector<ShownPatch> ShownChunks::uncover_beside(const ChunkKey& arrived,
+                                                    const Version& newest) {
   std::vector<ShownPatch> out;
   const ChunkPtr chunk = chunks_.find(arrived);
   if (chunk == nullptr) return out;
+  const Version version = version_at(newest);
   for (int d = 0; d < kDirectionCount; ++d) {
     const auto direction = static_cast<Direction>(d);
     const ChunkKey key = beside(arrived, direction);
@@ -248,7 +256,7 @@ std::vector<ShownPatch> ShownChunks::uncover_beside(const ChunkKey& arrived, con
     beyond[static_cast<std::size_t>(opposite(direction))] = all_layers(chunk->voxels.extent);
     const SlowLayers layers = layers_beside(*truth(key, {}), {}, beyond);
     if (!find_changes(key, *entry, layers, {})) continue;
-    out.push_back(apply_patch_of(key, *entry, std::max(entry->shown->version, newest)));
+    out.push_back(apply_patch_of(key, *entry, version));
   }
   std::ranges::sort(out, {}, &ShownPatch::key);
   return out;

@@ -215,12 +215,11 @@ class ShownWorld {
         made_.insert_or_assign(at, made);
         told_.at(at).assign(told_.at(at).size(), false);
       }
-      const RunChunk& sent =
-          sabotage_ == VeilSabotage::sends_truth ? truth->voxels : shown->voxels;
+      const RunChunk& sent = sabotage_ == VeilSabotage::sends_truth ? truth->voxels : shown->voxels;
       for (ShownReplica& replica : replicas_) {
         if (replica.chunks.contains(key)) continue;
-        replica.chunks.emplace(key,
-                               ShownReplica::Held{reorder(sent, random_order(own_)), shown->version});
+        replica.chunks.emplace(
+            key, ShownReplica::Held{reorder(sent, random_order(own_)), shown->version});
       }
       write(key, shown->version);
       sent.runs.visit([&](auto runs) {
