@@ -40,7 +40,9 @@ inline constexpr std::uint64_t kFeatureTextures = 1 << 20;   // TexturesGiven to
 inline constexpr std::uint64_t kFeatureWorldTime = 1 << 22;  // WorldTime
 // SessionAccepted.place, and lines of the chat of the kind visit.
 inline constexpr std::uint64_t kFeatureVisits = 1 << 24;
-inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;    // LogMarksRequest.at
+inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;  // LogMarksRequest.at
+// VeiledCommit and VeilPatches. No server offers it yet (docs/veil.md).
+inline constexpr std::uint64_t kFeatureVeil = 1 << 26;
 inline constexpr std::uint64_t kFeatureChatWithdrawal = 1 << 27;  // ChatWithdrawn
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
@@ -122,6 +124,7 @@ inline constexpr std::size_t kPlayersMax = 65536;
 inline constexpr std::size_t kTextBytesMax = 256;  // of reject details and goodbye texts
 
 inline constexpr std::size_t kTouchedChunksMax = 4096;       // per edit
+inline constexpr std::size_t kVeilPatchesMax = 4096;         // per edit, and per VeilPatches
 inline constexpr std::size_t kClaimsPerSessionMax = 32'768;  // claims that wait for an answer
 
 // Rights.

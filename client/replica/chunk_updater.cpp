@@ -20,6 +20,7 @@ bool ChunkUpdater::apply_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs no
   }
   ++counters_.snapshots_taken;
   const Sequence seq = snapshot.version.seq;
+  chunk.repeat_patches(snapshot.version);
   chunks_.set_current(chunk, std::make_shared<const Chunk>(std::move(snapshot)));
   chunk.drop_answered(seq);
   advance(chunk, true, now_us);
@@ -147,10 +148,9 @@ void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_u
     }
   }
   for (const OrderedPtr& info : taken.applied) cause.push_back(&changes_.edit(*info, now_us));
-  if (!taken.stack.empty()) {
+  if (!taken.stack.empty() || !taken.patches.empty()) {
     auto next = std::make_shared<Chunk>(*chunk.confirmed());
-    apply_stack(next->voxels, next->digest, chunk.origin(next->voxels), taken.stack, scratch_);
-    counters_.confirmed_stacks.add(taken.stack.size());
+    apply_ready(taken, chunk.origin(next->voxels), *next);
     next->version = taken.version;
     chunks_.set_confirmed(chunk, std::move(next));
   }
@@ -167,6 +167,26 @@ void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_u
     }
   }
   show(chunk, cause);
+}
+
+/// Applies edits, and the patches between them.
+void ChunkUpdater::apply_ready(const TrackedChunk::ReadyEdits& taken, VoxelPos origin,
+                               Chunk& chunk) {
+  const std::span<const EditDescriptor> stack(taken.stack);
+  std::size_t applied = 0;
+  const auto apply_up_to = [&](std::size_t end) {
+    if (end == applied) return;
+    apply_stack(chunk.voxels, chunk.digest, origin, stack.subspan(applied, end - applied),
+                scratch_);
+    counters_.confirmed_stacks.add(end - applied);
+    applied = end;
+  };
+  for (const TrackedChunk::ReadyEdits::Patch& each : taken.patches) {
+    apply_up_to(each.edits);
+    if (apply_patch(*each.patch, chunk.voxels)) chunk.digest = digest_of(chunk.voxels);
+    ++counters_.patches_applied;
+  }
+  apply_up_to(stack.size());
 }
 
 void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& check, TimeUs now_us) {

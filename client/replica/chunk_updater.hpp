@@ -74,6 +74,7 @@ class ChunkUpdater {
   void advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_us);
   void vouch(TrackedChunk& chunk, TimeUs now_us);
   bool is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool was_vouched);
+  void apply_ready(const TrackedChunk::ReadyEdits& taken, VoxelPos origin, Chunk& chunk);
 
   ReplicaChunks& chunks_;
   ChangeQueue& changes_;

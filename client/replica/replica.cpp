@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -16,7 +17,8 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   if (parameters_ && parameters_->chunk_edge != parameters.chunk_edge) reset();
   std::optional<ServerMark> before;
   if (parameters_) before = ServerMark{parameters_->epoch, durable_, newest_};
-  if (before && before->epoch != parameters.epoch) outbox_.clear();
+  const bool is_other_kind = parameters_ && parameters_->is_veiled != parameters.is_veiled;
+  if (is_other_kind || (before && before->epoch != parameters.epoch)) outbox_.clear();
   past_.reset();
   views_.reopen();
   claims_.clear();
@@ -28,7 +30,7 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   durable_ = parameters.durable;
   newest_ = parameters.head;
   const SharedHistory history(before, {parameters.epoch, parameters.durable, parameters.head});
-  expect_all_chunks(history);
+  expect_all_chunks(history, is_other_kind);
   far_tiles_.reopen(parameters.tile_rules,
                     [&](const Version& version) { return history.trusts(version); });
   const auto offers = local_edits_.resume(parameters.resolved);
@@ -44,18 +46,21 @@ std::vector<ClientSequence> Replica::open(const SessionParameters& parameters) {
   return local_edits_.unanswered();
 }
 
-void Replica::expect_all_chunks(const SharedHistory& history) {
+void Replica::expect_all_chunks(const SharedHistory& history, bool is_other_kind) {
   for (auto& [key, chunk] : chunks_) {
     chunks_.expect(chunk);
     chunk.inbox.clear();
+    chunk.repeatable.clear();
     chunk.latest = 0;
     chunk.behind_of = {};
     chunks_.recount(chunk);
-    if (!chunk.confirmed() || history.trusts(chunk.confirmed()->version)) continue;
-    // The server that ordered this version may not have kept it. What is shown stays until the new
-    // snapshot.
+    if (!chunk.confirmed()) continue;
+    const bool is_trusted = history.trusts(chunk.confirmed()->version);
+    if (is_trusted && !is_other_kind) continue;
+    // The server that ordered this version may not have kept it, or its versions are of chunks of
+    // the other kind. What is shown stays until the new snapshot.
     chunks_.set_confirmed(chunk, nullptr);
-    ++counters_.dropped_by_epoch;
+    if (!is_trusted) ++counters_.dropped_by_epoch;
   }
 }
 
@@ -312,7 +317,7 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
     return fail(ErrorCode::bad_value, "commit of another epoch");
   }
   ++counters_.commits;
-  std::map<ChunkKey, TrackedChunk*> touched;
+  Touched touched;
   for (std::size_t i = 0; i < commit.edits.size(); ++i) {
     const OrderedEdit& ordered = commit.edits[i];
     const Version version{commit.epoch, ordered.seq};
@@ -321,35 +326,129 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
       return fail(ErrorCode::bad_value, "previous sequences do not fit the edit", i);
     }
     newest_ = std::max(newest_, version.seq);
-    const bool is_local =
-        ordered.op.author == parameters_->author && ordered.op.instance == parameters_->instance;
     OrderedPtr info;  // allocated only if a chunk in view is touched, or the edit is local
     const auto shared_info = [&] {
-      if (!info) {
-        info = std::make_shared<const OrderedInfo>(OrderedInfo{
-            ordered.op, version, ordered.edit, ordered.subject, is_local, ordered.submitted_us,
-            ordered.ordered_us, arrival.received_us, arrival.unpacked_us});
-      }
+      if (!info) info = ordered_info(ordered, version, arrival);
       return info;
     };
-    if (is_local) {
+    if (is_local(ordered)) {
       confirm_local(ordered.op.seq, version);
       changes_.edit(*shared_info(), arrival.now_us);
     }
     for (std::size_t c = 0; c < chunks.size(); ++c) {
       const ChunkKey key{0, chunks[c]};
-      if (!is_in_view(key)) continue;
-      TrackedChunk& chunk = track(key);
-      chunk.latest = std::max(chunk.latest, version.seq);
-      if (is_local) chunk.confirm_pending(ordered.op.seq, version.seq);
-      if (chunk.is_unavailable()) continue;
-      updater_.add_to_inbox(chunk, {shared_info(), ordered.previous[c]},
-                            !chunk.is_current() || past_.is_past());
-      touched[key] = &chunk;
+      if (is_in_view(key))
+        add_to_chunk(key, {shared_info(), ordered.previous[c], version}, touched);
     }
   }
-  if (past_.is_past()) return {};
-  for (const auto& [key, chunk] : touched) updater_.advance(*chunk, arrival.now_us);
+  advance(touched, arrival.now_us);
+  return {};
+}
+
+OrderedPtr Replica::ordered_info(const OrderedEdit& ordered, const Version& version,
+                                 const Arrival& arrival) const {
+  return std::make_shared<const OrderedInfo>(OrderedInfo{
+      ordered.op, version, ordered.edit, ordered.subject, is_local(ordered), ordered.submitted_us,
+      ordered.ordered_us, arrival.received_us, arrival.unpacked_us});
+}
+
+void Replica::add_to_chunk(const ChunkKey& key, TrackedChunk::InboxEdit entry, Touched& touched) {
+  TrackedChunk& chunk = track(key);
+  chunk.latest = std::max(chunk.latest, entry.version.seq);
+  if (entry.info && entry.info->is_local)
+    chunk.confirm_pending(entry.info->op.seq, entry.version.seq);
+  if (chunk.is_unavailable()) return;
+  updater_.add_to_inbox(chunk, std::move(entry), !chunk.is_current() || past_.is_past());
+  touched[key] = &chunk;
+}
+
+void Replica::advance(const Touched& touched, TimeUs now_us) {
+  if (past_.is_past()) return;
+  for (const auto& [key, chunk] : touched) updater_.advance(*chunk, now_us);
+}
+
+Result<void> Replica::receive(const VeiledCommit& commit, const Arrival& arrival) {
+  if (!parameters_) return fail(ErrorCode::bad_value, "commit before ready");
+  if (commit.epoch != parameters_->epoch) {
+    return fail(ErrorCode::bad_value, "commit of another epoch");
+  }
+  ++counters_.commits;
+  Touched touched;
+  for (const VeiledEdit& edit : commit.edits) {
+    if (const auto ok = add_veiled(edit, commit.epoch, arrival, touched); !ok) return ok;
+  }
+  advance(touched, arrival.now_us);
+  return {};
+}
+
+Result<void> Replica::add_veiled(const VeiledEdit& edit, Epoch epoch, const Arrival& arrival,
+                                 Touched& touched) {
+  const OrderedEdit& ordered = edit.ordered;
+  const Version version{epoch, ordered.seq};
+  std::vector<ChunkCoord> chunks;
+  if (edit.has_edit) chunks = touched_chunks(ordered.edit, parameters_->chunk_edge);
+  if (chunks.size() != ordered.previous.size())
+    return fail(ErrorCode::bad_value, "previous sequences do not fit the edit");
+  newest_ = std::max(newest_, version.seq);
+  const OrderedPtr info = ordered_info(ordered, version, arrival);
+  std::vector<ChunkKey> predicted;  // chunks with a prediction of the edit
+  if (info->is_local) {
+    if (const LocalEdit* local = local_edits_.find(ordered.op.seq)) predicted = local->chunks;
+    confirm_local(ordered.op.seq, version);
+    changes_.edit(*info, arrival.now_us);
+  }
+  std::map<ChunkCoord, const ChunkPatch*> patches;
+  for (const ChunkPatch& patch : edit.patches) patches.emplace(patch.at, &patch);
+  const auto patch_of = [](const ChunkPatch& patch) {
+    return std::make_shared<const VeilPatch>(patch.patch);
+  };
+  std::set<ChunkKey> changed;
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    const ChunkKey key{0, chunks[c]};
+    TrackedChunk::InboxEdit entry{info, ordered.previous[c], version};
+    if (const auto found = patches.find(chunks[c]); found != patches.end()) {
+      if (found->second->previous != ordered.seq)
+        return fail(ErrorCode::bad_value, "a patch does not follow the edit of its chunk");
+      entry.patch = patch_of(*found->second);
+      patches.erase(found);
+    }
+    if (is_in_view(key)) add_to_chunk(key, std::move(entry), touched);
+    changed.insert(key);
+  }
+  for (const auto& [at, patch] : patches) {
+    const ChunkKey key{0, at};
+    if (patch->previous == ordered.seq)
+      return fail(ErrorCode::bad_value, "a patch follows an edit that misses its chunk");
+    if (is_in_view(key))
+      add_to_chunk(key, {info, patch->previous, version, false, patch_of(*patch)}, touched);
+    changed.insert(key);
+  }
+  // In the other chunks the edit has changed no shown voxel.
+  for (const ChunkKey& key : predicted) {
+    if (changed.contains(key)) continue;
+    TrackedChunk* const chunk = chunks_.find(key);
+    if (chunk != nullptr && chunk->drop_pending(ordered.op.seq) && chunk->confirmed() &&
+        !past_.is_past())
+      updater_.show(*chunk);
+  }
+  return {};
+}
+
+Result<void> Replica::receive(const VeilPatches& patches, const Arrival& arrival) {
+  if (!parameters_) return fail(ErrorCode::bad_value, "patches before ready");
+  if (patches.version.epoch > parameters_->epoch)
+    return fail(ErrorCode::bad_value, "patches of another epoch");
+  newest_ = std::max(newest_, patches.version.seq);
+  Touched touched;
+  for (const ChunkPatch& patch : patches.patches) {
+    const ChunkKey key{0, patch.at};
+    if (!is_in_view(key)) continue;
+    add_to_chunk(key,
+                 {nullptr, patch.previous, patches.version, false,
+                  std::make_shared<const VeilPatch>(patch.patch)},
+                 touched);
+  }
+  advance(touched, arrival.now_us);
   return {};
 }
 

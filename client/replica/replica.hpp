@@ -66,6 +66,7 @@ struct SessionParameters {
   Sequence durable = 0, head = 0;
   ClientSequence resolved = 0;
   std::uint32_t tile_rules = 0;  // SessionAccepted::tile_rules
+  bool is_veiled = false;        // the server sends chunks with a veil (docs/veil.md)
   // Of edits. A default EditLimits would know no material but air.
   HeightLimits heights{};
   std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();
@@ -126,6 +127,10 @@ class Replica {
   /// Fails if the commit is of another epoch, or if a list of previous sequences does not fit its
   /// edit.
   Result<void> receive(const Commit& commit, const Arrival& arrival);
+  /// Takes the commit of a veiled session. Fails as receive(Commit) does.
+  Result<void> receive(const VeiledCommit& commit, const Arrival& arrival);
+  /// Takes what a neighbour that became known uncovers. Fails if the version is of a later epoch.
+  Result<void> receive(const VeilPatches& patches, const Arrival& arrival);
   /// `is_offered_again` becomes RejectedEdit::is_offered_again.
   void receive(const Reject& reject, TimeUs now_us, bool is_offered_again = false);
   /// Another server orders the edits from now on. It has resolved those of this client up to
@@ -223,7 +228,20 @@ class Replica {
   void receive_tile(ChunkAnswer& answer);
   void receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
   void receive_missing_edits(const ChunkEdits& edits, TimeUs now_us);
-  void expect_all_chunks(const SharedHistory& history);
+  /// `is_other_kind`: the chunks are held with a veil, and the server sends them without one, or the
+  /// other way round.
+  void expect_all_chunks(const SharedHistory& history, bool is_other_kind);
+  using Touched = std::map<ChunkKey, TrackedChunk*>;
+  OrderedPtr ordered_info(const OrderedEdit& ordered, const Version& version,
+                          const Arrival& arrival) const;
+  bool is_local(const OrderedEdit& ordered) const {
+    return ordered.op.author == parameters_->author && ordered.op.instance == parameters_->instance;
+  }
+  /// Adds an entry to the inbox of a chunk in view. It is applied when all entries have been added.
+  void add_to_chunk(const ChunkKey& key, TrackedChunk::InboxEdit entry, Touched& touched);
+  Result<void> add_veiled(const VeiledEdit& edit, Epoch epoch, const Arrival& arrival,
+                          Touched& touched);
+  void advance(const Touched& touched, TimeUs now_us);
   void add_pending_to_chunks(ClientSequence seq);
   Result<void> check(const EditDescriptor& edit) const;
   void confirm_local(ClientSequence seq, const Version& version);

@@ -117,6 +117,7 @@ struct ReplicaCounters {
   std::uint64_t chunk_edits_applied = 0;
   std::uint64_t chunk_edits_contained = 0;  // in the snapshot already: dropped
   std::uint64_t chunk_edits_buffered = 0;   // held back for a snapshot
+  std::uint64_t patches_applied = 0;        // of veiled sessions
   std::uint64_t buffer_overflows = 0;
   std::uint64_t gaps = 0;
   std::uint64_t requests = 0;         // chunks that were requested, repetitions included

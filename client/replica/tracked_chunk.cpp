@@ -1,6 +1,7 @@
 #include "client/replica/tracked_chunk.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/edits/descriptor/edit_memory.hpp"
 
@@ -41,16 +42,29 @@ TrackedChunk::ReadyEdits TrackedChunk::take_ready_edits() {
   std::size_t taken = 0;
   for (; taken < inbox.size(); ++taken) {
     const InboxEdit& next = inbox[taken];
-    const bool is_contained = next.info->version.seq <= out.version.seq;
+    const bool is_repeated = next.is_repeatable() && next.previous == out.version.seq;
+    const bool is_contained = next.version.seq <= out.version.seq && !is_repeated;
     if (!is_contained && next.previous != out.version.seq) break;
-    if (next.info->is_local) drop_pending(next.info->op.seq);
-    (is_contained ? out.contained : out.applied).push_back(next.info);
+    if (next.info && next.info->is_local) drop_pending(next.info->op.seq);
+    if (next.info) (is_contained ? out.contained : out.applied).push_back(next.info);
     if (is_contained) continue;
-    out.stack.push_back(next.info->edit);
-    out.version = next.info->version;
+    if (next.has_edit) out.stack.push_back(next.info->edit);
+    if (next.patch) out.patches.push_back({out.stack.size(), next.patch});
+    if (!is_repeated) {
+      out.version = next.version;
+      repeatable.clear();
+    } else if (repeatable.size() < kRepeatedPatchesMax) {
+      repeatable.push_back(next);
+    }
   }
   inbox.erase(inbox.begin(), inbox.begin() + static_cast<std::ptrdiff_t>(taken));
   return out;
+}
+
+void TrackedChunk::repeat_patches(const Version& version) {
+  std::vector<InboxEdit> again = std::exchange(repeatable, {});
+  std::erase_if(again, [&](const InboxEdit& patch) { return patch.version != version; });
+  inbox.insert(inbox.begin(), again.begin(), again.end());
 }
 
 ShownPtr TrackedChunk::predicted(ApplyScratch& scratch) const {
@@ -70,8 +84,14 @@ std::size_t TrackedChunk::bytes() const {
   const bool is_shared = confirmed_ && shown.get() == &confirmed_->voxels;
   if (shown && !is_shared) bytes += sizeof(RunChunk) + shown->runs.byte_capacity();
   for (const PendingEdit& local : pending) bytes += sizeof(PendingEdit) + memory_bytes(local.edit);
-  for (const InboxEdit& held_back : inbox)
-    bytes += sizeof(InboxEdit) + sizeof(OrderedInfo) + memory_bytes(held_back.info->edit);
+  for (const std::vector<InboxEdit>* entries : {&inbox, &repeatable}) {
+    for (const InboxEdit& entry : *entries) {
+      bytes += sizeof(InboxEdit);
+      if (entry.info) bytes += sizeof(OrderedInfo) + memory_bytes(entry.info->edit);
+      if (entry.patch)
+        bytes += sizeof(VeilPatch) + entry.patch->spans.capacity() * sizeof(VeilSpan);
+    }
+  }
   return bytes;
 }
 

@@ -15,6 +15,7 @@
 #include "common/core/ids.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/runs/chunk.hpp"
+#include "common/veil/veil_patch.hpp"
 
 namespace runstone {
 
@@ -32,14 +33,22 @@ struct OrderedInfo {
 };
 using OrderedPtr = std::shared_ptr<const OrderedInfo>;
 
+inline constexpr std::size_t kRepeatedPatchesMax = 64;
+
 class TrackedChunk {
  public:
   explicit TrackedChunk(const ChunkKey& chunk_key) : key(chunk_key) {}
 
-  /// An ordered edit that waits until the edit before it has been applied.
+  /// An ordered edit, or a patch of a veiled session, that waits until what precedes it has been
+  /// applied.
   struct InboxEdit {
-    OrderedPtr info;
-    Sequence previous = 0;  // the chunk's sequence before this edit
+    OrderedPtr info;                                   // null for a patch that no edit has caused
+    Sequence previous = 0;                             // the chunk's sequence before it
+    Version version;                                   // the chunk's version behind it
+    bool has_edit = true;                              // false: only the patch is applied
+    std::shared_ptr<const VeilPatch> patch = nullptr;  // applied behind the edit; null: none
+    /// Returns true if the patch leaves the version as it is. It may be applied again.
+    bool is_repeatable() const { return !has_edit && previous == version.seq; }
   };
   /// A local edit that the confirmed runs do not contain yet.
   struct PendingEdit {
@@ -55,7 +64,10 @@ class TrackedChunk {
   std::uint64_t serial = 0;          // see Replica::shown_serial()
   std::vector<PendingEdit> pending;  // ascending by seq
   std::vector<InboxEdit> inbox;      // ascending by sequence
-  Sequence latest = 0;               // newest edit of this chunk seen on this connection
+  /// Patches that were applied at the confirmed version and did not move it. A snapshot of the same
+  /// version may lack them. At most kRepeatedPatchesMax; a digest check finds one that is missing.
+  std::vector<InboxEdit> repeatable;
+  Sequence latest = 0;  // newest edit of this chunk seen on this connection
   /// Newest version above the confirmed one that a digest check named on this connection.
   Version behind_of;
   std::optional<TimeUs> requested_us;  // last request for a snapshot
@@ -84,10 +96,18 @@ class TrackedChunk {
   /// many.
   std::size_t drop_answered(Sequence seq);
 
+  /// Puts the patches of this version back into the inbox, because a snapshot may lack them.
+  void repeat_patches(const Version& version);
+
   /// What take_ready_edits() took from the inbox.
   struct ReadyEdits {
+    struct Patch {
+      std::size_t edits = 0;  // of `stack`, which precede the patch
+      std::shared_ptr<const VeilPatch> patch;
+    };
     std::vector<EditDescriptor> stack;  // to be applied to the confirmed runs
-    std::vector<OrderedPtr> applied;    // the edits of `stack`, with their order
+    std::vector<Patch> patches;         // to be applied between the edits of `stack`
+    std::vector<OrderedPtr> applied;    // the edits of `stack` and `patches`, with their order
     std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
     Version version;                    // after the stack
   };

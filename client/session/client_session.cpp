@@ -92,7 +92,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_->receive(m, arrival);
         } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
           replica_->receive(m);
-        } else if constexpr (std::is_same_v<T, Commit>) {
+        } else if constexpr (std::is_same_v<T, Commit> || std::is_same_v<T, VeiledCommit> ||
+                             std::is_same_v<T, VeilPatches>) {
           const auto taken = replica_->receive(m, arrival);
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
         } else if constexpr (std::is_same_v<T, Reject>) {
@@ -167,6 +168,7 @@ void ClientSession::on_session_accepted(const SessionAccepted& accepted, TimeUs 
                              .head = world.head,
                              .resolved = accepted.resolved,
                              .tile_rules = accepted.tile_rules,
+                             .is_veiled = (world.features & kFeatureVeil) != 0,
                              .heights = world.heights,
                              .edit_volume_max = world.edit_volume_max,
                              .material_count = world.materials.size()});

@@ -67,6 +67,8 @@ struct BodyReader {
   // ---- edit_bodies.cpp
   Result<Message> read(const wire::EditRequest& t) const;
   Result<Message> read(const wire::Commit& t) const;
+  Result<Message> read(const wire::VeiledCommit& t) const;
+  Result<Message> read(const wire::VeilPatches& t) const;
   Result<Message> read(const wire::Reject& t) const;
   Result<Message> read(const wire::Durable& t) const;
   Result<Message> read(const wire::Resume& t) const;

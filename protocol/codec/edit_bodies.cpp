@@ -2,6 +2,7 @@
 
 #include "protocol/codec/body_reader.hpp"
 #include "protocol/codec/ordered_edit_reader.hpp"
+#include "protocol/codec/patch_list.hpp"
 
 namespace runstone {
 
@@ -49,6 +50,40 @@ Result<void> BodyReader::read_edits(const wire::Commit& t, OrderedEdit& edit,
     if (const auto ok = take(); !ok) return ok;
   }
   return {};
+}
+
+Result<Message> BodyReader::read(const wire::VeiledCommit& t) const {
+  if (chunk_edge == 0) return bad("veiled commit before Welcome");
+  if (t.epoch() == 0) return bad("commit epoch is 0");
+  const ByteView bytes = view_of(t.edits());
+  if (bytes.empty()) return bad("commit has no edits");
+  VeiledCommit m;
+  m.epoch = t.epoch();
+  std::vector<ChunkCoord> touched;
+  OrderedEditReader edits(bytes, chunk_edge);
+  while (!edits.at_end()) {
+    if (m.edits.size() == kCommitEditsMax) return bad("commit has more than 4096 edits");
+    if (const auto ok = edits.next(m.edits.emplace_back(), touched); !ok)
+      return failure(ok.error());
+  }
+  return Message{std::move(m)};
+}
+
+Result<Message> BodyReader::read(const wire::VeilPatches& t) const {
+  if (chunk_edge == 0) return bad("veil patches before Welcome");
+  if ((t.epoch() == 0) != (t.seq() == 0)) return bad("version is half zero");
+  if (t.seq() > kSequenceMax) return bad("sequence exceeds 63 bits");
+  const ByteView bytes = view_of(t.patches());
+  if (bytes.empty()) return bad("veil patches are missing");
+  VeilPatches m;
+  m.version = {t.epoch(), t.seq()};
+  KeyReader keys(chunk_edge);
+  auto patches = entries_of<ChunkPatch>(bytes, kVeilPatchesMax, [&](ByteReader& in) {
+    return take_patch(in, keys, m.version.seq, true, chunk_edge);
+  });
+  if (!patches) return failure(patches.error());
+  m.patches = *std::move(patches);
+  return Message{std::move(m)};
 }
 
 Result<Message> BodyReader::read(const wire::Reject& t) const {

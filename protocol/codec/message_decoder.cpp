@@ -25,7 +25,8 @@ using Bodies =
                wire::Resumed, wire::Servers, wire::BuildsRequest, wire::Builds,
                wire::BuildPieceRequest, wire::BuildPiece, wire::BuildOffer, wire::BuildUpload,
                wire::BuildAnswer, wire::ShapesGiven, wire::TexturesGiven, wire::TexturesWanted,
-               wire::TextureParts, wire::WorldTime, wire::ChatWithdrawn>;
+               wire::TextureParts, wire::WorldTime, wire::ChatWithdrawn, wire::VeiledCommit,
+               wire::VeilPatches>;
 static_assert(std::tuple_size_v<Bodies> == kMessageKindCount);
 
 using ReadBody = Result<Message> (*)(ByteView, const BodyReader&);

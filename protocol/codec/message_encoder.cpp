@@ -10,6 +10,7 @@
 #include "protocol/codec/key_list.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/patch_list.hpp"
 #include "protocol/codec/preview_list.hpp"
 #include "protocol/codec/shape_list.hpp"
 #include "protocol/codec/texture_list.hpp"
@@ -119,6 +120,17 @@ struct BodyBuilder {
   Offset<wire::Commit> operator()(const Commit& m) {
     const CommitEncoder encoder(m);
     return commit(encoder, encoder.all());
+  }
+  Offset<wire::VeiledCommit> operator()(const VeiledCommit& m) {
+    const CommitEncoder encoder(m);
+    return veiled_commit(encoder, encoder.all());
+  }
+  Offset<wire::VeilPatches> operator()(const VeilPatches& m) {
+    RUNSTONE_ASSERT(!m.patches.empty() && (m.version.epoch == 0) == (m.version.seq == 0));
+    Bytes bytes;
+    ByteWriter out(bytes);
+    put_patches(out, m.patches, m.version.seq);
+    return wire::CreateVeilPatches(b, m.version.epoch, m.version.seq, bytes_of(b, bytes));
   }
   Offset<wire::Reject> operator()(const Reject& m) {
     return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail),
@@ -477,6 +489,11 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(edits.epoch() != 0);
     return wire::CreateCommit(b, edits.epoch(), bytes_of(b, edits.list(which)));
   }
+  Offset<wire::VeiledCommit> veiled_commit(const CommitEncoder& edits,
+                                           std::span<const std::uint32_t> which) {
+    RUNSTONE_ASSERT(edits.epoch() != 0);
+    return wire::CreateVeiledCommit(b, edits.epoch(), bytes_of(b, edits.list(which)));
+  }
   /// Returns the line with "?" for each byte that is not printable: a line may name a file, and
   /// file names hold any bytes.
   static std::string shown_line(const std::string& line) {
@@ -527,6 +544,8 @@ EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entr
 
 EncodedMessage encode_message(const CommitEncoder& commit, std::span<const std::uint32_t> edits) {
   FlatBufferBuilder& b = cleared_builder();
+  if (commit.is_veiled())
+    return finish(b, kKindOf<VeiledCommit>, BodyBuilder{b}.veiled_commit(commit, edits));
   return finish(b, kKindOf<Commit>, BodyBuilder{b}.commit(commit, edits));
 }
 

@@ -107,6 +107,8 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"TextureParts", server, kChunks, open, kFeatureTextures},
       {"WorldTime", server, kEdits, open, kFeatureWorldTime},
       {"ChatWithdrawn", server, kControl, open, kFeatureChatWithdrawal},
+      {"VeiledCommit", server, kEdits, open, kFeatureVeil},
+      {"VeilPatches", server, kEdits, open, kFeatureVeil},
   }};
 }();
 

@@ -27,6 +27,7 @@
 #include "common/materials/material_table.hpp"
 #include "common/rights/join_password.hpp"
 #include "common/runs/chunk.hpp"
+#include "common/veil/veil_patch.hpp"
 #include "protocol/chunks/chunk_codec.hpp"
 #include "protocol/codec/build_messages.hpp"
 #include "protocol/codec/chat_messages.hpp"
@@ -311,6 +312,37 @@ struct Commit {
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 
+/// A change of a chunk that a client holds with a veil (docs/veil.md).
+struct ChunkPatch {
+  ChunkCoord at;  // level of detail 0
+  /// Of the chunk before the patch. It is the sequence that the chunk gets if the patch follows the
+  /// descriptor of its entry, or a record that is the newest of the log.
+  Sequence previous = 0;
+  VeilPatch patch;  // in the order kVeilOrder, not empty
+  friend bool operator==(const ChunkPatch&, const ChunkPatch&) = default;
+};
+/// What a veiled session gets of an edit.
+struct VeiledEdit {
+  /// Without has_edit, `edit` and `previous` are empty: the session gets the result of the edit, or
+  /// a receipt for its own edit, which changes no shown voxel.
+  OrderedEdit ordered;
+  bool has_edit = false;
+  std::vector<ChunkPatch> patches;  // applied after the edit; at most kVeilPatchesMax, ascending
+  friend bool operator==(const VeiledEdit&, const VeiledEdit&) = default;
+};
+/// The Commit of a veiled session.
+struct VeiledCommit {
+  Epoch epoch = 0;
+  std::vector<VeiledEdit> edits;  // their sequences ascend
+  friend bool operator==(const VeiledCommit&, const VeiledCommit&) = default;
+};
+/// Patches without an edit, because a neighbour became known. The chunks get this version.
+struct VeilPatches {
+  Version version;
+  std::vector<ChunkPatch> patches;  // 1 .. kVeilPatchesMax, ascending
+  friend bool operator==(const VeilPatches&, const VeilPatches&) = default;
+};
+
 /// Values are on the wire. Every reason but already_resolved uses up the client sequence: another
 /// attempt takes a new one.
 enum class RejectReason : std::uint8_t {
@@ -478,7 +510,7 @@ using Message = std::variant<
     LogMarks, RestorePreview, PreviewShare, PlayerPreview, FollowRequest, FollowAnswer, LogPart,
     RelayOpen, Relay, RelayClose, RelayCharge, Resume, Resumed, Servers, BuildsRequest, Builds,
     BuildPieceRequest, BuildPiece, BuildOffer, BuildUpload, BuildAnswer, ShapesGiven, TexturesGiven,
-    TexturesWanted, TextureParts, WorldTime, ChatWithdrawn>;
+    TexturesWanted, TextureParts, WorldTime, ChatWithdrawn, VeiledCommit, VeilPatches>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {

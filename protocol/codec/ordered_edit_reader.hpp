@@ -26,10 +26,15 @@ class OrderedEditReader {
   /// empty if the chunk edge is not known. The caller may move from both. Requires that the list
   /// has not ended.
   Result<void> next(OrderedEdit& edit, std::vector<ChunkCoord>& touched);
+  /// Reads the next edit of a VeiledCommit, as next() above. Requires a chunk edge.
+  Result<void> next(VeiledEdit& edit, std::vector<ChunkCoord>& touched);
 
  private:
+  void take_fields(OrderedEdit& edit);
+  Result<void> compare_with_geometry(const OrderedEdit& edit, std::vector<ChunkCoord>& touched);
   void take_sequence_and_time(OrderedEdit& edit);
-  void take_descriptor(OrderedEdit& edit);
+  std::uint64_t take_descriptor_size();
+  void take_descriptor(std::uint64_t size, OrderedEdit& edit);
   void take_previous(OrderedEdit& edit);
 
   ByteReader in_;

@@ -132,7 +132,10 @@ void Authority::publish_touched(OrderedBatch& batch) {
   std::vector<ChunkKey>& all = batch.all_touched;
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  for (const ChunkKey& key : all) chunks_.publish(key);
+  for (const ChunkKey& key : all) {
+    batch.before.push_back(chunks_.find(key));
+    chunks_.publish(key);
+  }
 }
 
 }  // namespace runstone

@@ -35,6 +35,7 @@ struct OrderedBatch {
   std::vector<EditRecord> records;
   std::vector<std::vector<ChunkKey>> touched;  // of each edit, ascending
   std::vector<ChunkKey> all_touched;           // of all edits, ascending, each once
+  std::vector<ChunkPtr> before;  // of all_touched: published before the commit, or null
 };
 
 class Authority {

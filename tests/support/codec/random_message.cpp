@@ -7,6 +7,7 @@
 
 #include "common/core/m61.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/veil/veil.hpp"
 #include "tests/support/core/random_look.hpp"
 #include "tests/support/edits/edit_oracle.hpp"
 #include "tests/support/rights/random_rights.hpp"
@@ -412,6 +413,45 @@ Commit any_commit(SplitMix64& rng) {
   return m;
 }
 
+std::vector<ChunkPatch> any_patches(SplitMix64& rng, Sequence seq, bool may_stay) {
+  std::vector<ChunkPatch> out;
+  const Extent extent = Extent::cube(kMessageEdge);
+  for (const ChunkKey& key : ascending_keys(rng, 4)) {
+    ChunkPatch patch{
+        key.at, seq - std::min<Sequence>(seq, 1 + rng.below(100)), {extent, kVeilOrder, {}}};
+    if (may_stay && rng.below(3) == 0) patch.previous = seq;
+    // Spans that do not touch need not differ in material.
+    for (VoxelIndex at = rng.below(50); at < extent.volume() - 60; at += 60 + rng.below(900))
+      patch.patch.spans.push_back({at, 1 + rng.below(50), static_cast<Material>(rng.below(4))});
+    out.push_back(std::move(patch));
+  }
+  return out;
+}
+
+VeiledCommit any_veiled_commit(SplitMix64& rng) {
+  VeiledCommit m;
+  Commit commit = any_commit(rng);
+  m.epoch = commit.epoch;
+  for (OrderedEdit& ordered : commit.edits) {
+    VeiledEdit& edit = m.edits.emplace_back();
+    edit.has_edit = rng.below(2) == 0;
+    if (!edit.has_edit) {
+      ordered.edit = {};
+      ordered.previous.clear();
+    }
+    if (rng.below(3) != 0) edit.patches = any_patches(rng, ordered.seq, edit.has_edit);
+    edit.ordered = std::move(ordered);
+  }
+  return m;
+}
+
+VeilPatches any_veil_patches(SplitMix64& rng) {
+  VeilPatches m;
+  m.version = {1 + rng.below(1000), 1 + (any64(rng) >> 2)};
+  m.patches = any_patches(rng, m.version.seq, true);
+  return m;
+}
+
 Reject any_reject(SplitMix64& rng) {
   Reject m;
   m.client_seq = 1 + (any64(rng) >> 1);
@@ -783,6 +823,10 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
       return any_edit_request(rng);
     case kKindOf<Commit>:
       return any_commit(rng);
+    case kKindOf<VeiledCommit>:
+      return any_veiled_commit(rng);
+    case kKindOf<VeilPatches>:
+      return any_veil_patches(rng);
     case kKindOf<Reject>:
       return any_reject(rng);
     case kKindOf<Durable>:

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/runs/run_builder.hpp"
+#include "common/veil/veil.hpp"
 #include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/chunk_lists.hpp"
 #include "protocol/codec/commit_encoder.hpp"
@@ -29,10 +30,10 @@ void check_read(const Result<List>& read, const List& expected) {
 TEST_CASE("the protocol page has no block of bytes that is not tested", "[protocol][golden]") {
   // Tested in this folder. A new block on the page needs a test and its name here.
   CHECK(page_example_names() ==
-        std::vector<std::string>{"frame-header", "view-frame", "transcript", "signatures",
-                                 "password", "device-code", "chunk-keys", "cached-chunks",
-                                 "chunks-not-modified", "digest-check", "uniform-chunks", "chunks",
-                                 "commit", "raw-chunk", "packed-chunk", "coded-chunk"});
+        std::vector<std::string>{
+            "frame-header", "view-frame", "transcript", "signatures", "password", "device-code",
+            "chunk-keys", "cached-chunks", "chunks-not-modified", "digest-check", "uniform-chunks",
+            "chunks", "commit", "veiled-commit", "raw-chunk", "packed-chunk", "coded-chunk"});
 }
 
 TEST_CASE("a list of chunks has the bytes of the protocol page", "[protocol][golden]") {
@@ -122,6 +123,31 @@ TEST_CASE("the edits of a commit have the bytes of the protocol page", "[protoco
     CHECK(edit == commit.edits[i]);
   }
   CHECK(touched == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+  CHECK(reader.at_end());
+}
+
+TEST_CASE("a veiled commit has the bytes of the protocol page", "[protocol][veil][golden]") {
+  VeiledCommit commit{3, {{}, {}}};
+  VeiledEdit& seen = commit.edits[0];
+  seen.ordered = {500,       {2, 0x1122334455667788, 9},      Cause::player, 1'700'000,
+                  1'700'250, {SetVoxel{{1, -2, 3}}, {}, 300}, {499},         0};
+  seen.has_edit = true;
+  seen.patches = {{{0, -1, 0}, 500, {Extent::cube(kEdge), kVeilOrder, {{5, 1, 7}}}}};
+  VeiledEdit& hidden = commit.edits[1];
+  hidden.ordered.seq = 501;
+  hidden.ordered.op = {2, 0x1122334455667788, 10};
+  hidden.ordered.submitted_us = hidden.ordered.ordered_us = 1'700'250;
+  const std::string hex = page_example("veiled-commit");
+  const CommitEncoder encoder(commit);
+  CHECK(to_hex(encoder.list(encoder.all())) == hex);
+  const Bytes bytes = from_hex(hex);
+  OrderedEditReader reader(bytes, kEdge);
+  std::vector<ChunkCoord> touched;
+  for (const VeiledEdit& expected : commit.edits) {
+    VeiledEdit edit;
+    REQUIRE(reader.next(edit, touched).has_value());
+    CHECK(edit == expected);
+  }
   CHECK(reader.at_end());
 }
 

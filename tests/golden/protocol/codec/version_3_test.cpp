@@ -2,6 +2,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/veil/veil.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/limits.hpp"
@@ -11,7 +12,22 @@
 namespace runstone::test {
 namespace {
 
-static_assert(kMessageKindCount == 64, "a kind that is added needs golden bytes here");
+static_assert(kMessageKindCount == 66, "a kind that is added needs golden bytes here");
+
+VeiledCommit golden_veiled_commit() {
+  VeiledCommit commit{3, {{}}};
+  VeiledEdit& edit = commit.edits[0];
+  edit.ordered = {500,       {2, 0x1122334455667788, 9},      Cause::player, 1'700'000,
+                  1'700'250, {SetVoxel{{1, -2, 3}}, {}, 300}, {499},         0};
+  edit.has_edit = true;
+  edit.patches = {{{0, -1, 0}, 500, {Extent::cube(16), kVeilOrder, {{5, 1, 7}}}}};
+  return commit;
+}
+
+VeilPatches golden_veil_patches() {
+  const VeilPatch patch{Extent::cube(16), kVeilOrder, {{5, 2, 7}, {9, 1, 7}}};
+  return {{3, 500}, {{{0, -1, 0}, 480, patch}}};
+}
 
 Builds golden_builds() {
   ListedBuild mill;
@@ -99,6 +115,13 @@ std::vector<GoldenOfVersion3> messages_of_version_3() {
        "0c00000000000600080004000600000004000000020000002800000004000000"
        "e8ffffff0c000000fbffffffffffffff03000000626561000800100008000400"
        "080000000c00000000401e18240a060003000000616e6e00"},
+      {golden_veiled_commit(),
+       "0c00000008000c000400080008000000030000000400000028000000f403b4c6"
+       "cf01028877665544332211090000f403070100ac020203060101010001000004"
+       "01050007"},
+      {golden_veil_patches(),
+       "140000000000000000000a00140004000c0008000a000000030000000c000000"
+       "f4010000000000000b000000000100140602050207020100"},
       {SessionAccepted{7, 41, 3, Pose{{1.5, -2, 3}, 16384, -8192}},
        "14000000000000000c00340004002c0008000c000c0000000700000003000000"
        "000000000000f83f00000000000000c00000000000000840004000e000000000"
@@ -127,6 +150,7 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureClockRecords == 1 << 23);
   CHECK(kFeatureVisits == 1 << 24);
   CHECK(kFeatureVoxelAuthors == 1 << 25);
+  CHECK(kFeatureVeil == 1 << 26);
   CHECK(kFeatureChatWithdrawal == 1 << 27);
   CHECK(kFeatureTimedGrants == 1 << 28);
 }
@@ -145,6 +169,8 @@ TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {
   CHECK(wire_number(kKindOf<TextureParts>) == 62);
   CHECK(wire_number(kKindOf<WorldTime>) == 63);
   CHECK(wire_number(kKindOf<ChatWithdrawn>) == 64);
+  CHECK(wire_number(kKindOf<VeiledCommit>) == 65);
+  CHECK(wire_number(kKindOf<VeilPatches>) == 66);
 }
 
 TEST_CASE("the reasons of version 3 have their numbers", "[protocol][golden]") {

@@ -44,6 +44,7 @@ const char* text_of_feature(std::uint64_t feature) {
   if (feature == kFeatureTextures) return "textures";
   if (feature == kFeatureWorldTime) return "world time";
   if (feature == kFeatureChatWithdrawal) return "chat withdrawal";
+  if (feature == kFeatureVeil) return "veil";
   return feature == kFeatureCommands ? "commands" : "receive ack";
 }
 
@@ -99,8 +100,8 @@ TEST_CASE("an encoded message has its kind, and the kind decides the class", "[p
   }
   CHECK(kKindOf<Hello> == 0);
   CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
-  CHECK(kKindOf<WorldTime> == kMessageKindCount - 2);
-  CHECK(kKindOf<ChatWithdrawn> == kMessageKindCount - 1);
+  CHECK(kKindOf<VeiledCommit> == kMessageKindCount - 2);
+  CHECK(kKindOf<VeilPatches> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {
@@ -108,7 +109,7 @@ TEST_CASE("every client message fits a class that clients may use", "[protocol]"
     CAPTURE(info.name);
     if (may_send(info, Sender::client))
       CHECK(message_bytes_max(Sender::client, info.frame_class) != 0);
-    CHECK((info.feature & ~(kFeaturesKnown | kFeatureServers)) == 0);
+    CHECK((info.feature & ~(kFeaturesKnown | kFeatureServers | kFeatureVeil)) == 0);
   }
 }
 
@@ -126,6 +127,14 @@ TEST_CASE("players are not offered the messages between servers", "[protocol]") 
       CHECK(refusal_with(kFeaturesKnown)->reason == GoodbyeReason::unexpected_message);
     }
   }
+}
+
+TEST_CASE("no server offers the veil, because none sends it", "[protocol][veil]") {
+  CHECK((kFeaturesKnown & kFeatureVeil) == 0);
+  const auto refusal = refusal_of(info_of(kKindOf<VeiledCommit>), Sender::server,
+                                  SessionStage::open, kFeaturesKnown);
+  REQUIRE(refusal.has_value());
+  CHECK(refusal->reason == GoodbyeReason::unexpected_message);
 }
 
 TEST_CASE("the protocol page shows the table of messages", "[protocol]") {
