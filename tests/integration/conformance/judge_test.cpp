@@ -1,0 +1,65 @@
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "tests/support/core/shell_run.hpp"
+
+// The conformance kit judges clients: those without a fault get full marks, and each fault that is
+// planted on purpose loses the mark that is about it.
+namespace runstone::test {
+namespace {
+
+/// Plays scenes to a client, or all scenes, and returns the exit code and what was printed.
+ShellRun judged(const std::string& client, const std::string& scenes = "") {
+  return run_shell(std::string(RUNSTONE_CONFORMANCE_PROGRAM) + " judge --jobs 8 " + scenes + " " +
+                   client + " 2>&1");
+}
+
+std::string with_fault(const char* fault) {
+  return std::string("-- ") + CONFORMANCE_MINIMUM_CLIENT_PROGRAM + " --fault " + fault;
+}
+
+void check_loses(const char* fault, const std::string& scene, const std::string& why) {
+  const ShellRun run = judged(with_fault(fault), "--patience 1 --scene join --scene " + scene);
+  CAPTURE(fault, run.text);
+  CHECK(run.exit_code == 1);
+  CHECK(run.text.find("failed    " + scene) != std::string::npos);
+  CHECK(run.text.find("passed    join") != std::string::npos);
+  CHECK(run.text.find(why) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a minimum client gets full marks of the conformance kit", "[conformance]") {
+  const ShellRun run = judged(CONFORMANCE_MINIMUM_CLIENT_PROGRAM);
+  CAPTURE(run.text);
+  CHECK(run.exit_code == 0);
+  CHECK(run.text.find("failed") == std::string::npos);
+  CHECK(run.text.find("not tried packed-chunks") != std::string::npos);
+}
+
+TEST_CASE("the client of the library gets full marks of the conformance kit", "[conformance]") {
+  const ShellRun run = judged(CONFORMANCE_WORLD_CLIENT_PROGRAM);
+  CAPTURE(run.text);
+  CHECK(run.exit_code == 0);
+  CHECK(run.text.find("failed") == std::string::npos);
+  CHECK(run.text.find("not tried") == std::string::npos);
+}
+
+TEST_CASE("a client with a fault loses the mark of its scene", "[conformance]") {
+  check_loses("digest", "digest", "no ChunkRequest of the chunk (0, 0, 0)");
+  check_loses("malformed", "truncated-chunk", "does not end the session");
+  check_loses("signature", "relayed-welcome", "sends ClientAuth");
+  check_loses("versions", "contained-commit", "has other voxels");
+  check_loses("pending", "edit-offered-again", "is not offered again");
+}
+
+TEST_CASE("the judge says what is wrong with its command line", "[conformance]") {
+  const ShellRun unknown = judged("client", "--scene no-such-scene");
+  CHECK(unknown.exit_code == 2);
+  CHECK(unknown.text.find("there is no scene \"no-such-scene\"") != std::string::npos);
+  const ShellRun missing = judged("/no/such/client", "--scene join");
+  CHECK(missing.exit_code == 1);
+  CHECK(missing.text.find("cannot start /no/such/client") != std::string::npos);
+}
+
+}  // namespace runstone::test
