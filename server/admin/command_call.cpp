@@ -6,6 +6,7 @@
 
 #include "server/admin/command_table.hpp"
 #include "server/admin/folder_import.hpp"
+#include "server/admin/rights_change_text.hpp"
 #include "server/admin/rights_hazard.hpp"
 #include "server/admin/rights_reason.hpp"
 #include "server/names/name_reference.hpp"
@@ -71,6 +72,7 @@ Result<CommandCall::FoundPlayers, std::string> look_up_players(
 }  // namespace
 
 bool has_right(const CommandCaller& caller, const RightsState& state, Right right, TimeUs now_us) {
+  if (!caller.scope.has(right)) return false;
   if (!caller.actor.key || caller.actor.is_operator) return true;
   return state.decide(*caller.actor.key, right, now_us).is_allowed;
 }
@@ -79,13 +81,16 @@ std::optional<std::string> why_not(const CommandCaller& caller, const RightsStat
                                    const CommandRule& rule, TimeUs now_us) {
   if (!caller.actor.key) return std::nullopt;
   if (rule.is_local) return "this command is for the console and `runstone-server control`";
-  if (caller.actor.is_operator || rule.any_of == RightSet()) return std::nullopt;
+  if (rule.any_of == RightSet()) return std::nullopt;
+  if (rule.any_of.and_in(caller.scope) == RightSet())
+    return "the token in use is for commands that need " + rights_text(caller.scope);
+  if (caller.actor.is_operator) return std::nullopt;
   const PublicKey& key = *caller.actor.key;
   std::string names;
   std::optional<std::string> restricted;
   for (std::size_t i = 0; i < kRightCount; ++i) {
     const auto right = static_cast<Right>(i);
-    if (!rule.any_of.has(right)) continue;
+    if (!rule.any_of.has(right) || !caller.scope.has(right)) continue;
     const RightsDecision decision = state.decide(key, right, now_us);
     if (decision.is_allowed) return std::nullopt;
     names += (names.empty() ? "" : " or ") + std::string(name_of(right));

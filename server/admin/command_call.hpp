@@ -33,6 +33,8 @@ struct CommandCaller {
   RightsActor actor;    // without a key: console or control
   /// The view of a client that shows what a rollback would change, otherwise nullopt.
   std::optional<View> preview_view = std::nullopt;
+  /// No command that needs other rights may be given: the scope of an access token.
+  RightSet scope = RightSet::all();
 };
 
 /// Returns true if the caller has the right now. Console and operators have every right.

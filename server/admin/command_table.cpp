@@ -10,6 +10,7 @@
 #include "server/admin/host_commands.hpp"
 #include "server/admin/library_commands.hpp"
 #include "server/admin/moderation_commands.hpp"
+#include "server/admin/page_commands.hpp"
 #include "server/admin/password_commands.hpp"
 #include "server/admin/player_commands.hpp"
 #include "server/admin/report_commands.hpp"
@@ -128,7 +129,7 @@ const std::vector<CommandRow>& command_table() {
           activity_commands(), report_commands(), rollback_commands(), restore_box_commands(),
           role_commands(), allow_commands(), password_commands(), clock_commands(),
           library_commands(), shape_commands(), texture_commands(), time_commands(),
-          retention_commands(), host_commands()})
+          retention_commands(), page_commands(), host_commands()})
       rows.insert(rows.end(), part.begin(), part.end());
     return rows;
   }();

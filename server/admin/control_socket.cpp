@@ -35,11 +35,12 @@ constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler,
-             std::shared_ptr<int> slot)
+             std::shared_ptr<int> slot, std::size_t line_bytes_max)
       : socket_(std::move(socket)),
         strand_(std::move(strand)),
         handler_(std::move(handler)),
-        slot_(std::move(slot)) {}
+        slot_(std::move(slot)),
+        line_bytes_max_(line_bytes_max) {}
 
   /// Reads no more lines, and closes once the current answer is written. Thread: the strand, as for
   /// all calls.
@@ -55,7 +56,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void read() {
     asio::async_read_until(
-        socket_, asio::dynamic_buffer(in_, kCommandBytesMax + 1), '\n',
+        socket_, asio::dynamic_buffer(in_, line_bytes_max_ + 1), '\n',
         asio::bind_executor(
             strand_, [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
               if (error) return;  // the peer closed, or the line is too long
@@ -105,6 +106,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Strand strand_;
   ControlSocket::Handler handler_;
   std::shared_ptr<int> slot_;  // counts the connections by its references
+  const std::size_t line_bytes_max_;
   std::string in_;
   std::deque<std::string> out_;
   bool is_done_ = false;       // out_ holds the last answer to the line
@@ -115,12 +117,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
-  Parts(asio::io_context& io, std::string path_, Handler handler_)
+  Parts(asio::io_context& io, std::string path_, Handler handler_, std::size_t line_bytes_max_)
       : strand(asio::make_strand(io)),
         acceptor(io),
         retry(io),
         path(std::move(path_)),
-        handler(std::move(handler_)) {}
+        handler(std::move(handler_)),
+        line_bytes_max(line_bytes_max_) {}
 
   void accept() {
     acceptor.async_accept(asio::bind_executor(
@@ -131,8 +134,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
           // The maximum number of connections. A user needs no more at a time, so further ones are
           // closed.
           if (self->slots.use_count() <= static_cast<long>(kConnectionsMax)) {
-            const auto connection = std::make_shared<Connection>(std::move(socket), self->strand,
-                                                                 self->handler, self->slots);
+            const auto connection = std::make_shared<Connection>(
+                std::move(socket), self->strand, self->handler, self->slots, self->line_bytes_max);
             std::erase_if(self->connections, [](const auto& gone) { return gone.expired(); });
             self->connections.push_back(connection);
             connection->read();
@@ -155,6 +158,7 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
   std::vector<std::weak_ptr<Connection>> connections;
   std::string path;
   Handler handler;
+  const std::size_t line_bytes_max;
   std::shared_ptr<int> slots = std::make_shared<int>(0);
 };
 
@@ -184,8 +188,9 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::
 }
 
 Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen_at(
-    asio::io_context& io, const std::string& path, bool is_for_group, Handler handler) {
-  auto parts = std::make_shared<Parts>(io, path, std::move(handler));
+    asio::io_context& io, const std::string& path, bool is_for_group, Handler handler,
+    std::size_t line_bytes_max) {
+  auto parts = std::make_shared<Parts>(io, path, std::move(handler), line_bytes_max);
   std::error_code ignored;
   if (std::filesystem::is_socket(path, ignored)) std::filesystem::remove(path, ignored);
   asio::error_code error;

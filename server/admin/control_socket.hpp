@@ -12,6 +12,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
+#include "protocol/limits.hpp"
 #include "server/rollback/rollback_service.hpp"
 
 namespace runstone {
@@ -32,12 +33,11 @@ class ControlSocket {
                                                                     const std::string& world,
                                                                     Handler handler);
   /// Starts listening at any path, with the mode 0660 if `is_for_group`. Requires that no program
-  /// listens there, and that a file there is a socket. Fails if the path is too long or the folder
-  /// cannot be written.
-  static Result<std::unique_ptr<ControlSocket>, std::string> listen_at(asio::io_context& io,
-                                                                       const std::string& path,
-                                                                       bool is_for_group,
-                                                                       Handler handler);
+  /// listens there, and that a file there is a socket. A connection with a longer line than
+  /// `line_bytes_max` ends. Fails if the path is too long or the folder cannot be written.
+  static Result<std::unique_ptr<ControlSocket>, std::string> listen_at(
+      asio::io_context& io, const std::string& path, bool is_for_group, Handler handler,
+      std::size_t line_bytes_max = kCommandBytesMax);
   /// Stops, and closes all connections, even those that wait for an answer.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;

@@ -6,6 +6,7 @@
 #include "common/os/new_folder.hpp"
 #include "common/os/progress_line.hpp"
 #include "server/store/copy_stored_world.hpp"
+#include "server/store/store.hpp"
 
 namespace runstone {
 

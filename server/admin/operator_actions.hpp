@@ -16,6 +16,8 @@
 
 namespace runstone {
 
+class AccessTokenStore;
+
 /// The actions are called on the world strand and must return at once. Replies may be called from
 /// any thread, until the server is destroyed. A command whose action is empty is refused.
 struct OperatorActions {
@@ -51,6 +53,10 @@ struct OperatorActions {
   std::function<bool()> stop_retention;
   /// Writes a line into the log of the server. The runtime sets it.
   std::function<void(const std::string&)> log_line;
+  /// The tokens of the operators' page, and the address of the gateway in links to it. Null: the server
+  /// has no such page.
+  std::shared_ptr<AccessTokenStore> tokens;
+  std::string page_base;
   /// Answers with lines of the log of the chat. The runtime sets it.
   std::function<void(const ChatQuery&, CommandReply)> list_chat;
 };

@@ -122,22 +122,6 @@ void list_invites(const CommandCall& call) {
   });
 }
 
-RightSet take_rights(WordReader& reader, const std::string& word) {
-  const std::string text =
-      reader.take(word, "rights, separated by commas without blanks, or none,");
-  RightSet rights;
-  if (text == "none") return rights;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::string name = text.substr(at, end - at);
-    const auto right = right_named(name);
-    if (right) rights.add(*right);
-    if (!right) reader.wrong(word + " \"" + name + "\": none, or any of " + all_right_names());
-    at = end + 1;
-  }
-  return rights;
-}
-
 /// Takes the budget of a role. A role cannot have an unlimited one: 0 stands for that of the
 /// settings.
 Budget take_edit_budget(WordReader& reader) {
@@ -323,6 +307,22 @@ constexpr std::array<CommandRow, 10> kRoleRows = {{
 }};
 
 }  // namespace
+
+RightSet take_rights(WordReader& reader, const std::string& word) {
+  const std::string text =
+      reader.take(word, "rights, separated by commas without blanks, or none,");
+  RightSet rights;
+  if (text == "none") return rights;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string name = text.substr(at, end - at);
+    const auto right = right_named(name);
+    if (right) rights.add(*right);
+    if (!right) reader.wrong(word + " \"" + name + "\": none, or any of " + all_right_names());
+    at = end + 1;
+  }
+  return rights;
+}
 
 std::span<const CommandRow> role_commands() { return kRoleRows; }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/core/ids.hpp"
+#include "common/rights/right.hpp"
 #include "common/rights/role.hpp"
 #include "server/admin/command_row.hpp"
 
@@ -22,6 +23,9 @@ struct CreateInviteCommand {
   TimeUs until_us = 0;  // UTC
   friend bool operator==(const CreateInviteCommand&, const CreateInviteCommand&) = default;
 };
+
+/// Takes rights, separated by commas without blanks, or "none". `word` is what stands before them.
+RightSet take_rights(WordReader& reader, const std::string& word);
 
 std::span<const CommandRow> role_commands();
 

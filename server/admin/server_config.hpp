@@ -60,6 +60,8 @@ struct ServerConfig {
   /// with ".status" behind its name.
   std::string gateway_socket;
   bool gateway_group = false;  // programs of the file's group may use these sockets as well
+  /// The gateway may pass on commands of operators who have a token (docs/operators-page.md).
+  bool operators_page = false;
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::text;
   AddressForm log_addresses = AddressForm::full;  // of players, in log lines

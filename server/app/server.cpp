@@ -44,6 +44,17 @@ void use_certificate(ServerCore& core, const std::optional<TlsContext>& certific
 
 /// Returns the path at which the server answers questions of a gateway.
 std::string status_path(const ServerConfig& config) { return config.gateway_socket + ".status"; }
+/// Returns the path at which the server answers a gateway for the operators' page.
+std::string page_path(const ServerConfig& config) { return config.gateway_socket + ".page"; }
+
+/// Returns the address of the gateway in links for operators. Without the setting page_address it is
+/// that of a gateway on this machine with its own settings.
+std::string page_base(const ServerConfig& config) {
+  std::string base =
+      config.page_address.empty() ? std::string("http://127.0.0.1:8080") : config.page_address;
+  while (base.ends_with('/')) base.pop_back();
+  return base;
+}
 
 /// Makes the folder of a world whose rows are in a database, for its owner only, unless it exists, and
 /// locks it as the folder of a world. So two servers do not share its chat and its control socket.
@@ -74,8 +85,12 @@ LeaseTerms lease_of(const ServerConfig& config) {
 }
 
 Result<void, std::string> can_listen_for_gateway(const ServerConfig& config) {
-  if (config.gateway_socket.empty()) return {};
-  for (const std::string& path : {config.gateway_socket, status_path(config)}) {
+  if (config.gateway_socket.empty()) {
+    if (config.operators_page)
+      return failure("operators_page: the page needs the setting gateway_socket, for runstone-web");
+    return {};
+  }
+  for (const std::string& path : {config.gateway_socket, status_path(config), page_path(config)}) {
     if (const auto can = can_listen_at_path(path); !can)
       return failure("gateway_socket = " + can.error());
   }
@@ -102,8 +117,11 @@ struct Server::Parts {
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
   std::unique_ptr<asio::thread_pool> workers, decoders;
   std::vector<std::thread> io_threads;
-  std::unique_ptr<ControlSocket> control;  // null if the folder's path is too long
-  std::unique_ptr<ControlSocket> status;   // for a gateway; null if there is none
+  std::unique_ptr<ControlSocket> control;    // null if the folder's path is too long
+  std::unique_ptr<ControlSocket> status;     // for a gateway; null if there is none
+  std::shared_ptr<AccessTokenStore> tokens;  // of the operators' page; null: it is off
+  std::unique_ptr<PageDesk> desk;            // null: as before
+  std::unique_ptr<ControlSocket> page;       // null: as before
   std::unique_ptr<ServerCore> core;
   bool is_unclaimed = false;
   bool is_running = false;
@@ -115,6 +133,15 @@ struct Server::Parts {
                                     std::function<void()> on_failure, OperatorActions actions) {
     workers = low_priority_threads(config.worker_threads);
     decoders = low_priority_threads(config.io_threads);
+    if (config.operators_page) {
+      std::string warning;
+      auto opened = AccessTokenStore::open(config.world, warning);
+      if (!opened) return failure(opened.error());
+      if (!warning.empty()) logger("app").warn("{}", warning);
+      tokens = *std::move(opened);
+      actions.tokens = tokens;
+      actions.page_base = page_base(config);
+    }
     core =
         std::make_unique<ServerCore>(ServerThreads{io, *workers, *decoders}, config, *world.store,
                                      *world.generator, std::move(on_failure), std::move(actions));
@@ -137,6 +164,17 @@ struct Server::Parts {
                                    });
       if (!listening) return failure("gateway_socket = " + listening.error());
       status = *std::move(listening);
+    }
+    if (tokens) {
+      desk = std::make_unique<PageDesk>(*tokens, *workers, config.world, core->page_server());
+      auto listening = ControlSocket::listen_at(
+          io, page_path(config), config.gateway_group,
+          [this](const std::string& line, CommandReply reply) {
+            desk->take(line, std::move(reply));
+          },
+          kPageLineBytesMax);
+      if (!listening) return failure("gateway_socket = " + listening.error());
+      page = *std::move(listening);
     }
     work.emplace(io.get_executor());
     core->start();
@@ -315,6 +353,7 @@ StopReport Server::stop() {
   parts.is_running = false;
   if (parts.control) parts.control->stop();
   if (parts.status) parts.status->stop();
+  if (parts.page) parts.page->stop();
   const TimeUs due_us =
       steady_now_us() + static_cast<TimeUs>(parts.config.stop_s) * std::int64_t{1'000'000};
   const bool successor_waits = parts.core->stop_world();
@@ -330,6 +369,7 @@ StopReport Server::stop() {
   parts.core->log_counters();
   parts.control.reset();  // closes connections that have not read their answer
   parts.status.reset();
+  parts.page.reset();
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
   parts.decoders->join();

@@ -15,7 +15,10 @@
 #include "protocol/codec/key_fingerprint.hpp"
 #include "protocol/limits.hpp"
 #include "server/admin/command_table.hpp"
+#include "server/admin/page_commands.hpp"
+#include "server/admin/rights_change_text.hpp"
 #include "server/runtime/logging.hpp"
+#include "server/runtime/page_desk.hpp"
 #include "server/runtime/read_clocks.hpp"
 
 namespace runstone {
@@ -133,6 +136,41 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
     };
     give_command({services_, caller, read_clocks(), reply}, text);
     tick(read_clocks());
+  });
+}
+
+CommandCaller CommandRunner::caller_of(const AccessToken& token) const {
+  return {token.author, {token.owner, operators_.contains(token.owner)}, std::nullopt, token.scope};
+}
+
+RightSet CommandRunner::rights_of(const AccessToken& token) {
+  world_.changes().read_clocks(read_clocks());
+  return page_rights(world_.rights().state(), caller_of(token).actor, token.scope,
+                     world_.rights().time());
+}
+
+void CommandRunner::run(const AccessToken& token, const std::string& line,
+                        const CommandReply& reply) {
+  // The rights may have changed since the page was loaded.
+  if (rights_of(token) == RightSet()) return refuse(reply, kPageBarred);
+  logger("app").info("command author={} key={} page_token={} command=\"{}\"", token.author,
+                     key_fingerprint(token.owner), token.number, logged_command(line));
+  reply(CommandAnswer::progress(kPageKnown));
+  give_command({services_, caller_of(token), read_clocks(), reply}, line);
+  tick(read_clocks());
+}
+
+void CommandRunner::describe(const AccessToken& token, const CommandReply& reply) {
+  const RightSet rights = rights_of(token);
+  if (rights == RightSet()) return refuse(reply, kPageBarred);
+  const CommandCaller caller = caller_of(token);
+  const std::string role =
+      caller.actor.is_operator ? "operator" : world_.rights().state().role_of(token.owner).name;
+  const CommandCall call{services_, caller, read_clocks(), reply};
+  call.with_players({}, [call, rights, role, owner = token.owner](const KnownPlayers& players,
+                                                                  const CommandCall::Keys&) {
+    call.answer(std::string(kPageKnown) + "\nname " + players.text_of(owner) + "\nrole " + role +
+                "\nrights " + rights_text(rights));
   });
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/admin/access_tokens.hpp"
 #include "server/admin/command_call.hpp"
 #include "server/rollback/rollback_service.hpp"
 #include "server/runtime/world_readers.hpp"
@@ -35,6 +36,15 @@ class CommandRunner final : private RollbackService::Workers {
   /// task.
   void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
 
+  // The commands of the operators' page. The first answer is one of the lines of page_desk.hpp, and
+  // the replies come on the world strand. Call these on the world strand.
+  /// Carries out a command as the owner of a token.
+  void run(const AccessToken& token, const std::string& line, const CommandReply& reply);
+  /// Answers with name, role and rights of the owner of a token.
+  void describe(const AccessToken& token, const CommandReply& reply);
+  /// Returns the rights for which the owner of a token may use the page now.
+  RightSet rights_of(const AccessToken& token);
+
   void set_operators(std::set<PublicKey> operators) { operators_ = std::move(operators); }
   /// Takes over the announcements of the settings.
   void set_announcements(const std::vector<Announcement>& announcements) {
@@ -56,6 +66,7 @@ class CommandRunner final : private RollbackService::Workers {
 
  private:
   void run(Work work, std::function<void(std::string)> then) override;
+  CommandCaller caller_of(const AccessToken& token) const;
 
   WorldStrand& strand_;
   WorldServer& world_;

@@ -412,6 +412,29 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
   });
 }
 
+PageDesk::Server ServerCore::page_server() {
+  PageDesk::Server server;
+  server.give = [this](const AccessToken& token, const std::string& line,
+                       const CommandReply& reply) {
+    strand_.post([this, token, line, reply] {
+      if (!world_->cluster().is_following()) return commands_->run(token, line, reply);
+      refuse(reply, std::string(kPageBarred) + "\n" + kGiveThere);
+    });
+  };
+  server.describe = [this](const AccessToken& token, const CommandReply& reply) {
+    strand_.post([this, token, reply] {
+      if (!world_->cluster().is_following()) return commands_->describe(token, reply);
+      refuse(reply, std::string(kPageBarred) + "\n" + kGiveThere);
+    });
+  };
+  server.rights = [this](const AccessToken& token, std::function<void(RightSet)> then) {
+    strand_.post([this, token, then = std::move(then)] {
+      then(world_->cluster().is_following() ? RightSet() : commands_->rights_of(token));
+    });
+  };
+  return server;
+}
+
 CommandAnswer ServerCore::answer_of(const std::string& line) {
   // Used on the world strand.
   const auto replied = std::make_shared<std::optional<CommandAnswer>>();

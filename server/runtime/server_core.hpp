@@ -30,6 +30,7 @@
 #include "server/runtime/health_watch.hpp"
 #include "server/runtime/message_turns.hpp"
 #include "server/runtime/owner_connection.hpp"
+#include "server/runtime/page_desk.hpp"
 #include "server/runtime/periodic_task.hpp"
 #include "server/runtime/server_environment.hpp"
 #include "server/runtime/stop_state.hpp"
@@ -126,6 +127,8 @@ class ServerCore final : public NetEvents {
   /// Carries out a command of the console or the control socket. The replies come on the world
   /// strand. Thread: any.
   void command(const std::string& line, CommandReply reply);
+  /// What the operators' page needs of this server. The functions may be called from any thread.
+  PageDesk::Server page_server();
   /// Carries out a command, and returns its last answer. Blocks. Thread: any but those of
   /// `threads`.
   CommandAnswer answer_of(const std::string& line);

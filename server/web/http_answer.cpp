@@ -175,15 +175,19 @@ std::vector<std::pair<std::string, std::string>> safety_headers(PageScripts scri
   if (scripts == PageScripts::client)
     more =
         "script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'" + sockets + "; img-src data:; ";
+  const bool has_forms = scripts == PageScripts::forms;
+  if (has_forms) more = "img-src 'self'; ";
   return {
       {"Content-Security-Policy",
-       "default-src 'none'; style-src 'self'; " + more +
-           "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+       "default-src 'none'; style-src 'self'; " + more + "base-uri 'none'; form-action " +
+           (has_forms ? "'self'" : "'none'") + "; frame-ancestors 'none'"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Embedder-Policy", "require-corp"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
       {"X-Content-Type-Options", "nosniff"},
-      {"Referrer-Policy", "no-referrer"},
+      // With "no-referrer", browsers would send no origin with a form.
+      {"Referrer-Policy", has_forms ? "same-origin" : "no-referrer"},
+      {"X-Frame-Options", "DENY"},
   };
 }
 

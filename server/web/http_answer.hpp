@@ -32,8 +32,9 @@ enum class HttpCaching {
 /// The scripts that an answer may run.
 enum class PageScripts {
   none,
-  own,    // those of the gateway, which may connect to it: the map
-  client  // scripts of the gateway and WebAssembly: the client for browsers
+  own,     // those of the gateway, which may connect to it: the map
+  client,  // scripts of the gateway and WebAssembly: the client for browsers
+  forms    // none, but forms and pictures of the gateway: the page for operators
 };
 
 struct HttpAnswer {
@@ -43,7 +44,7 @@ struct HttpAnswer {
   std::string allow = {};  // the header Allow; empty: none
   HttpCaching caching = HttpCaching::none;
   PageScripts scripts = PageScripts::none;
-  std::string location = {}, encoding = {}, tag = {};  // headers; empty: none
+  std::string location = {}, encoding = {}, tag = {}, cookie = {};  // headers; empty: none
   /// The body instead of `body`, shared by all answers that have it; may be null.
   std::shared_ptr<const std::string> shared = nullptr;
 

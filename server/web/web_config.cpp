@@ -163,6 +163,10 @@ const SettingsTable<WebConfig>& web_settings() {
                "origins of pages that may open a WebSocket, such as https://play.example.org, "
                "separated by blanks or commas; empty: only pages of this gateway",
                &C::origins, true),
+          flag_setting("operators_page",
+                       "the page for operators at /operators/; only with a certificate or on an "
+                       "address of this machine",
+                       &C::operators_page),
           world_setting<C>(
               "folder or database of the world, to show its map at /map; empty: no map", &C::world),
           number("map_memory_mib", &C::map_memory_mib, 8, 65'536,

@@ -36,6 +36,8 @@ struct WebConfig {
   /// Origins of pages that may open a WebSocket, such as "https://play.example.org", separated by
   /// blanks or commas. Empty: only pages of this gateway.
   std::string origins;
+  /// The operators' page. Only under TLS or on an address of this machine.
+  bool operators_page = false;
   std::string world;                   // place of the world, for its map; empty: no map
   std::uint64_t map_memory_mib = 128;  // of what was drawn, 8..65536
   /// Milliseconds a second in which the map draws for one address, 40 seconds' worth at once. 0: no

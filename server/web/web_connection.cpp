@@ -11,12 +11,16 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <string_view>
 #include <vector>
 
 #include "common/os/process_memory.hpp"
+#include "server/web/operator_gate.hpp"
+#include "server/web/page_form.hpp"
+#include "server/web/page_link.hpp"
 #include "server/web/web_log.hpp"
 
 namespace runstone {
@@ -59,6 +63,13 @@ void measure(WebState& state) {
   state.counters.log_lines_dropped = dropped_web_lines();
   state.counters.map_cache_bytes = 0;
   for (const auto& world : state.worlds) state.counters.map_cache_bytes += world->map.cache_bytes();
+}
+
+/// Returns true for a form of the operators' page. No other request has a body.
+bool is_form_of_operators(const WebState& state, const WebSocketSession::Request& request) {
+  const WebPlace place = place_of(state, view_of(request.target()));
+  return state.config.operators_page && request.method() == http::verb::post &&
+         place.world != nullptr && is_for_operators(path_of(place.target));
 }
 
 HttpAnswer answer_to_broken_request(const boost::system::error_code& error) {
@@ -107,10 +118,25 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
     self->stream_.allow_s(self->state_.config.handshake_s);
     http::request_parser<http::empty_body> parser;
     parser.header_limit(kRequestHeaderBytesMax);
-    parser.body_limit(0);
+    parser.body_limit(kFormBytesMax);
     boost::system::error_code error;
-    co_await http::async_read(self->stream_, self->read_, parser,
-                              boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    co_await http::async_read_header(
+        self->stream_, self->read_, parser,
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    Request request;
+    std::string form;  // the body
+    if (!error && !parser.is_done() && is_form_of_operators(self->state_, parser.get())) {
+      http::request_parser<http::string_body> whole(std::move(parser));
+      co_await http::async_read(self->stream_, self->read_, whole,
+                                boost::asio::redirect_error(boost::asio::use_awaitable, error));
+      auto message = whole.release();
+      form = std::move(message.body());
+      request = Request(std::move(message.base()));
+    } else if (!error && !parser.is_done()) {
+      error = http::error::unexpected_body;
+    } else if (!error) {
+      request = parser.release();
+    }
     if (error == http::error::end_of_stream) co_return true;
     const bool is_readable = !error;
     if (!is_readable && error.category() != make_error_code(http::error::bad_method).category())
@@ -121,7 +147,6 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
       const Request none;
       co_return co_await write(self, broken, none, false);
     }
-    Request request = parser.release();
     const WebPlace place = place_of(self->state_, view_of(request.target()));
     const bool is_for_map = place.world != nullptr && place.target.starts_with(kMapDataPath);
     const bool may_ask = is_for_map
@@ -140,7 +165,15 @@ boost::asio::awaitable<bool> WebConnection::serve(std::shared_ptr<WebConnection>
       co_await WebSocketSession::run(self->websocket_, std::move(request));
       co_return false;
     }
-    const HttpAnswer answer = co_await answer_to(self, request, place);
+    HttpAnswer answer;
+    if (place.world != nullptr && is_for_operators(path_of(place.target))) {
+      // A page asks the server three times at most.
+      self->stream_.allow_s(self->state_.config.handshake_s + 3 * kPageAnswerSeconds + 2);
+      OperatorRequest asked = operator_request(*self, request, place, std::move(form));
+      answer = co_await answer_operator(self->state_, *place.world, std::move(asked));
+    } else {
+      answer = co_await answer_to(self, request, place);
+    }
     const bool keeps_alive = request.keep_alive();
     const bool is_written = co_await write(self, answer, request, keeps_alive);
     if (!is_written || !keeps_alive) co_return is_written;
@@ -157,6 +190,24 @@ std::optional<HttpAnswer> WebConnection::refusal_of(const Request& request, WebP
                            view_of(request[http::field::host]));
   if (is_allowed && request.count(http::field::origin) <= 1) return std::nullopt;
   return plain_answer(403, "pages of this origin may not join this world");
+}
+
+OperatorRequest WebConnection::operator_request(const WebConnection& self, const Request& request,
+                                                WebPlace place, std::string form) {
+  const auto text = [&](http::field name) { return std::string(view_of(request[name])); };
+  OperatorRequest out;
+  out.from = self.from_;
+  boost::system::error_code gone;
+  out.port = self.stream_.next_layer().local_endpoint(gone).port();
+  out.method = view_of(request.method_string());
+  out.target = place.target;
+  out.body = std::move(form);
+  out.host = text(http::field::host);
+  out.cookie = text(http::field::cookie);
+  out.content_type = text(http::field::content_type);
+  out.fetch_site = view_of(request["Sec-Fetch-Site"]);
+  if (request.count(http::field::origin) == 1) out.origin = text(http::field::origin);
+  return out;
 }
 
 boost::asio::awaitable<HttpAnswer> WebConnection::answer_to(std::shared_ptr<WebConnection> self,
@@ -246,6 +297,7 @@ boost::asio::awaitable<bool> WebConnection::write(std::shared_ptr<WebConnection>
   if (answer.status == 429 || answer.status == 503) response.set(http::field::retry_after, "1");
   if (!answer.tag.empty()) response.set(http::field::etag, answer.tag);
   if (!answer.encoding.empty()) response.set(http::field::content_encoding, answer.encoding);
+  if (!answer.cookie.empty()) response.set(http::field::set_cookie, answer.cookie);
   if (!answer.location.empty()) response.set(http::field::location, answer.location);
   if (!answer.allow.empty()) response.set(http::field::allow, answer.allow);
   if (answer.status == 426) response.set(http::field::upgrade, "websocket");

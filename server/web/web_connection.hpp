@@ -11,6 +11,7 @@
 
 #include "common/core/address_block.hpp"
 #include "server/web/http_answer.hpp"
+#include "server/web/operator_gate.hpp"
 #include "server/web/web_state.hpp"
 #include "server/web/web_stream.hpp"
 #include "server/web/websocket_session.hpp"
@@ -56,6 +57,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   static boost::asio::awaitable<bool> serve(std::shared_ptr<WebConnection> self);
   static boost::asio::awaitable<HttpAnswer> answer_to(std::shared_ptr<WebConnection> self,
                                                       const Request& request, WebPlace place);
+  static OperatorRequest operator_request(const WebConnection& self, const Request& request,
+                                          WebPlace place, std::string form);
   /// Answers for a gateway with several servers, outside of their folders.
   static boost::asio::awaitable<HttpAnswer> answer_of_gateway(std::shared_ptr<WebConnection> self,
                                                               const Request& request);

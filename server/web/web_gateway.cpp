@@ -118,6 +118,12 @@ Result<void, std::string> WebGateway::Parts::listen() {
         "could read and change what players send: set tls_certificate and tls_key, or listen on "
         "127.0.0.1");
   }
+  if (!state.certificate.is_there() && state.config.operators_page &&
+      !end.address().is_loopback()) {
+    return cannot(
+        "the page for operators (operators_page) needs a certificate, or an address of this machine: "
+        "everybody on the way could act as an operator");
+  }
   acceptor.open(end.protocol(), error);
   if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(end, error);

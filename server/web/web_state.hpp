@@ -31,6 +31,7 @@ struct WebState {
         client(std::move(client_)),
         origin(std::move(origin_)),
         certificate(std::move(certificate_)),
+        own_origin({}, certificate.is_there()),
         map_share(config_),
         limits(config_.sockets_per_address, config_.connections_per_second) {
     if (config.servers.empty())
@@ -49,7 +50,12 @@ struct WebState {
   // them.
   boost::asio::io_context io{BOOST_ASIO_CONCURRENCY_HINT_UNSAFE_IO};
   Certificate certificate;
+  const OriginCheck own_origin;  // pages of this gateway alone, for the forms of operators
   WebCounters counters;
+  /// What addresses may spend on wrong links and cookies: ten at once, then one in ten seconds.
+  static constexpr std::uint64_t kOperatorFaultPrice = 10;
+  AddressLedger operator_faults{Budget{1, 10 * kOperatorFaultPrice}};
+  WaitingRequests operator_requests;
   MapShare map_share;
   std::vector<std::unique_ptr<WebWorld>> worlds;  // one at least, in the order of the configuration
   SocketLimits limits;
