@@ -44,6 +44,7 @@ inline constexpr std::uint64_t kFeatureVoxelAuthors = 1 << 25;  // LogMarksReque
 // VeiledCommit and VeilPatches. No server offers it yet (docs/veil.md).
 inline constexpr std::uint64_t kFeatureVeil = 1 << 26;
 inline constexpr std::uint64_t kFeatureChatWithdrawal = 1 << 27;  // ChatWithdrawn
+inline constexpr std::uint64_t kFeatureStrokes = 1 << 30;  // PreviewShare and PlayerPreview.stroke
 // Only for a client that has the world's own key: another server of the same world.
 inline constexpr std::uint64_t kFeatureServers = 2048;           // FollowRequest to RelayCharge
 inline constexpr std::uint64_t kFeatureTimeCorrections = 16384;  // LogPart may have a CorrectTime
@@ -62,7 +63,7 @@ inline constexpr std::uint64_t kFeaturesKnown =
     kFeatureKeyTransfer | kFeatureMaterials | kFeatureLogMarks | kFeatureRestorePreview |
     kFeaturePreviews | kFeatureTiles | kFeatureResume | kFeatureServerList | kFeatureLargeActions |
     kFeatureBuilds | kFeatureShapes | kFeatureTextures | kFeatureWorldTime | kFeatureVisits |
-    kFeatureVoxelAuthors | kFeatureChatWithdrawal;
+    kFeatureVoxelAuthors | kFeatureChatWithdrawal | kFeatureStrokes;
 
 // When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
 // kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
@@ -146,6 +147,14 @@ inline constexpr std::size_t kPreviewEditsMax = 4;         // of one player
 inline constexpr std::size_t kPreviewBytesMax = 2 * 1024;  // of their descriptors together
 inline constexpr std::uint64_t kPreviewChunksMax = 64;     // that an edit's bounds touch
 inline constexpr std::uint32_t kPreviewTurnedVoxelsMax = 64 * 1024;  // of a paste that is turned
+inline constexpr std::size_t kPreviewStrokeBytesMax = 1'856;
+inline constexpr std::size_t kPreviewStrokePlacesMax = 256;
+inline constexpr std::uint64_t kPreviewStrokeWorkMax = 6'000'000;  // of stroke_work()
+inline constexpr std::uint8_t kBrushKindMax = 1, kTerrainModeMax = 6, kPathModeMax = 1;
+inline constexpr std::uint8_t kFalloffMax = 3;
+inline constexpr std::uint16_t kTerrainSizeMax = 128, kTerrainStrengthMax = 64, kPathSizeMax = 64;
+inline constexpr std::uint32_t kBrushSeedMax = 9'999;
+inline constexpr std::size_t kBrushTextBytesMax = 1'024;  // of a filter and of a mix
 
 // Chat.
 inline constexpr std::size_t kChatBytesMax = 512;      // one line

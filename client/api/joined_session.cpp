@@ -20,7 +20,7 @@ constexpr std::size_t kReportsMax = 64;
 
 /// The features of servers that a WorldClient does not use.
 constexpr std::uint64_t kUnusedFeatures =
-    kFeatureNames | kFeatureKeyTransfer | kFeatureTextures | kFeaturePreviews;
+    kFeatureNames | kFeatureKeyTransfer | kFeatureTextures | kFeaturePreviews | kFeatureStrokes;
 
 struct ServerAddresses {
   std::vector<HostPort> servers;  // at least one

@@ -14,7 +14,7 @@ namespace {
 /// Returns the configuration without what only a player needs.
 SessionConfig for_bot(SessionConfig config) {
   config.features &= ~(kFeatureRights | kFeatureChat | kFeatureChatWithdrawal | kFeaturePreviews |
-                       kFeatureTextures | kFeatureWorldTime | kFeatureVisits);
+                       kFeatureTextures | kFeatureWorldTime | kFeatureVisits | kFeatureStrokes);
   return config;
 }
 

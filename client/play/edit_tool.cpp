@@ -207,28 +207,42 @@ std::string EditTool::text() const {
   return out;
 }
 
-std::optional<EditDescriptor> EditTool::drawn_stroke() const {
-  if (!box_.tool().is_drawn() || box_.points().size() < 2) return std::nullopt;
+std::optional<EditTool::SharedStroke> EditTool::drawn_stroke() const {
+  if (!box_.tool().is_drawn()) return std::nullopt;
   const std::int32_t edge = session_.replica().chunk_edge();
   const std::vector<EditDescriptor>& edits = box_.preview().edits();
   if (!edits.empty() && may_be_shared(edits, edge)) return std::nullopt;
+  SharedStroke out;
+  out.stroke = box_.next_stroke(aim());
+  if (out.stroke && !check_stroke(*out.stroke)) out.stroke.reset();
   std::int32_t radius = 1;
   for (const ToolParameter& parameter : box_.tool().parameters()) {
     if (parameter.name == "radius") radius = parameter.value;
     if (parameter.name == "width") radius = parameter.value / 2;
   }
-  FillStroke stroke{{box_.points().begin(), box_.points().end()},
-                    static_cast<std::uint16_t>(std::clamp(radius, 1, kStrokeRadiusShared))};
+  const auto shared_radius = static_cast<std::uint16_t>(std::clamp(radius, 1, kStrokeRadiusShared));
   const Material material = box_.button() == ToolButton::place ? player_.held() : kEmpty;
+  out.line.material = material;
+  if (box_.points().size() < 2) {
+    if (!out.stroke) return std::nullopt;
+    out.line.shape = FillSphere{out.stroke->places.front(), shared_radius};
+    while (!may_be_shared({out.line}, edge)) {
+      auto& ball = std::get<FillSphere>(out.line.shape);
+      if (ball.radius <= 1) return std::nullopt;
+      ball.radius = static_cast<std::uint16_t>(ball.radius / 2);
+    }
+    return out;
+  }
+  FillStroke line{{box_.points().begin(), box_.points().end()}, shared_radius};
   for (;;) {
-    EditDescriptor edit{stroke, {}, material};
-    if (may_be_shared({edit}, edge)) return edit;
-    if (stroke.radius > 1) {
-      stroke.radius = static_cast<std::uint16_t>(stroke.radius / 2);
-    } else if (stroke.points.size() > 2) {
-      const auto half = static_cast<std::ptrdiff_t>(stroke.points.size() / 2);
-      stroke.points.erase(stroke.points.begin(), stroke.points.begin() + half);
-      if (stroke.points.size() < 2) return std::nullopt;
+    out.line.shape = line;
+    if (may_be_shared({out.line}, edge)) return out;
+    if (line.radius > 1) {
+      line.radius = static_cast<std::uint16_t>(line.radius / 2);
+    } else if (line.points.size() > 2) {
+      const auto half = static_cast<std::ptrdiff_t>(line.points.size() / 2);
+      line.points.erase(line.points.begin(), line.points.begin() + half);
+      if (line.points.size() < 2) return std::nullopt;
     } else {
       return std::nullopt;
     }

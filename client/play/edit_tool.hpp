@@ -101,10 +101,17 @@ class EditTool {
   /// Returns the ghosts to draw. There are none while the past is shown, and none of the plain
   /// voxel tool, for which the outline of the voxel in sight suffices.
   std::span<const GhostChunk> ghosts() const;
-  /// Returns the stroke that the player draws, as an edit that may be shared, or nullopt if none is
-  /// drawn or the preview itself may be shared. A long stroke is cut at its beginning, and a wide
-  /// one is narrower, so that it may be shared.
-  std::optional<EditDescriptor> drawn_stroke() const;
+  /// The stroke of the next click of a tool that is drawn.
+  struct SharedStroke {
+    /// A line along the stroke, as an edit that may be shared: a long stroke is cut at its
+    /// beginning, and a wide one is narrower.
+    EditDescriptor line;
+    /// The whole stroke, if the tool is a brush whose work others may do.
+    std::optional<BrushStroke> stroke;
+  };
+  /// Returns the stroke for others to see, or nullopt if there is none or the preview itself may be
+  /// shared. Without a stroke of a brush, nothing is shared before a line is drawn.
+  std::optional<SharedStroke> drawn_stroke() const;
   /// Returns true if the next click has a preview. A click of the plain voxel tool has none unless
   /// its place is typed.
   bool has_preview() const;

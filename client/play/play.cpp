@@ -169,7 +169,7 @@ void Play::set_materials(const MaterialTable& materials) {
   motion_.set_materials(materials, shapes_in(meshed));
   tool_.set_shapes(shapes_in(meshed));
   panels_.set_materials(materials, meshed);
-  others_.set_materials(meshed);
+  others_.set_materials(materials, meshed);
   const std::string lost = tool_.box().set_materials(materials, meshed);
   if (!lost.empty()) notify(with_unseen_replaced(lost), NoticeKind::warning);
 }
@@ -305,7 +305,7 @@ void Play::step_previews(const PlaySettings& settings, TimeUs now_us) {
   const bool is_shared = is_on && settings.shares_previews && tool_.has_preview();
   const auto stroke = is_shared ? tool_.drawn_stroke() : std::nullopt;
   if (stroke) {
-    session_.share_preview({*stroke}, now_us);
+    session_.share_preview({stroke->line}, now_us, stroke->stroke);
   } else {
     session_.share_preview(is_shared ? tool_.box().preview().edits() : kNothing, now_us);
   }

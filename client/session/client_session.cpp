@@ -96,6 +96,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
                              std::is_same_v<T, VeilPatches>) {
           const auto taken = replica_->receive(m, arrival);
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
+          for (const OrderedEdit& edit : m.edits) previews_.forget_stroke(edit.op.author);
         } else if constexpr (std::is_same_v<T, Reject>) {
           if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
           const bool is_kept = lost_.take(replica_->local_edits(), m, opened_us_, arrival.now_us);
@@ -312,9 +313,12 @@ Result<void, std::string> ClientSession::chat(std::string_view line) {
   return {};
 }
 
-void ClientSession::share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us) {
+void ClientSession::share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us,
+                                  const std::optional<BrushStroke>& stroke) {
   if (!is_open() || (welcome()->features & kFeaturePreviews) == 0) return;
-  if (auto share = previews_.share(edits, welcome()->chunk_edge, now_us))
+  const bool takes_strokes = (welcome()->features & kFeatureStrokes) != 0;
+  if (auto share = previews_.share(edits, welcome()->chunk_edge, now_us,
+                                   takes_strokes ? stroke : std::nullopt))
     connection_.send(*std::move(share));
 }
 

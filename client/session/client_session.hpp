@@ -172,8 +172,10 @@ class ClientSession {
   std::vector<ChatLineId> take_withdrawn_chat() { return chat_.take_withdrawn(); }
 
   /// Shares what this player's next click would do; an empty list shares nothing any more. Sends a
-  /// message only if it is due and the server has the feature. Call it every turn.
-  void share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us);
+  /// message only if it is due and the server has the feature. The stroke of a brush goes to a
+  /// server that takes strokes; the edits are then a line along it. Call it every turn.
+  void share_preview(const std::vector<EditDescriptor>& edits, TimeUs now_us,
+                     const std::optional<BrushStroke>& stroke = std::nullopt);
   /// Returns what the other players share.
   const std::map<AuthorId, SharedPreviews::Shared>& others_previews() const {
     return previews_.others();

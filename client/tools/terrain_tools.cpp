@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "client/tools/action_source.hpp"
-#include "client/tools/build_words.hpp"
 #include "client/tools/clipboard_copies.hpp"
-#include "client/tools/typed_pattern.hpp"
+#include "client/tools/ground_stroke.hpp"
 #include "client/tools/upright_chunks.hpp"
-#include "common/patterns/column_patterns.hpp"
 #include "common/sculpt/path_brush.hpp"
 #include "common/sculpt/scatter.hpp"
 #include "common/sculpt/terrain_brush.hpp"
@@ -23,32 +20,6 @@ Result<std::vector<VoxelPos>, std::string> stroke_of(const ToolInput& input) {
   if (input.points.empty()) return std::vector{input.target};
   if (const auto ok = check_steps(input.points); !ok) return failure(ok.error());
   return std::vector(input.points.begin(), input.points.end());
-}
-
-/// Reads the shown columns of a box, as high and as low as chunks are shown at `place`. Fails with
-/// words for the player.
-Result<GroundColumns, std::string> read_shown(const Replica& replica, VoxelBox box, VoxelPos place,
-                                              UprightChunks& upright) {
-  const std::int32_t edge = replica.chunk_edge();
-  const ChunkCoord middle = chunk_of(place, edge);
-  const auto is_shown = [&](std::int32_t y) {
-    return replica.shown({0, {middle.x, y, middle.z}}) != nullptr;
-  };
-  if (!is_shown(middle.y)) return failure("the ground is not loaded here");
-  std::int32_t low = middle.y, high = middle.y;
-  while (low * edge > box.min.y && is_shown(low - 1)) --low;
-  while ((high + 1) * edge < box.max.y && is_shown(high + 1)) ++high;
-  box.min.y = std::max(box.min.y, low * edge);
-  box.max.y = std::min(box.max.y, (high + 1) * edge);
-  upright.begin_plan();
-  auto columns = GroundColumns::read(box, edge, [&](ChunkCoord coord) {
-    auto chunk = replica.shown({0, coord});
-    return chunk ? upright.of(chunk) : chunk;
-  });
-  if (!columns)
-    return failure(std::string(columns.error().what) +
-                   ": make a shorter stroke, or choose a smaller radius or width");
-  return *std::move(columns);
 }
 
 /// Brushes of the terrain tool with a larger radius are costly.
@@ -68,35 +39,31 @@ class GroundTool : public Tool {
     return {{"where", "not is wood and below 60", ToolText::Kind::filter},
             {"material", "70% gravel, 30% dirt, or what you hold", ToolText::Kind::mix}};
   }
-  /// Returns the material that the brush sets: kMixedMaterial if a mix is typed, otherwise the held
-  /// one.
-  Material ground_material(const ToolInput& input) const {
-    return text("material").text.empty() ? input.aim.held : kMixedMaterial;
-  }
-  /// Returns the changes as an action: those that the typed filter lets through, with the materials
-  /// of the typed mix. Distances are measured from the first place. Fails with words for the player
-  /// if there are none.
-  ToolEdits action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
-                      std::uint64_t seed, const ToolInput& input) const;
+  /// Returns a stroke over the places, or over the target of a click, with the texts and the mask of
+  /// the tool.
+  BrushStroke ground_stroke(Material held, std::span<const VoxelPos> points, VoxelPos target) const;
+  /// Returns the edits of the stroke. Fails with words for the player.
+  ToolEdits edits_of(const ToolInput& input) const;
 
   mutable UprightChunks upright_;  // of the last plan; they change no result
 };
 
-ToolEdits GroundTool::action_of(const GroundColumns& columns, ColumnChanges changes, VoxelPos first,
-                                std::uint64_t seed, const ToolInput& input) const {
-  const PatternFrame frame{seed, {2 * first.x, 2 * first.y, 2 * first.z}};
-  auto where = typed_pattern(text("where"), input.materials, frame);
-  if (!where) return failure(where.error());
-  auto material = typed_pattern(text("material"), input.materials, frame);
-  if (!material) return failure(material.error());
-  if (where->filter) changes = filtered(columns, changes, *where->filter);
-  if (material->mix) changes = mixed(columns, changes, *material->mix);
-  const auto placed = build_of_changes(columns, changes);
-  if (!placed) return failure(words_of(placed.error()));
-  if (!placed->build) return failure("there is no ground to change here");
-  const bool is_difference = mask().kind == MaskKind::everything;
-  return paste_of_build({placed->build, placed->at, mask(), EmptyCells::pasted, is_difference},
-                        input.replica.edit_limits());
+BrushStroke GroundTool::ground_stroke(Material held, std::span<const VoxelPos> points,
+                                      VoxelPos target) const {
+  BrushStroke out;
+  out.material = held;
+  out.mask = mask();
+  out.where = text("where").text;
+  out.mix = text("material").text;
+  out.places.assign(points.begin(), points.end());
+  if (out.places.empty()) out.places.push_back(target);
+  return out;
+}
+
+ToolEdits GroundTool::edits_of(const ToolInput& input) const {
+  if (const auto ok = check_steps(input.points); !ok) return failure(ok.error());
+  const auto made = stroke(input.aim.held, input.button, input.points, input.target);
+  return edits_of_stroke(*made, input.replica, input.materials, upright_);
 }
 
 class TerrainTool final : public GroundTool {
@@ -117,30 +84,33 @@ class TerrainTool final : public GroundTool {
              mask_parameter()},
             ground_texts()) {}
   bool is_costly() const override { return value("radius") > kCheapRadiusMax; }
+  std::optional<BrushStroke> stroke(Material held, ToolButton button,
+                                    std::span<const VoxelPos> points,
+                                    VoxelPos target) const override;
   ToolEdits plan(const ToolInput& input) const override;
 };
 
+std::optional<BrushStroke> TerrainTool::stroke(Material held, ToolButton button,
+                                               std::span<const VoxelPos> points,
+                                               VoxelPos target) const {
+  BrushStroke out = ground_stroke(held, points, target);
+  out.brush = BrushKind::terrain;
+  out.mode = static_cast<std::uint8_t>(value("mode"));
+  out.size = static_cast<std::uint16_t>(value("radius"));
+  out.falloff = static_cast<std::uint8_t>(value("falloff"));
+  out.strength = static_cast<std::uint16_t>(value("strength"));
+  out.lowers = button == ToolButton::clear;
+  out.seed = static_cast<std::uint32_t>(value("seed"));
+  return out;
+}
+
 ToolEdits TerrainTool::plan(const ToolInput& input) const {
-  TerrainBrush brush;
-  brush.mode = static_cast<BrushMode>(value("mode"));
-  brush.falloff = static_cast<BrushFalloff>(value("falloff"));
-  brush.radius = value("radius");
-  brush.strength = value("strength");
-  brush.lowers = input.button == ToolButton::clear;
-  brush.material = ground_material(input);
-  brush.seed = static_cast<std::uint64_t>(value("seed"));
-  if (brush.mode == BrushMode::overlay) {
-    if (brush.lowers) return failure("overlay with the right button");
-    if (brush.material == kEmpty) return failure("hold a material to overlay");
+  if (static_cast<BrushMode>(value("mode")) == BrushMode::overlay) {
+    if (input.button == ToolButton::clear) return failure("overlay with the right button");
+    if (text("material").text.empty() && input.aim.held == kEmpty)
+      return failure("hold a material to overlay");
   }
-  const auto places = stroke_of(input);
-  if (!places) return failure(places.error());
-  const auto columns =
-      read_shown(input.replica, brush_box(brush, *places), places->front(), upright_);
-  if (!columns) return failure(columns.error());
-  const GroundMaterials materials = GroundMaterials::of(input.materials);
-  return action_of(*columns, brush_changes(*columns, materials, brush, *places), places->front(),
-                   brush.seed, input);
+  return edits_of(input);
 }
 
 class PathTool final : public GroundTool {
@@ -151,24 +121,27 @@ class PathTool final : public GroundTool {
                     {"height", "", 0, 1, 0, {"ground", "even"}},
                     mask_parameter()},
                    ground_texts()) {}
+  std::optional<BrushStroke> stroke(Material held, ToolButton button,
+                                    std::span<const VoxelPos> points,
+                                    VoxelPos target) const override;
   ToolEdits plan(const ToolInput& input) const override;
 };
 
+std::optional<BrushStroke> PathTool::stroke(Material held, ToolButton /*button*/,
+                                            std::span<const VoxelPos> points,
+                                            VoxelPos target) const {
+  BrushStroke out = ground_stroke(held, points, target);
+  out.brush = BrushKind::path;
+  out.mode = static_cast<std::uint8_t>(value("height"));
+  out.size = static_cast<std::uint16_t>(value("width"));
+  return out;
+}
+
 ToolEdits PathTool::plan(const ToolInput& input) const {
   if (input.button == ToolButton::clear) return failure("lay a way with the right button");
-  PathBrush brush;
-  brush.width = value("width");
-  brush.height = static_cast<PathHeight>(value("height"));
-  brush.material = ground_material(input);
-  if (brush.material == kEmpty) return failure("hold a material for the way");
-  const auto places = stroke_of(input);
-  if (!places) return failure(places.error());
-  const auto curve = curve_through(*places);
-  const auto columns = read_shown(input.replica, path_box(brush, curve), places->front(), upright_);
-  if (!columns) return failure(columns.error());
-  const GroundMaterials materials = GroundMaterials::of(input.materials);
-  return action_of(*columns, path_changes(*columns, materials, brush, curve), places->front(), 1,
-                   input);
+  if (text("material").text.empty() && input.aim.held == kEmpty)
+    return failure("hold a material for the way");
+  return edits_of(input);
 }
 
 class ScatterTool final : public GroundTool {
@@ -194,7 +167,7 @@ ToolEdits ScatterTool::plan(const ToolInput& input) const {
   const auto places = stroke_of(input);
   if (!places) return failure(places.error());
   const auto columns =
-      read_shown(input.replica, scatter_box(scattering, *places), places->front(), upright_);
+      read_shown_ground(input.replica, scatter_box(scattering, *places), places->front(), upright_);
   if (!columns) return failure(columns.error());
   const auto spots =
       scattered_spots(*columns, GroundMaterials::of(input.materials), scattering, *places);

@@ -16,6 +16,7 @@
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
+#include "protocol/codec/brush_stroke.hpp"
 
 namespace runstone {
 
@@ -121,6 +122,14 @@ class Tool {
   /// Returns what the click makes that completes an action. Fails with words for the player. The
   /// edits are valid, but the world's limits are not checked.
   virtual Result<ToolAction, std::string> plan(const ToolInput& input) const = 0;
+  /// Returns the settings of a brush and the places of its stroke, from which plan() works out its
+  /// edits, or nullopt if the tool is no such brush. `points` are as in ToolInput, and the last
+  /// place is `target`.
+  virtual std::optional<BrushStroke> stroke(Material /*held*/, ToolButton /*button*/,
+                                            std::span<const VoxelPos> /*points*/,
+                                            VoxelPos /*target*/) const {
+    return std::nullopt;
+  }
   /// Frees what plan() has kept for the next plan. It changes no result.
   virtual void forget_plan() {}
 

@@ -255,6 +255,14 @@ std::optional<VoxelBox> ToolBox::spanned(const Aim& aim) const {
   return box_between(points_.front(), *target);
 }
 
+std::optional<BrushStroke> ToolBox::next_stroke(const Aim& aim) const {
+  if (typed_ || symmetry_.kind != SymmetryKind::none) return std::nullopt;
+  const ToolButton button = points_.empty() ? ToolButton::place : button_;
+  const auto target = target_of(aim, button);
+  if (!target) return std::nullopt;
+  return tool().stroke(aim.held, button, points_, *target);
+}
+
 void ToolBox::type_places(std::optional<TypedPlaces> typed) {
   typed_ = std::move(typed);
   ++revision_;

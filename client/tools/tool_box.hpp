@@ -61,6 +61,11 @@ class ToolBox {
   /// nullopt if no place is chosen, or if the tool works on no box between two places.
   std::optional<VoxelBox> spanned(const Aim& aim) const;
 
+  /// Returns the stroke of the brush that the next click, or the release of the button, would make,
+  /// or nullopt if the tool is no such brush, the click chooses no voxel, places are typed or a
+  /// symmetry makes copies.
+  std::optional<BrushStroke> next_stroke(const Aim& aim) const;
+
   /// Sets places by their coordinates, wherever the player looks. The preview then shows what
   /// apply_typed() does. With nullopt, clicks choose places again. Requires coordinates inside the
   /// world.

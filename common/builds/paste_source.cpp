@@ -6,7 +6,9 @@
 
 #include "common/builds/build_builder.hpp"
 #include "common/core/assert.hpp"
-#include "common/edits/clipboard/clipboard_builder.hpp"
+#include "common/edits/clipboard/clipboard.hpp"
+#include "common/runs/reorder.hpp"
+#include "common/runs/run_builder.hpp"
 
 namespace runstone {
 namespace {
@@ -36,19 +38,57 @@ bool fits_sides(const VoxelBox& box) {
          box.max.z - box.min.z <= side_max;
 }
 
-/// Returns the clipboard of some cells, or nullptr if no cell is touched or it is too long.
-std::shared_ptr<const Clipboard> clipboard_of(const Build& build, const RunChunk& cells,
-                                              std::uint16_t skipped, const PasteLimits& limits) {
-  ClipboardBuilder out(cells.extent, cells.order);
+/// Cells with the numbers of a clipboard: 0 is untouched, and n is entry n - 1 of the palette.
+struct NumberedCells {
+  std::vector<Material> palette;  // ascending, each used
+  RunChunk cells;
+};
+
+/// Returns cells of a build with the numbers of a clipboard. The number `skipped` becomes untouched.
+/// Cost: O(runs + numbers of the build).
+NumberedCells numbered_cells(const Build& build, const RunChunk& cells, std::uint16_t skipped) {
+  std::vector<std::uint16_t> numbers;  // by cell number of the build
+  std::vector<std::uint16_t> used;
   cells.runs.visit([&](const auto& runs) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::uint16_t number = runs.material(i);
-      std::optional<Material> material;
-      if (number != 0 && number != skipped) material = build.material(number);
-      out.append(runs.end(i) - out.filled(), material);
+      if (number >= numbers.size()) numbers.resize(std::size_t{number} + 1);
+      if (number == 0 || number == skipped || numbers[number] != 0) continue;
+      numbers[number] = 1;
+      used.push_back(number);
     }
   });
-  auto made = out.finish();
+  std::sort(used.begin(), used.end(), [&](std::uint16_t a, std::uint16_t b) {
+    return build.material(a) < build.material(b);
+  });
+  NumberedCells out;
+  for (const std::uint16_t number : used) {
+    const Material material = build.material(number);
+    if (out.palette.empty() || out.palette.back() != material) out.palette.push_back(material);
+    numbers[number] = static_cast<std::uint16_t>(out.palette.size());
+  }
+  RunBuilder builder(cells.extent, cells.order);
+  cells.runs.visit([&](const auto& runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      builder.append_to(runs.end(i), numbers[runs.material(i)]);
+  });
+  out.cells = builder.finish();
+  return out;
+}
+
+/// Returns the clipboard of some cells, or nullptr if no cell is touched or it is too long.
+std::shared_ptr<const Clipboard> clipboard_of(const Build& build, const RunChunk& cells,
+                                              std::uint16_t skipped, const PasteLimits& limits) {
+  NumberedCells numbered = numbered_cells(build, cells, skipped);
+  if (numbered.palette.empty()) return nullptr;
+  const auto counts = runs_per_order(numbered.cells);
+  const auto fewest = std::min_element(counts.begin(), counts.end());
+  // A run takes a byte at least. So cells that are too many are known before they are put into
+  // another order, which is dear: a part of scattered cells is cut several times.
+  if (*fewest + numbered.palette.size() > std::min(limits.clipboard_bytes_max, kClipboardBytesMax))
+    return nullptr;
+  const AxisOrder order = kAxisOrders[static_cast<std::size_t>(fewest - counts.begin())];
+  auto made = Clipboard::of(std::move(numbered.palette), reorder(numbered.cells, order));
   if (!made || (*made)->byte_size() > limits.clipboard_bytes_max) return nullptr;
   return *std::move(made);
 }

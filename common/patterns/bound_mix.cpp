@@ -1,6 +1,7 @@
 #include "common/patterns/bound_mix.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,9 @@ double distance2(VoxelPos voxel, VoxelPos middle2) {
   return std::sqrt(square(voxel.x, middle2.x) + square(voxel.y, middle2.y) +
                    square(voxel.z, middle2.z));
 }
+
+/// The parts of a list that are compared one after another, which is faster than a search.
+constexpr std::size_t kShortListMax = 8;
 
 }  // namespace
 
@@ -104,6 +108,42 @@ Material BoundMix::at(VoxelPos voxel) {
     choice = &node.choices[choice_at(node, voxel)];
   }
   return choice->material;
+}
+
+std::size_t BoundMix::short_list() const {
+  if (!root_.node) return 0;
+  const Node& node = nodes_[*root_.node];
+  if (node.kind != MixKind::list || node.choices.size() > kShortListMax) return 0;
+  const bool is_flat = std::none_of(node.choices.begin(), node.choices.end(),
+                                    [](const Choice& choice) { return choice.node.has_value(); });
+  return is_flat ? node.choices.size() : 0;
+}
+
+void BoundMix::read_column(VoxelPos low, std::span<Material> out) {
+  const std::size_t parts = short_list();
+  if (parts == 0) {
+    for (Material& material : out) {
+      material = at(low);
+      ++low.y;
+    }
+    return;
+  }
+  const Node& node = nodes_[*root_.node];
+  std::array<std::uint64_t, kShortListMax> ends{};
+  std::array<Material, kShortListMax> materials{};
+  for (std::size_t i = 0; i < parts; ++i) {
+    ends[i] = node.choices[i].end;
+    materials[i] = node.choices[i].material;
+  }
+  const std::uint64_t total = ends[parts - 1];
+  const std::uint64_t column = voxel_column_hash(node.key, low.x, low.z);
+  auto y = static_cast<std::uint32_t>(low.y);
+  for (Material& material : out) {
+    const std::uint64_t weight = ((voxel_hash_in(column, y++) >> 32) * total) >> 32;
+    std::size_t part = 0;
+    for (std::size_t i = 0; i + 1 < parts; ++i) part += weight >= ends[i] ? 1 : 0;
+    material = materials[part];
+  }
 }
 
 }  // namespace runstone

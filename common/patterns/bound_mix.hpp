@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/core/coords.hpp"
@@ -39,6 +40,9 @@ class BoundMix {
   std::optional<Material> single() const;
   /// Returns the material of a voxel. Cost: O(depth * log parts).
   Material at(VoxelPos voxel);
+  /// Sets `out` to the materials of the voxels from `low` upwards. Cost: that of at() for each voxel,
+  /// or O(parts) for each voxel if the mix is a short list of materials.
+  void read_column(VoxelPos low, std::span<Material> out);
 
  private:
   /// A part of a node: a material, or another node.
@@ -56,6 +60,8 @@ class BoundMix {
   };
   std::optional<PatternError> add(const Mix& mix, const MaterialTable& table, Choice& out);
   std::size_t choice_at(Node& node, VoxelPos voxel) const;
+  /// Returns the number of parts of the whole if it is a list of few materials, otherwise 0.
+  std::size_t short_list() const;
 
   PatternFrame frame_;
   Choice root_;

@@ -17,10 +17,17 @@ namespace runstone {
 /// unlike with place_hash() of a place on the ground, two keys that differ in few bits do not give
 /// the same numbers at other places. The numbers are pinned, so that a mix that is applied again
 /// changes nothing.
-inline std::uint64_t voxel_hash(std::uint64_t key, VoxelPos at) {
+/// voxel_hash() is voxel_hash_in() the column of the voxel.
+inline std::uint64_t voxel_column_hash(std::uint64_t key, std::int32_t x, std::int32_t z) {
   const std::uint64_t xz =
-      (std::uint64_t{static_cast<std::uint32_t>(at.x)} << 32) | static_cast<std::uint32_t>(at.z);
-  return mix64(mix64(key ^ mix64(xz)) + static_cast<std::uint32_t>(at.y));
+      (std::uint64_t{static_cast<std::uint32_t>(x)} << 32) | static_cast<std::uint32_t>(z);
+  return mix64(key ^ mix64(xz));
+}
+inline std::uint64_t voxel_hash_in(std::uint64_t column, std::uint32_t y) {
+  return mix64(column + y);
+}
+inline std::uint64_t voxel_hash(std::uint64_t key, VoxelPos at) {
+  return voxel_hash_in(voxel_column_hash(key, at.x, at.z), static_cast<std::uint32_t>(at.y));
 }
 
 class ClumpNoise {

@@ -1,6 +1,8 @@
 #include "common/patterns/replaced.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "common/builds/paste_source.hpp"
@@ -13,6 +15,9 @@ namespace {
 // The borders of slices are borders of sections.
 static_assert(kColumnSliceEdge % kPasteBlockEdge == 0 &&
               std::int64_t{kColumnSliceEdge + 2} * (kColumnSliceEdge + 2) <= kGroundColumnsMax);
+
+/// The voxels of a column whose materials are chosen at once.
+constexpr std::int32_t kColumnPiece = 128;
 
 /// Returns the number of chunks that a box meets.
 std::uint64_t chunks_in(const VoxelBox& box, std::int32_t edge) {
@@ -175,15 +180,23 @@ HeightRanges Replacing::chosen(const HeightRanges& ranges, std::uint64_t& work) 
 /// Sets the voxels of a part of a run whose materials change.
 void Replacing::mix_run(HeightRange range, Material old) {
   mixed_ += static_cast<std::uint64_t>(range.high - range.low);
+  std::array<Material, kColumnPiece> materials;
   std::int32_t first = range.low;  // of the voxels that get the same material
-  Material material = mix_.at({x_, first, z_});
-  for (std::int32_t y = range.low + 1; y <= range.high; ++y) {
-    const Material next = y < range.high ? mix_.at({x_, y, z_}) : material;
-    if (y < range.high && next == material) continue;
-    if (material != old) set(first, y, material);
-    first = y;
-    material = next;
+  std::optional<Material> open;
+  for (std::int32_t low = range.low; low < range.high; low += kColumnPiece) {
+    const std::int32_t high = std::min(low + kColumnPiece, range.high);
+    const std::span<Material> piece =
+        std::span(materials).first(static_cast<std::size_t>(high - low));
+    mix_.read_column({x_, low, z_}, piece);
+    for (std::int32_t y = low; y < high; ++y) {
+      const Material next = piece[static_cast<std::size_t>(y - low)];
+      if (open == next) continue;
+      if (open && *open != old) set(first, y, *open);
+      first = y;
+      open = next;
+    }
   }
+  if (open && *open != old) set(first, range.high, *open);
 }
 
 /// Sets the voxels [low, high) of the present column. Requires that they lie above those before.

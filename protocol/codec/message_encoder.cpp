@@ -323,10 +323,10 @@ struct BodyBuilder {
   }
 
   Offset<wire::PreviewShare> operator()(const PreviewShare& m) {
-    return wire::CreatePreviewShare(b, preview_list(m.edits));
+    return wire::CreatePreviewShare(b, preview_list(m.edits), stroke_bytes(m.stroke));
   }
   Offset<wire::PlayerPreview> operator()(const PlayerPreview& m) {
-    return wire::CreatePlayerPreview(b, m.author, preview_list(m.edits));
+    return wire::CreatePlayerPreview(b, m.author, preview_list(m.edits), stroke_bytes(m.stroke));
   }
 
   Offset<wire::Resume> operator()(const Resume& m) { return wire::CreateResume(b, m.resolved); }
@@ -450,6 +450,14 @@ struct BodyBuilder {
     const Bytes list = encode_preview(edits);
     RUNSTONE_ASSERT(edits.size() <= kPreviewEditsMax && list.size() <= kPreviewListBytesMax);
     return bytes_of(b, list);
+  }
+
+  /// Returns no field if there is no stroke.
+  Offset<flatbuffers::Vector<std::uint8_t>> stroke_bytes(const std::optional<BrushStroke>& stroke) {
+    if (!stroke) return 0;
+    const Bytes bytes = encode_stroke(*stroke);
+    RUNSTONE_ASSERT(bytes.size() <= kPreviewStrokeBytesMax);
+    return bytes_of(b, bytes);
   }
 
   template <class Rows>

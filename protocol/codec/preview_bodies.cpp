@@ -1,4 +1,5 @@
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -22,6 +23,15 @@ Result<std::vector<EditDescriptor>> read_list(ByteView bytes) {
     edits.push_back(*std::move(edit));
   }
   return edits;
+}
+
+/// Reads the stroke of a preview; no bytes are no stroke.
+Result<std::optional<BrushStroke>> read_stroke(ByteView bytes, bool has_edits) {
+  if (bytes.empty()) return std::optional<BrushStroke>();
+  if (!has_edits) return bad("preview: a stroke without edits");
+  auto stroke = decode_stroke(bytes);
+  if (!stroke) return failure(stroke.error());
+  return std::optional(*std::move(stroke));
 }
 
 }  // namespace
@@ -55,13 +65,17 @@ bool may_be_shared(const std::vector<EditDescriptor>& edits, std::int32_t chunk_
 Result<Message> BodyReader::read(const wire::PreviewShare& t) const {
   auto edits = read_list(view_of(t.edits()));
   if (!edits) return failure(edits.error());
-  return Message{PreviewShare{*std::move(edits)}};
+  auto stroke = read_stroke(view_of(t.stroke()), !edits->empty());
+  if (!stroke) return failure(stroke.error());
+  return Message{PreviewShare{*std::move(edits), *std::move(stroke)}};
 }
 
 Result<Message> BodyReader::read(const wire::PlayerPreview& t) const {
   auto edits = read_list(view_of(t.edits()));
   if (!edits) return failure(edits.error());
-  return Message{PlayerPreview{t.author(), *std::move(edits)}};
+  auto stroke = read_stroke(view_of(t.stroke()), !edits->empty());
+  if (!stroke) return failure(stroke.error());
+  return Message{PlayerPreview{t.author(), *std::move(edits), *std::move(stroke)}};
 }
 
 }  // namespace runstone

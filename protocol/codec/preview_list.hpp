@@ -11,7 +11,8 @@ namespace runstone {
 /// The longest list: the descriptors and their lengths.
 inline constexpr std::size_t kPreviewListBytesMax = kPreviewBytesMax + 2 * kPreviewEditsMax;
 static_assert(kPreviewBytesMax < 1 << 14, "a length is a varint of at most two bytes");
-static_assert(kPreviewListBytesMax + 64 <= kClientControlBytesMax, "every list fits its message");
+static_assert(kPreviewListBytesMax + kPreviewStrokeBytesMax + 64 <= kClientControlBytesMax,
+              "every list and every stroke fit their message");
 
 /// Returns the list: of each edit a varint with the length of its descriptor, and the descriptor.
 /// Requires valid edits.

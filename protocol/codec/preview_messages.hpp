@@ -2,10 +2,12 @@
 // world: they are in no log, and nothing depends on them.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/core/ids.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "protocol/codec/brush_stroke.hpp"
 
 namespace runstone {
 
@@ -13,6 +15,10 @@ namespace runstone {
 /// kPreviewBytesMax bytes together; none: nothing is previewed any more.
 struct PreviewShare {
   std::vector<EditDescriptor> edits;
+  /// The stroke of a brush that the next click would make (feature bit 30). The edits are then a
+  /// line with a width along it, for clients that cannot work out the stroke. With a stroke there
+  /// is at least one edit.
+  std::optional<BrushStroke> stroke = std::nullopt;
   friend bool operator==(const PreviewShare&, const PreviewShare&) = default;
 };
 
@@ -20,6 +26,7 @@ struct PreviewShare {
 struct PlayerPreview {
   AuthorId author = 0;
   std::vector<EditDescriptor> edits;
+  std::optional<BrushStroke> stroke = std::nullopt;
   friend bool operator==(const PlayerPreview&, const PlayerPreview&) = default;
 };
 

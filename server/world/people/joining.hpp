@@ -20,7 +20,7 @@ namespace runstone {
 /// The parts of the protocol that a server does not offer while it follows: they need what only the
 /// owner has in memory.
 inline constexpr std::uint64_t kFeaturesOfOwner =
-    kFeatureKeyTransfer | kFeatureRestorePreview | kFeaturePreviews;
+    kFeatureKeyTransfer | kFeatureRestorePreview | kFeaturePreviews | kFeatureStrokes;
 
 class Joining {
  public:

@@ -14,6 +14,8 @@ namespace {
 
 // Bytes that count as read, so that messages that gain nothing do not keep the world busy.
 constexpr std::size_t kDroppedPreviewBytes = 4'096;
+/// The work of a stroke at its viewers that counts as one byte read.
+constexpr std::uint64_t kStrokeWorkPerByte = 256;
 
 }  // namespace
 
@@ -21,6 +23,13 @@ constexpr std::size_t kDroppedPreviewBytes = 4'096;
 bool Previews::is_possible(Session& session, const EditDescriptor& edit, const Clocks& now) const {
   return is_light_preview(edit, config_.chunk_edge) && !order_.authority().check(edit) &&
          is_within_reach(config_, session, edit, now);
+}
+
+/// Returns true if the stroke could be made as far as its places, its work and its materials say.
+bool Previews::is_possible(Session& session, const BrushStroke& stroke, const Clocks& now) const {
+  return check_stroke(stroke) && std::ranges::all_of(stroke.places, [&](const VoxelPos& at) {
+           return is_possible(session, {SetVoxel{at}, stroke.mask, stroke.material}, now);
+         });
 }
 
 bool Previews::reads_previews(const Session& other, const Session& sender) const {
@@ -64,6 +73,15 @@ void Previews::on_share(Session& session, const PreviewShare& share, const Clock
       ground_.sees_present(session) && std::ranges::all_of(share.edits, [&](const auto& edit) {
         return is_possible(session, edit, now);
       });
+  // A client without the feature gets the edits only.
+  const bool has_stroke = are_possible && share.stroke && session.has(kFeatureStrokes) &&
+                          is_possible(session, *share.stroke, now);
+  if (share.stroke) {
+    sessions_.charge_reading(
+        session, has_stroke
+                     ? static_cast<std::size_t>(stroke_work(*share.stroke) / kStrokeWorkPerByte)
+                     : kDroppedPreviewBytes);
+  }
   // `waiting` show the preview before, and get none now: the next one comes soon.
   std::vector<SessionId> readers, waiting;
   if (are_possible) {
@@ -88,6 +106,14 @@ void Previews::on_share(Session& session, const PreviewShare& share, const Clock
     return other == nullptr || !other->is_open();
   });
   pass_on(session, gone, {session.author, {}});
+  if (has_stroke) {
+    const auto first_without = std::stable_partition(
+        readers.begin(), readers.end(),
+        [&](SessionId id) { return sessions_.find(id)->has(kFeatureStrokes); });
+    const std::vector<SessionId> with(readers.begin(), first_without);
+    pass_on(session, with, {session.author, share.edits, share.stroke});
+    readers.erase(readers.begin(), first_without);
+  }
   pass_on(session, readers, {session.author, share.edits});
   mine.readers = std::move(showing);
 }

@@ -789,6 +789,25 @@ std::vector<EditDescriptor> any_preview(SplitMix64& rng) {
   return edits;
 }
 
+std::optional<BrushStroke> any_brush_stroke(SplitMix64& rng) {
+  if (rng.below(2) == 0) return std::nullopt;
+  BrushStroke stroke;
+  stroke.size = static_cast<std::uint16_t>(1 + rng.below(32));
+  stroke.mode = static_cast<std::uint8_t>(rng.below(7));
+  stroke.lowers = rng.below(2) == 0;
+  stroke.material = static_cast<Material>(rng.below(9));
+  if (rng.below(2) == 0) stroke.mix = "stone, dirt";
+  for (std::uint32_t count = 1 + rng.below(9); count > 0; --count)
+    stroke.places.push_back({rng.between(-99, 99), rng.between(-99, 99), rng.between(-99, 99)});
+  return stroke;
+}
+
+PreviewShare any_preview_share(SplitMix64& rng) {
+  PreviewShare share{any_preview(rng)};
+  if (!share.edits.empty()) share.stroke = any_brush_stroke(rng);
+  return share;
+}
+
 EditRequest any_edit_request(SplitMix64& rng) {
   EditRequest request{1 + (any64(rng) >> 1), any_time(rng), {}};
   if (rng.below(8) == 0) {
@@ -904,9 +923,11 @@ Message random_message(SplitMix64& rng, MessageKind kind) {
     case kKindOf<RestorePreview>:
       return any_restore_preview(rng);
     case kKindOf<PreviewShare>:
-      return PreviewShare{any_preview(rng)};
-    case kKindOf<PlayerPreview>:
-      return PlayerPreview{rng.below(1000), any_preview(rng)};
+      return any_preview_share(rng);
+    case kKindOf<PlayerPreview>: {
+      PreviewShare share = any_preview_share(rng);
+      return PlayerPreview{rng.below(1000), std::move(share.edits), std::move(share.stroke)};
+    }
     case kKindOf<FollowRequest>:
       return any_follow_request(rng);
     case kKindOf<FollowAnswer>:

@@ -153,6 +153,7 @@ TEST_CASE("the features of version 3 have their numbers", "[protocol][golden]") 
   CHECK(kFeatureVeil == 1 << 26);
   CHECK(kFeatureChatWithdrawal == 1 << 27);
   CHECK(kFeatureTimedGrants == 1 << 28);
+  CHECK(kFeatureStrokes == 1 << 30);
 }
 
 TEST_CASE("the kinds of version 3 have their numbers", "[protocol][golden]") {

@@ -16,7 +16,7 @@ SharedPreviews::Shared box_of(std::int32_t x, Material material = 2) {
 struct OthersBench : test::ToolBench {
   OthersBench() {
     show_flat();
-    others.set_materials(mesh_materials_of(default_material_table()));
+    others.set_materials(default_material_table(), mesh_materials_of(default_material_table()));
   }
   /// Makes the ghosts of all previews. Returns the number of calls in which they changed.
   int settle(const Shared& shared) {
@@ -32,7 +32,82 @@ struct OthersBench : test::ToolBench {
   OthersPreviews others;
 };
 
+/// Returns the ghosts by chunk, with the tints of players removed.
+std::vector<GhostChunk> untinted(std::vector<GhostChunk> ghosts) {
+  for (GhostChunk& ghost : ghosts) ghost.tint.reset();
+  return ghosts;
+}
+
+/// Fails unless two lists of ghosts have the same quads of the same voxels.
+void require_equal(const std::vector<GhostChunk>& a, const std::vector<GhostChunk>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    REQUIRE(a[i].key == b[i].key);
+    REQUIRE(a[i].shift == b[i].shift);
+    for (const auto part : {&GhostChunk::placed, &GhostChunk::removed}) {
+      REQUIRE((a[i].*part == nullptr) == (b[i].*part == nullptr));
+      if (a[i].*part != nullptr) {
+        REQUIRE((a[i].*part)->opaque.quads == (b[i].*part)->opaque.quads);
+        REQUIRE((a[i].*part)->transparent.quads == (b[i].*part)->transparent.quads);
+      }
+    }
+  }
+}
+
 }  // namespace
+
+TEST_CASE_METHOD(OthersBench, "the ghost of another player's stroke is that player's own preview",
+                 "[client_app]") {
+  show_random();
+  box.set_materials(default_material_table());
+  const char* const tool = GENERATE("terrain", "path");
+  REQUIRE(box.choose(tool));
+  for (const std::int32_t mode : {0, 2, 3, 4}) {
+    if (box.tool().name() == "terrain") {
+      REQUIRE(box.set_parameter("mode", mode));
+      REQUIRE(box.set_parameter("radius", 7));
+      REQUIRE(box.set_text("material", "70% stone, 30% dirt"));
+    }
+    const auto place = [&](std::int32_t x, std::int32_t z) {
+      VoxelPos voxel{x, 2 * kEdge - 1, z};
+      while (voxel.y > -2 * kEdge && at(voxel) == kEmpty) --voxel.y;
+      return aim_at(voxel, Direction::pos_y);
+    };
+    REQUIRE(box.press(replica, place(-9, 2), ToolButton::place));
+    for (std::int32_t x = -8; x < 9; x += 3) box.drag(place(x, 2 + x / 2));
+    const Aim last = place(9, 3);
+    for (int i = 0; i < 40; ++i) static_cast<void>(box.step_preview(replica, last, 10'000));
+    const auto stroke = box.next_stroke(last);
+    REQUIRE(stroke);
+    REQUIRE(check_stroke(*stroke));
+    const auto sent = decode_stroke(encode_stroke(*stroke));
+    REQUIRE(sent);
+    settle({{7, {box_of(0).edits, 0, *sent}}});
+    if (mode == 0) CHECK_FALSE(box.ghosts().empty());
+    require_equal(untinted(ghosts()), box.ghosts());
+    box.cancel();
+  }
+}
+
+TEST_CASE_METHOD(OthersBench, "a stroke follows the ground, and its edits stand in for it",
+                 "[client_app]") {
+  BrushStroke stroke;
+  stroke.size = 5;
+  stroke.strength = 3;
+  stroke.places = {{0, -1, 0}, {4, -1, 2}};
+  const Shared shared = {{7, {box_of(3).edits, 0, stroke}}};
+  CHECK(settle(shared) == 1);
+  const auto before = ghosts();
+  CHECK_FALSE(before.empty());
+  predict({{FillBox{{{-1, 0, -1}, {6, 2, 4}}}, {}, 1}});
+  CHECK(settle(shared) == 1);
+  BrushStroke far = stroke;
+  far.places = {{9'000, 0, 0}};  // its ground is not shown
+  settle({{7, {box_of(3).edits, 0, far}}});
+  const auto stood_in = ghosts();
+  settle({{7, box_of(3)}});
+  require_equal(stood_in, ghosts());
+}
 
 TEST_CASE_METHOD(OthersBench, "the previews of others are ghosts in the colours of the players",
                  "[client_app]") {

@@ -53,6 +53,29 @@ TEST_CASE("the previews of others are kept until they are replaced, old, or thei
   CHECK(previews.others().size() == SharedPreviews::kAuthorsMax);
 }
 
+TEST_CASE("a stroke is shared with its edits, and forgotten when its player edits",
+          "[client_session]") {
+  BrushStroke stroke;
+  stroke.places = {{1, 2, 3}};
+  SharedPreviews previews;
+  CHECK(previews.share(one(1), 16, 0, stroke) == PreviewShare{one(1), stroke});
+  CHECK_FALSE(previews.share(one(1), 16, 300'000, stroke));
+  stroke.places.push_back({2, 2, 3});
+  CHECK(previews.share(one(1), 16, 300'000, stroke) == PreviewShare{one(1), stroke});
+  BrushStroke wrong = stroke;
+  wrong.size = 0;
+  CHECK(previews.share(one(1), 16, 600'000, wrong) == PreviewShare{one(1)});
+  CHECK(previews.share(kNothing, 16, 900'000, stroke) == PreviewShare{});
+  previews.receive({7, one(1), stroke}, 16, 0);
+  previews.receive({8, one(1)}, 16, 0);
+  previews.receive({9, one(1), wrong}, 16, 0);
+  CHECK(previews.others().at(7).stroke == stroke);
+  CHECK_FALSE(previews.others().at(9).stroke);
+  for (const AuthorId author : {7U, 8U, 10U}) previews.forget_stroke(author);
+  CHECK_FALSE(previews.others().contains(7));
+  CHECK(previews.others().contains(8));
+}
+
 TEST_CASE_METHOD(SessionBench, "a session shares a preview only with a server that has the feature",
                  "[client_session]") {
   greet();

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <vector>
 
 #include "common/patterns/pattern_parser.hpp"
 
@@ -119,6 +120,50 @@ TEST_CASE("a material depends on the place and the seed alone", "[patterns]") {
   // A change of these numbers changes what a repeated stroke does to ground that was mixed before.
   CHECK(digest(1) == 0x553b983f22165f69ULL);
   CHECK(digest(2) == 0x0e4aa87394b8596bULL);
+}
+
+TEST_CASE("a column that is read at once has the materials of its voxels", "[patterns]") {
+  const MaterialTable& table = default_material_table();
+  for (const char* text :
+       {"stone", "70% stone, 20% gravel, 10% clay", "stone, gravel",
+        "1% stone, 9999% (50% gravel, 50% clay)", "noise 5: 30% stone, 70% gravel",
+        "y -20..30: stone, gravel, clay", "distance 3..40: stone, gravel",
+        "stone, gravel, clay, dirt, grass, sand, stone, gravel, clay, dirt"}) {
+    const auto mix = parse_mix(text);
+    CAPTURE(text);
+    REQUIRE(mix);
+    for (const std::uint64_t seed : {0ULL, 5ULL, ~0ULL}) {
+      auto bound = BoundMix::of(*mix, table, {seed, {7, -3, 11}}).value();
+      auto again = bound;
+      for (const VoxelPos low : {VoxelPos{0, -64, 0}, VoxelPos{-17, -5, 900},
+                                 VoxelPos{kWorldLimit - 1, -kWorldLimit, -kWorldLimit}}) {
+        std::vector<Material> column(130);
+        bound.read_column(low, column);
+        for (std::size_t i = 0; i < column.size(); ++i) {
+          const VoxelPos at{low.x, low.y + static_cast<std::int32_t>(i), low.z};
+          if (column[i] != again.at(at)) FAIL("another material at " << at.y);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the choices of a mix are pinned, because scripts and previews rely on them",
+          "[patterns][golden]") {
+  const MaterialTable& table = default_material_table();
+  const auto digest_of_mix = [&](const char* text) {
+    auto bound = BoundMix::of(parse_mix(text).value(), table, {5, {1, 2, 3}}).value();
+    std::uint64_t sum = 0;
+    std::vector<Material> column(64);
+    for (std::int32_t x = -8; x < 8; ++x) {
+      bound.read_column({x, -32, 3 * x}, column);
+      for (const Material material : column) sum = mix64(sum ^ material);
+    }
+    return sum;
+  };
+  CHECK(digest_of_mix("70% stone, 20% gravel, 10% clay") == 0x3911002caf64a7a0ULL);
+  CHECK(digest_of_mix("50% stone, 50% (30% gravel, 70% clay)") == 0x23e126c9832b59a7ULL);
+  CHECK(digest_of_mix("noise 8: 60% stone, 40% gravel") == 0x981cf90d6acac63eULL);
 }
 
 TEST_CASE("a material that the world lacks is named with its column", "[patterns]") {

@@ -84,6 +84,35 @@ TEST_CASE("a preview that could be no edit is passed on as none", "[world]") {
   CHECK(bench.environment.charged[1] >= 4'096);
 }
 
+TEST_CASE("a stroke goes to those who take strokes, and the others get its edits", "[world]") {
+  WorldConfig c = config();
+  c.reach_max = 30;
+  PreviewBench bench(std::move(c));
+  bench.enter(1, kFeaturePreviews | kFeatureStrokes);
+  bench.enter(2, kFeaturePreviews | kFeatureStrokes);
+  bench.enter(3);
+  BrushStroke stroke;
+  stroke.size = 8;
+  stroke.places = {{4, 0, 0}, {9, 1, 3}};
+  const auto share = [&] {
+    bench.server.received(1, PreviewShare{{box_at(4)}, stroke}, bench.now());
+  };
+  share();
+  REQUIRE(bench.previews(2).size() == 1);
+  CHECK(bench.previews(2)[0].stroke == stroke);
+  CHECK(bench.previews(2)[0].edits == std::vector{box_at(4)});
+  REQUIRE(bench.previews(3).size() == 1);
+  CHECK_FALSE(bench.previews(3)[0].stroke);
+  CHECK(bench.previews(3)[0].edits == std::vector{box_at(4)});
+  SECTION("out of reach") { stroke.places.push_back({100, 0, 0}); }
+  SECTION("an unknown material") { stroke.material = 999; }
+  SECTION("too much work") { stroke.places.assign(256, {4, 0, 0}), stroke.size = 128; }
+  share();
+  REQUIRE(bench.previews(2).size() == 2);
+  CHECK_FALSE(bench.previews(2)[1].stroke);
+  CHECK(bench.environment.charged[1] >= 4'096);
+}
+
 TEST_CASE("a flood of previews is dropped and charged to its sender", "[world]") {
   PreviewBench bench;
   bench.enter(1);
