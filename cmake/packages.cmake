@@ -1,10 +1,26 @@
 # Every dependency is a Debian 12 package; scripts/packages lists them by name.
+set(runstone_highway hwy::hwy)
 if(EMSCRIPTEN)
   enable_language(C)
   include(cmake/web_packages.cmake)
   return()
 endif()
-find_package(hwy REQUIRED CONFIG)
+if(RUNSTONE_HIGHWAY_HEADERS)
+  # Links, because the folder may have headers of another system beside those of Highway.
+  if(NOT EXISTS ${RUNSTONE_HIGHWAY_HEADERS}/hwy/highway.h)
+    message(FATAL_ERROR "RUNSTONE_HIGHWAY_HEADERS is ${RUNSTONE_HIGHWAY_HEADERS}, which has no hwy/highway.h")
+  endif()
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/highway-headers)
+  file(CREATE_LINK ${RUNSTONE_HIGHWAY_HEADERS}/hwy ${PROJECT_BINARY_DIR}/highway-headers/hwy SYMBOLIC)
+  add_library(runstone_highway INTERFACE)
+  target_include_directories(runstone_highway SYSTEM INTERFACE ${PROJECT_BINARY_DIR}/highway-headers)
+  # The vector code is compiled once, so no code of Highway chooses at run time.
+  target_compile_definitions(runstone_highway INTERFACE HWY_COMPILE_ONLY_STATIC)
+  add_library(hwy::hwy ALIAS runstone_highway)
+  set(runstone_highway $<BUILD_INTERFACE:hwy::hwy>)  # programs do not link it
+else()
+  find_package(hwy REQUIRED CONFIG)
+endif()
 if(RUNSTONE_LIBRARY_ONLY)
   find_package(zstd CONFIG QUIET)
   return()

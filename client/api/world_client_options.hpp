@@ -20,7 +20,7 @@ enum class Encryption : std::uint8_t {
 };
 
 struct WorldClientOptions {
-  /// HOST, HOST:PORT or a link runstone://HOST:PORT/#INVITE. Several addresses of servers of one
+  /// HOST, HOST:PORT or a link `runstone://HOST:PORT/#INVITE`. Several addresses of servers of one
   /// world are separated by commas.
   std::string server = {};
   /// An invite token. Empty: the client uses the token of the link in `server`, if there is one.

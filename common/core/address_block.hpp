@@ -16,7 +16,7 @@ constexpr AddressBlock address_block_v4(std::uint32_t address) {
   return AddressBlock{0x0000'ffff'0000'0000ULL | address};
 }
 /// Returns the block of an IPv6 address, in network order. An IPv4 address within IPv6
-/// (::ffff:a.b.c.d) has the block of the IPv4 address.
+/// (0:0:0:0:0:ffff:a.b.c.d) has the block of the IPv4 address.
 constexpr AddressBlock address_block_v6(const std::array<unsigned char, 16>& address) {
   std::uint64_t high = 0, low = 0;
   for (std::size_t i = 0; i < 8; ++i) high = high << 8 | address[i];
