@@ -62,6 +62,8 @@ file(COPY /usr/include/sodium/version.h DESTINATION ${web_sources}/libsodium/src
 file(GLOB_RECURSE sodium_sources ${web_sources}/libsodium/src/libsodium/*.c)
 list(FILTER sodium_sources EXCLUDE REGEX "(avx|sse|neon|aesni|_xmm|sandy2x)")
 list(FILTER sodium_sources EXCLUDE REGEX "/crypto_(auth|box|kdf|kx|secretbox|secretstream|shorthash)/|scryptsalsa")
+list(FILTER sodium_sources EXCLUDE REGEX "hsalsa20|salsa20(8|12)|xsalsa20\\.c|/core_(ed25519|ristretto255)\\.c|/scalarmult_(ed25519|ristretto255)_ref10")
+list(FILTER sodium_sources EXCLUDE REGEX "/(crypto_hash|crypto_scalarmult|crypto_stream|obsolete)\\.c|/sha256/")
 web_library(web_sodium PkgConfig::SODIUM SOURCES ${sodium_sources}
             HEADERS ${web_sources}/libsodium/src/libsodium/include
             PRIVATE_HEADERS ${web_sources}/libsodium/src/libsodium/include/sodium

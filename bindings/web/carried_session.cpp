@@ -132,6 +132,7 @@ void CarriedSession::take_changes() {
     if (change.removed && drawn_.erase(change.key) != 0) gone_.push_back(change.key);
   }
   note_outcomes(changes);
+  note_command_end();
   for (const ChatLine& line : session_.drain_chat())
     note(CarriedNoticeKind::chat, 0, line.name.empty() ? line.text : line.name + ": " + line.text);
 }
@@ -235,6 +236,25 @@ Result<void, std::string> CarriedSession::chat(std::string_view line) {
   auto sent = session_.chat(line);
   queue_outgoing();
   return sent;
+}
+
+Result<void, std::string> CarriedSession::command(std::string text) {
+  note_command_end();
+  if (const auto sent = session_.command(std::move(text)); !sent) return failure(sent.error().what);
+  is_commanding_ = true;
+  queue_outgoing();
+  return {};
+}
+
+void CarriedSession::note_command_end() {
+  if (!is_commanding_ || session_.commanding()) return;
+  is_commanding_ = false;
+  std::string text;
+  for (const std::string& line : session_.command_lines()) {
+    if (!text.empty()) text += '\n';
+    text += line;
+  }
+  note(CarriedNoticeKind::command, session_.command_ok() ? 1 : 0, std::move(text));
 }
 
 void CarriedSession::leave() {

@@ -50,6 +50,7 @@ enum class CarriedNoticeKind : std::uint8_t {
   materials = 6,  // there are more materials, or materials of another world
   durable = 7,    // number: an edit that is on disk
   unseen = 8,     // number: an edit whose answer was lost; the chunks show whether it was applied
+  command = 9,    // the command has ended; number: 1 if it succeeded; text: its lines
 };
 
 struct CarriedNotice {
@@ -89,6 +90,9 @@ class CarriedSession final : private MessageSink {
   /// Shows an edit at once and sends it. Fails as ClientSession::offer() does, with words.
   Result<ClientSequence, std::string> edit(const EditDescriptor& edit, TimeUs now_us);
   Result<void, std::string> chat(std::string_view line);
+  /// Sends a command, such as "undo". A notice has its output. Fails as ClientSession::command()
+  /// does, with words.
+  Result<void, std::string> command(std::string text);
   /// Queues a goodbye.
   void leave();
 
@@ -116,6 +120,8 @@ class CarriedSession final : private MessageSink {
   /// Returns the number of an edit: the sequence with which it was offered first.
   ClientSequence number_of(ClientSequence seq) const;
   void note_outcomes(const ReplicaChanges& changes);
+  /// Adds the notice of the command if it has ended since the last call.
+  void note_command_end();
   void note(CarriedNoticeKind kind, std::uint32_t number, std::string text);
   /// Requires an open world. Does nothing if the materials are those of the last call.
   void update_materials();
@@ -132,6 +138,7 @@ class CarriedSession final : private MessageSink {
 
   std::uint64_t opened_ = 0;  // connect_count() of the newest notice
   std::optional<WorldId> world_;
+  bool is_commanding_ = false;        // a command was sent, and its notice was not added
   std::optional<WorldPos> moved_to_;  // by the last move() for this world, or before there was one
   std::size_t material_count_ = 0;
   std::uint64_t shapes_number_ = 0;

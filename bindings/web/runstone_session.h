@@ -79,6 +79,10 @@ RUNSTONE_API runstone_status runstone_session_edit(runstone_session* session, co
                                                    size_t count, double now_ms, uint32_t* number);
 RUNSTONE_API runstone_status runstone_session_chat(runstone_session* session, const char* text,
                                                    size_t text_bytes);
+/* Sends a command, such as "undo". A notice has its output. Refuses another command before the first
+ * has ended. */
+RUNSTONE_API runstone_status runstone_session_command(runstone_session* session, const char* text,
+                                                      size_t text_bytes);
 RUNSTONE_API runstone_status runstone_session_leave(runstone_session* session);
 /* Makes the next mesh that is out of date. *has_mesh becomes 0 if there is none, 1 if `mesh` is the
  * mesh of the chunk *at, and 2 if that chunk has none any more. */

@@ -218,6 +218,15 @@ runstone_status runstone_session_chat(runstone_session* session, const char* tex
   });
 }
 
+runstone_status runstone_session_command(runstone_session* session, const char* text,
+                                         size_t text_bytes) {
+  return answer([&] {
+    CarriedSession& in = live(session, "session").carried;
+    const auto sent = in.command({&given(text, "text"), text_bytes});
+    if (!sent) refuse_with(RUNSTONE_NOT_PERMITTED, sent.error());
+  });
+}
+
 runstone_status runstone_session_leave(runstone_session* session) {
   return answer([&] { live(session, "session").carried.leave(); });
 }

@@ -28,7 +28,7 @@ Result<VeilPatch> read_patch_bytes(ByteView bytes, Extent extent) {
   const std::uint64_t count = in.varint_max(volume, "spans of a patch");
   if (in.ok() && count > in.left() / kSpanBytesMin)
     in.reject(ErrorCode::truncated, "spans of a patch");
-  if (in.ok()) out.spans.reserve(count);
+  if (in.ok()) out.spans.reserve(static_cast<std::size_t>(count));
   std::uint32_t end = 0;
   for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
     if (end == volume) {

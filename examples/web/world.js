@@ -9,11 +9,8 @@ const REACH = 64, SPEED = 12; // voxels, and voxels a second
 const SIDE_LIGHT = [0.8, 0.8, 0.6, 1, 0.9, 0.9]; // by direction
 
 await load();
-const session = new Session({
-  url: options.get("server") ?? "ws://127.0.0.1:8080/play",
-  name: options.get("name") ?? "visitor",
-  radius: Number(options.get("radius") ?? 4),
-});
+const session = new Session({ url: options.get("server") ?? "ws://127.0.0.1:8080/play",
+  name: options.get("name") ?? "visitor", radius: Number(options.get("radius") ?? 4) });
 
 const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
 const scene = new THREE.Scene();
@@ -47,7 +44,6 @@ function show({ at, mesh }) {
   }
   bodies.delete(key);
   if (mesh === null) return;
-  const { edge } = session.info;
   bodies.set(key, [Pass.OPAQUE, Pass.TRANSPARENT].filter((pass) => mesh.quadCount(pass) > 0).map((pass) => {
     const arrays = mesh.geometry(pass);
     const geometry = new THREE.BufferGeometry();
@@ -55,15 +51,14 @@ function show({ at, mesh }) {
     geometry.setAttribute("color", new THREE.BufferAttribute(colours(arrays), 4));
     geometry.setIndex(new THREE.BufferAttribute(arrays.indices, 1));
     const body = new THREE.Mesh(geometry, looks[pass]);
-    body.position.set(at.x * edge, at.y * edge, at.z * edge);
+    body.position.copy(at).multiplyScalar(session.info.edge);
     scene.add(body);
     return body;
   }));
 }
 
 function click(builds) {
-  const ahead = camera.getWorldDirection(new THREE.Vector3());
-  const hit = session.pick(camera.position, ahead, REACH);
+  const hit = session.pick(camera.position, camera.getWorldDirection(new THREE.Vector3()), REACH);
   if (hit === null || hit.direction === Direction.NONE) return;
   const place = { ...hit.voxel };
   if (builds) place["xyz"[hit.direction >> 1]] += hit.direction & 1 ? 1 : -1;
@@ -91,8 +86,7 @@ function frame(now) {
   for (const changed of session.meshes()) show(changed);
   const step = (SPEED * (now - before)) / 1000;
   before = now;
-  camera.translateZ(step * (keys.has("KeyS") - keys.has("KeyW")));
-  camera.translateX(step * (keys.has("KeyD") - keys.has("KeyA")));
+  camera.translateZ(step * (keys.has("KeyS") - keys.has("KeyW"))).translateX(step * (keys.has("KeyD") - keys.has("KeyA")));
   // three.js looks along -z and turns to the left; Runstone looks along +z and turns to +x.
   session.move(camera.position, camera.rotation.y + Math.PI, camera.rotation.x);
   renderer.setSize(innerWidth, innerHeight, false);

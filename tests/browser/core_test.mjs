@@ -1,5 +1,5 @@
-// Tests of the package @runstone/core: alone in node, and in pages of a headless Chromium that join
-// a real server through its gateway.
+// Tests of the package @runstone/core: alone in node, and in sessions that join a real server through
+// its gateway, in node and in pages of a headless Chromium.
 //   node core_test.mjs PROGRAMS PACKAGE EXAMPLES [OUT]
 // PROGRAMS is the folder of the native programs, PACKAGE the folder of the package, and EXAMPLES
 // the folder examples/web. Pictures go to OUT. node_modules beside this file has three.js,
@@ -7,10 +7,11 @@
 import puppeteer from "puppeteer-core";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { brotliCompressSync } from "node:zlib";
+import NodeWebSocket from "ws";
 
 import { CHROMIUM, serve } from "./pages.mjs";
 import { sideBySide } from "./pictures.mjs";
@@ -204,11 +205,137 @@ await test("the types are those of a program", () => {
   { stdio: ["ignore", "inherit", "inherit"] });
 });
 
-// In pages.
-const browser = await puppeteer.launch(CHROMIUM);
 const server = await serve({ "/": examples, "/node_modules/": join(here, "node_modules") });
 const world = await World.open(bin, null, ["--generator", "landscape", "--seed", "3"], ["--origins", server.address]);
 const socket = `ws://127.0.0.1:${world.web.port}/play`;
+
+// In node, with the WebSocket of the package ws, which puppeteer-core requires.
+class Visitor {
+  events = [];
+  quads = new Map(); // by place of the chunk; 0: it has no mesh any more
+  constructor(options) {
+    this.session = new Session({ url: socket, WebSocket: NodeWebSocket, radius: 1, radiusVertical: 1, ...options });
+  }
+  // Steps the session until the answer is true, and returns it.
+  until(what, ask) {
+    return until(what, () => {
+      this.events.push(...this.session.step());
+      for (const { at, mesh } of this.session.meshes()) this.quads.set(`${at.x},${at.y},${at.z}`, mesh === null ? 0 : mesh.quadCount(Pass.OPAQUE) + mesh.quadCount(Pass.TRANSPARENT));
+      return ask();
+    });
+  }
+  event(type, number) {
+    return this.until(`the event ${type}`, () => this.events.find((event) => event.type === type && (number === undefined || event.number === number)));
+  }
+  async join() {
+    await this.event("open");
+    await this.until("the world is loaded and meshed", () => this.session.info.isLoaded && this.session.info.unmeshed === 0);
+    return this.session.info.place;
+  }
+  // Returns the place of the voxel above the ground below the player.
+  above({ x, y, z }) {
+    const ground = this.session.pick({ x, y, z }, { x: 0.3, y: -1, z: 0.2 }, 60);
+    return { ...ground.voxel, y: ground.voxel.y + 1 };
+  }
+}
+const total = ({ quads }) => [...quads.values()].reduce((sum, count) => sum + count, 0);
+
+await test("sessions in node join, build, chat, undo, come back, and close", async () => {
+  const key = crypto.getRandomValues(new Uint8Array(32));
+  const one = new Visitor({ name: "one", key });
+  const other = new Visitor({ name: "other" });
+  const place = await one.join();
+  await other.join();
+  const { author, edge, materials, chunks } = one.session.info;
+  assert(author > 0 && author !== other.session.info.author);
+  assert.equal(one.session.materials.length, materials);
+  assert.equal(one.session.materials[0].look, Look.EMPTY);
+  assert(chunks > 0 && [16, 32, 64, 128].includes(edge) && total(one) > 0, JSON.stringify(one.session.info));
+  const bytes = one.session.chunk({ x: Math.floor(place.x / edge), y: Math.floor(place.y / edge), z: Math.floor(place.z / edge) }).encode();
+  assert(Chunk.decode(bytes, edge).info.runs > 0);
+
+  // An edit is shown at once, in the mesh at the next step, and in the other session.
+  const glass = one.session.material("glass");
+  const at = one.above(place);
+  const before = total(one);
+  const [number] = one.session.edit(new Edits().voxel(at, glass));
+  assert.equal(one.session.get(at), glass);
+  await one.until("the edit is meshed", () => total(one) > before);
+  await one.event("durable", number);
+  assert.equal(one.session.info.pending, 0);
+  await other.until("the other session has the voxel", () => other.session.get(at) === glass);
+  assert.throws(() => one.session.edit(new Edits().voxel(at, 60000)), (error) => error.status === "not permitted" && error.message.length > 25);
+  assert.throws(() => one.session.material("no such material"), RunstoneError);
+  assert.throws(() => one.session.chunk({ x: 1000, y: 0, z: 0 }), RunstoneError);
+  assert.equal(one.session.get({ x: 100_000, y: 0, z: 0 }), null);
+
+  one.session.chat("good morning, Zoë");
+  await other.until("the line arrives", () => other.events.some(({ type, text }) => type === "chat" && text === "one: good morning, Zoë"));
+  assert.throws(() => one.session.chat(""), RunstoneError);
+
+  one.session.command("undo");
+  assert.throws(() => one.session.command("undo"), RunstoneError);
+  const undone = await one.event("command");
+  assert.equal(undone.number, 1, undone.text);
+  assert(undone.text.length > 0);
+  await other.until("the voxel is gone again", () => other.session.get(at) === 0);
+  await one.until("the mesh is as before", () => total(one) === before);
+  one.events.length = 0;
+  one.session.command("no such command");
+  assert.equal((await one.event("command")).number, 0);
+
+  // Both sessions notice that the server is away, keep what they have, and join again. An edit that
+  // was made in between is sent then.
+  one.events.length = other.events.length = 0;
+  await world.stopServer();
+  await one.event("closed");
+  await other.event("closed");
+  assert.equal(one.session.info.isOpen, false);
+  assert.equal(one.session.get(at), 0);
+  const [later] = one.session.edit(new Edits().voxel(at, glass));
+  assert.equal(one.session.get(at), glass);
+  await world.startServer();
+  await one.event("open");
+  assert.equal(one.session.info.author, author);
+  await one.event("durable", later);
+  await other.until("the other session has the voxel", () => other.session.get(at) === glass);
+  one.session.close();
+  other.session.close();
+  refused("bad handle", () => one.session.step());
+
+  // The key is the player.
+  const again = new Visitor({ name: "one", key });
+  await again.join();
+  assert.equal(again.session.info.author, author);
+  assert.equal(again.session.get(at), glass);
+  again.session.close();
+});
+
+await test("a server that refuses a player ends the session, with words", async () => {
+  const one = new Visitor({ name: "banned" });
+  await one.join();
+  world.control("ban banned");
+  assert((await one.event("refused")).text.length > 10);
+  assert.equal(one.session.info.isOpen, false);
+  await new Promise((done) => setTimeout(done, 600));
+  one.events.length = 0;
+  one.session.step();
+  assert.equal(one.session.info.isOpen, false);
+  one.session.close();
+});
+
+await test("the example without a window runs in node", () => {
+  copyFileSync(join(examples, "join.mjs"), join(here, "join.mjs")); // beside node_modules
+  const program = `globalThis.WebSocket = (await import("ws")).default; await import("./join.mjs");`;
+  const said = execFileSync(process.execPath, ["--input-type=module", "-e", program, "join.mjs", socket], { cwd: here, encoding: "utf8", timeout: 60_000 });
+  assert.match(said, /^chunk .* quads$/m);
+  assert.equal(said.trim().split("\n").at(-1), "the edit is on disk");
+  const lines = readFileSync(join(examples, "join.mjs"), "utf8").trim().split("\n").length;
+  assert(lines <= 40, `${lines} lines`);
+});
+
+// In pages.
+const browser = await puppeteer.launch(CHROMIUM);
 const opened = [];
 async function page(path) {
   const made = await browser.newPage();

@@ -191,7 +191,7 @@ export interface SessionInfo {
  * - materials: Session.materials has changed.
  */
 export interface SessionEvent {
-  type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unseen" | "unknown";
+  type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unseen" | "command" | "unknown";
   number: number;
   text: string;
 }
@@ -225,6 +225,11 @@ export class Session {
    */
   edit(edits: Edits): number[];
   chat(line: string): void;
+  /**
+   * Sends a command, such as "undo". The event `command` has its output as text, and the number 1
+   * if it succeeded. Fails while another command runs.
+   */
+  command(text: string): void;
   /** A copy of a chunk as it is shown. */
   chunk(place: Pos): Chunk;
   /** The material of a voxel, or null where no chunk is held. */

@@ -3,7 +3,7 @@
 import { Chunk, Edits, Mesh, ray } from "./chunks.js";
 import { bytesAt, call, Handle, memory, pointer, readPos, readVec, RunstoneError, textAt, use, whole } from "./wasm.js";
 
-const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable", 8: "unseen" };
+const NOTICES = { 1: "open", 2: "closed", 3: "refused", 4: "rejected", 5: "chat", 6: "materials", 7: "durable", 8: "unseen", 9: "command" };
 const PAUSES_MS = { first: 250, most: 5000 };
 const CONNECT_MS_MAX = 10_000;
 const RECEIVED_BYTES_MAX = 64 << 20; // wait for step(); with more the connection ends
@@ -221,10 +221,18 @@ export class Session {
     return numbers;
   }
 
-  chat(line) {
-    const bytes = new TextEncoder().encode(line);
-    use((room) => call("session_chat", this.#handle.at, room.put(bytes), bytes.length));
+  #sendText(name, text) {
+    const bytes = new TextEncoder().encode(text);
+    use((room) => call(name, this.#handle.at, room.put(bytes), bytes.length));
     this.#send();
+  }
+  chat(line) {
+    this.#sendText("session_chat", line);
+  }
+  // Sends a command, such as "undo". The event `command` has its output as text, and the number 1 if
+  // it succeeded. Fails while another command runs.
+  command(text) {
+    this.#sendText("session_command", text);
   }
 
   // Returns a copy of a chunk as it is shown. Fails if it is not held.

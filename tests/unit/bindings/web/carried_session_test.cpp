@@ -1,5 +1,6 @@
 #include "bindings/web/carried_session.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>
@@ -154,6 +155,41 @@ TEST_CASE("an edit of a carried session is shown, sent, rejected and taken back"
   const auto refused = bench.session.edit(session_bench::set({3, 0, 3}, 60'000), bench.now);
   REQUIRE_FALSE(refused.has_value());
   CHECK_FALSE(refused.error().empty());
+}
+
+TEST_CASE("a command of a carried session has its output in a notice", "[web_core]") {
+  CarriedBench bench;
+  CHECK_FALSE(bench.session.command("undo").has_value());
+  bench.server.features = kFeatureCommands;
+  bench.open();
+  bench.notices();
+  const auto send = [&](const std::string& text) {
+    REQUIRE(bench.session.command(text).has_value());
+    const auto requests = session_bench::take<CommandRequest>(bench.sent());
+    REQUIRE(requests.size() == 1);
+    CHECK(requests[0].text == text);
+    return requests[0].id;
+  };
+  const std::uint32_t id = send("undo");
+  CHECK_FALSE(bench.session.command("undo").has_value());
+  REQUIRE(bench.give(CommandOutput{id, {"one edit", "was undone"}, true, true}).has_value());
+  bench.session.step(bench.now += 10'000);
+  auto notices = bench.notices();
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].kind == CarriedNoticeKind::command);
+  CHECK(notices[0].number == 1);
+  CHECK(notices[0].text == "one edit\nwas undone");
+
+  send("redo");
+  bench.session.disconnected();
+  bench.session.step(bench.now += 10'000);
+  notices = bench.notices();
+  const auto ended = std::find_if(notices.begin(), notices.end(), [](const CarriedNotice& notice) {
+    return notice.kind == CarriedNoticeKind::command;
+  });
+  REQUIRE(ended != notices.end());
+  CHECK(ended->number == 0);
+  CHECK_FALSE(ended->text.empty());
 }
 
 TEST_CASE("an edit that is offered again keeps its number in the notices", "[web_core]") {
