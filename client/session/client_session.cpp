@@ -96,7 +96,11 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
                              std::is_same_v<T, VeilPatches>) {
           const auto taken = replica_->receive(m, arrival);
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
-          for (const OrderedEdit& edit : m.edits) previews_.forget_stroke(edit.op.author);
+          if constexpr (std::is_same_v<T, Commit>) {
+            for (const OrderedEdit& edit : m.edits) previews_.forget_stroke(edit.op.author);
+          } else if constexpr (std::is_same_v<T, VeiledCommit>) {
+            for (const VeiledEdit& edit : m.edits) previews_.forget_stroke(edit.ordered.op.author);
+          }
         } else if constexpr (std::is_same_v<T, Reject>) {
           if (m.reason == RejectReason::rate_limited) allowance_.refused(arrival.now_us);
           const bool is_kept = lost_.take(replica_->local_edits(), m, opened_us_, arrival.now_us);
