@@ -63,11 +63,12 @@ internal static class Sample {
             case EventKind.EditConfirmed:
               Console.WriteLine("{0} quads; the edit is record {1}", quads, each.Sequence);
               return true;
+            case EventKind.EditRejected:
             case EventKind.ConnectionLost:  // the client connects again by itself; the sample ends
               Console.WriteLine(client.Text(index));
               return false;
             default:
-              string text = client.Text(index);  // the chat, or why the edit failed
+              string text = client.Text(index);  // such as a line of the chat
               if (text != "") Console.WriteLine(text);
               break;
           }

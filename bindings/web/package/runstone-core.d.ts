@@ -189,6 +189,7 @@ export interface SessionInfo {
  *   was lost, and the chunks show whether the edit was applied.
  * - chat: a line of the chat.
  * - materials: Session.materials has changed.
+ * - command: the command has ended. `text` is its output, and `number` is 1 if it succeeded.
  */
 export interface SessionEvent {
   type: "open" | "closed" | "refused" | "rejected" | "chat" | "materials" | "durable" | "unseen" | "command" | "unknown";
