@@ -255,19 +255,19 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   }
   const auto stroke = tool.drawn_stroke();
   REQUIRE(stroke.has_value());
-  CHECK(may_be_shared({*stroke}, 16));
-  const auto& shape = std::get<FillStroke>(stroke->shape);
+  CHECK(may_be_shared({stroke->line}, 16));
+  const auto& shape = std::get<FillStroke>(stroke->line.shape);
   CHECK(shape.points.size() == 4);
   CHECK(shape.points.back().x == 12);
   CHECK(shape.radius <= 16);
-  CHECK(stroke->material == 2);
+  CHECK(stroke->line.material == 2);
   // Others see the end of a stroke that is too long to be shared.
   for (std::int32_t i = 0; i < 200; ++i) {
     tool.fix_aim(FixedAim{{1 + i % 14, -1 - i % 15, 1 + i % 13}, Direction::pos_y});
     tool.drag();
   }
   REQUIRE(tool.drawn_stroke().has_value());
-  CHECK(may_be_shared({*tool.drawn_stroke()}, 16));
+  CHECK(may_be_shared({tool.drawn_stroke()->line}, 16));
   CHECK(std::get<FillStroke>(tool.drawn_stroke()->shape).points.back() ==
         tool.box().points().back());
   static_cast<void>(tool.release(kNow));
