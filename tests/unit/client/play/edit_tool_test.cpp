@@ -268,7 +268,7 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   }
   REQUIRE(tool.drawn_stroke().has_value());
   CHECK(may_be_shared({tool.drawn_stroke()->line}, 16));
-  CHECK(std::get<FillStroke>(tool.drawn_stroke()->shape).points.back() ==
+  CHECK(std::get<FillStroke>(tool.drawn_stroke()->line.shape).points.back() ==
         tool.box().points().back());
   static_cast<void>(tool.release(kNow));
   CHECK_FALSE(tool.drawn_stroke().has_value());
