@@ -1,6 +1,7 @@
 #include "server/admin/access_token_store.hpp"
 
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "common/os/private_file.hpp"
@@ -61,6 +62,17 @@ Result<std::size_t, std::string> AccessTokenStore::remove(
   if (count == 0) return count;
   if (const auto written = write(std::move(changed)); !written) return failure(written.error());
   return count;
+}
+
+Result<std::size_t, std::string> AccessTokenStore::end_of_others(
+    const std::vector<PlayerRow>& players, TimeUs now_us) {
+  std::map<PublicKey, AuthorId> authors;
+  for (const PlayerRow& row : players) authors.emplace(row.key, row.author);
+  const auto is_of_other = [&authors](const AccessToken& token) {
+    const auto found = authors.find(token.owner);
+    return found == authors.end() || found->second != token.author;
+  };
+  return remove(is_of_other, now_us);
 }
 
 std::optional<AccessToken> AccessTokenStore::find(TokenKind kind, std::string_view secret,

@@ -13,6 +13,7 @@
 
 #include "common/core/result.hpp"
 #include "server/admin/access_tokens.hpp"
+#include "server/world/environment/player_rows.hpp"
 
 namespace runstone {
 
@@ -32,6 +33,10 @@ class AccessTokenStore {
   Result<std::optional<MadeToken>, std::string> enter(std::string_view link_secret, TimeUs now_us);
   Result<std::size_t, std::string> remove(const std::function<bool(const AccessToken&)>& goes,
                                           TimeUs now_us);
+  /// Removes the tokens whose owner has another author number in these rows, or none: the world was
+  /// exchanged for an older copy. Commands would be logged under the number of somebody else.
+  Result<std::size_t, std::string> end_of_others(const std::vector<PlayerRow>& players,
+                                                 TimeUs now_us);
   std::optional<AccessToken> find(TokenKind kind, std::string_view secret, TimeUs now_us) const;
   std::vector<AccessToken> list(TimeUs now_us) const;
 

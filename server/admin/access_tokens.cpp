@@ -51,6 +51,8 @@ bool parse_token(std::string_view line, AccessToken& out) {
       !take_token_number(line, out.author) || !take_token_number(line, scope) ||
       !take_token_number(line, out.made_us) || !take_token_number(line, out.ends_us))
     return false;
+  // Other times are not written, and has_ended() could not calculate with all of them.
+  if (out.made_us < 0 || out.ends_us < out.made_us) return false;
   out.scope = RightSet::of_bits(scope).and_in(RightSet::all());
   return line.empty();
 }

@@ -22,6 +22,7 @@
 #include "server/runtime/encryption.hpp"
 #include "server/runtime/logging.hpp"
 #include "server/runtime/low_priority_threads.hpp"
+#include "server/runtime/read_clocks.hpp"
 #include "server/runtime/server_core.hpp"
 
 namespace runstone {
@@ -139,6 +140,13 @@ struct Server::Parts {
       if (!opened) return failure(opened.error());
       if (!warning.empty()) logger("app").warn("{}", warning);
       tokens = *std::move(opened);
+      const auto players = world.store->players();
+      if (!players) return failure(players.error().message());
+      const auto ended = tokens->end_of_others(*players, read_clocks().utc_us);
+      if (!ended) return failure(ended.error());
+      if (*ended > 0)
+        logger("app").warn("{}: {} access tokens end: the log has other numbers for their owners",
+                           config.world, *ended);
       actions.tokens = tokens;
       actions.page_base = page_base(config);
     }

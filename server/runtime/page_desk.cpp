@@ -8,9 +8,12 @@
 #include <utility>
 
 #include "common/core/hex.hpp"
+#include "common/core/text.hpp"
 #include "common/os/private_file.hpp"
+#include "protocol/codec/key_fingerprint.hpp"
 #include "server/admin/command_table.hpp"
 #include "server/admin/word_reader.hpp"
+#include "server/runtime/logging.hpp"
 #include "server/runtime/read_clocks.hpp"
 
 namespace runstone {
@@ -71,6 +74,8 @@ void PageDesk::take(const std::string& line, CommandReply reply) {
 }
 
 void PageDesk::answer(std::string_view line, const CommandReply& reply) {
+  // The line of a command is written into the log of the server, where it must stay one line.
+  if (!is_printable_utf8(line)) return refuse(reply, "a line is printable UTF-8 text");
   std::string_view rest = line;
   const std::string_view verb = take_page_word(rest);
   const std::string_view secret = take_page_word(rest);
@@ -85,6 +90,8 @@ void PageDesk::enter(std::string_view link, const CommandReply& reply) {
   if (!made) return refuse(reply, std::string(kPageBarred) + "\n" + made.error());
   if (!*made) return refuse(reply, kPageUnknown);
   const AccessToken& token = (*made)->token;
+  logger("app").info("page_token={} author={} key={} entered the page for operators", token.number,
+                     token.author, key_fingerprint(token.owner));
   reply(CommandAnswer::last(std::string(kPageKnown) + "\ntoken " + (*made)->secret + "\nends " +
                             std::to_string(token.ends_us / 1'000'000)));
 }
@@ -134,6 +141,8 @@ void PageDesk::leave(const AccessToken& token, const CommandReply& reply) {
       [number = token.number](const AccessToken& each) { return each.number == number; },
       read_clocks().utc_us);
   if (!gone) return refuse(reply, std::string(kPageKnown) + "\n" + gone.error());
+  logger("app").info("page_token={} author={} key={} left the page for operators", token.number,
+                     token.author, key_fingerprint(token.owner));
   reply(CommandAnswer::last(kPageKnown));
 }
 

@@ -20,6 +20,19 @@ HttpAnswer operator_answer_of(unsigned status, std::string body) {
   return out;
 }
 
+/// Ends the count of a request that waits, also if its answer ends by an exception.
+class WaitingVisit {
+ public:
+  WaitingVisit(WaitingRequests& waiting, AddressBlock from) : waiting_(waiting), from_(from) {}
+  ~WaitingVisit() { waiting_.remove(from_); }
+  WaitingVisit(const WaitingVisit&) = delete;
+  WaitingVisit& operator=(const WaitingVisit&) = delete;
+
+ private:
+  WaitingRequests& waiting_;
+  const AddressBlock from_;
+};
+
 /// One request under way. The server is asked only for tokens that may be right, and not for an
 /// address that has sent many wrong ones.
 class OperatorVisit {
@@ -263,9 +276,9 @@ boost::asio::awaitable<HttpAnswer> answer_operator(WebState& state, WebWorld& wo
     co_return plain_answer(429, "too many wrong links from this address: ask later");
   if (!state.operator_requests.add(from))
     co_return plain_answer(429, "many requests of this address wait: ask later");
+  const WaitingVisit counted(state.operator_requests, from);
   OperatorVisit visit(state, world, std::move(request));
   HttpAnswer out = co_await visit.answer();
-  state.operator_requests.remove(from);
   co_return out;
 }
 

@@ -219,7 +219,9 @@ std::string operator_answer(const OperatorView& view, const std::string& command
       body += "<figure><img src=\"picture?id=" + id + "&amp;which=" + which + "\" alt=\"" + which +
               " the rollback\"><figcaption>" + which + "</figcaption></figure>\n";
   }
-  if (const std::string id = made_preview(reply); !id.empty()) {
+  // Answers to other commands may have lines that players have written.
+  const bool is_of_preview = command.starts_with("rollback preview");
+  if (const std::string id = made_preview(reply); is_of_preview && !id.empty()) {
     for (const char* action : {"apply", "cancel"})
       body += form_begin(view, action) + "<input type=\"hidden\" name=\"id\" value=\"" + id +
               "\">\n" + button(std::string(action) + " " + id) + "</form>\n";

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "common/core/text.hpp"
+#include "protocol/limits.hpp"
 
 namespace runstone {
 namespace {
@@ -35,6 +36,12 @@ std::optional<std::string> decoded_field(std::string_view text) {
   }
   if (!is_printable_utf8(out)) return std::nullopt;
   return out;
+}
+
+/// Fails if the server would not take the line of a command. It would close the connection.
+Result<std::string, std::string> line_that_fits(const std::string& line) {
+  if (line.size() <= kCommandBytesMax) return line;
+  return failure("a command has at most " + std::to_string(kCommandBytesMax) + " bytes");
 }
 
 /// Collects the words of a command, and the first fault of a field.
@@ -81,7 +88,7 @@ class FormLine {
   const std::string& line() const { return line_; }
   Result<std::string, std::string> result() const {
     if (!fault_.empty()) return failure(fault_);
-    return line_;
+    return line_that_fits(line_);
   }
 
  private:
@@ -150,7 +157,7 @@ Result<std::string, std::string> command_of_form(const FormFields& fields) {
   if (action == "command") {
     const std::string line = field_of(fields, "line");
     if (line.empty()) return failure("type a command");
-    return line;
+    return line_that_fits(line);
   }
   const bool is_of_rollback = action == "apply" || action == "cancel" || action == "undo";
   const bool has_choice = action == "restrict" || action == "lift";

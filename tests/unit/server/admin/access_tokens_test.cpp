@@ -135,6 +135,13 @@ TEST_CASE("the text of tokens reads back, and no other text does", "[admin][toke
     // A part that ends with a line is a shorter list.
     CHECK(part.has_value() == (i > 0 && text[i - 1] == '\n'));
   }
+  const auto with_made = [&](const std::string& made_us) {
+    const std::size_t at = text.find(std::to_string(kNowUs));
+    return text.substr(0, at) + made_us + text.substr(text.find(' ', at));
+  };
+  CHECK(AccessTokens::parse(with_made(std::to_string(kNowUs))).has_value());
+  CHECK_FALSE(AccessTokens::parse(with_made("-9223372036854775808")).has_value());
+  CHECK_FALSE(AccessTokens::parse(with_made("9223372036854775807")).has_value());
   CHECK(AccessTokens::parse("something else\n").error().find("line 1") == 0);
   CHECK(AccessTokens::parse(text + text.substr(text.find('\n') + 1)).error().find("order") !=
         std::string::npos);
@@ -167,6 +174,25 @@ TEST_CASE("the file of tokens has no secret, is private, and a broken one ends a
                   ->find(TokenKind::page, secret, kNowUs)
                   .has_value());
   CHECK(contains(warning, "line 3: has no end: all access tokens end"));
+}
+
+TEST_CASE("tokens end whose owner has another number in the log of an older world",
+          "[admin][tokens]") {
+  const TempFolder folder;
+  std::string warning;
+  const auto store = *AccessTokenStore::open(folder.path(), warning);
+  REQUIRE(store->make_link(kAna, 3, RightSet::all(), kNowUs).has_value());
+  REQUIRE(store->make_link(kBea, 4, RightSet::all(), kNowUs).has_value());
+  const auto none = store->end_of_others({{3, kAna, "ana"}, {4, kBea, "bea"}}, kNowUs);
+  REQUIRE(none.has_value());
+  CHECK(*none == 0);
+  const auto one = store->end_of_others({{3, kAna, "ana"}, {4, PublicKey{9}, "eve"}}, kNowUs);
+  REQUIRE(one.has_value());
+  CHECK(*one == 1);
+  const auto moved = store->end_of_others({{5, kAna, "ana"}}, kNowUs);
+  REQUIRE(moved.has_value());
+  CHECK(*moved == 1);
+  CHECK(store->list(kNowUs).empty());
 }
 
 TEST_CASE("page link is for players with a right that the page needs", "[admin][tokens]") {
