@@ -41,7 +41,7 @@ void OthersPreviews::plan_next(const Replica& replica,
   planned_ = next->first;
   Shown& shown = next->second;
   shown.is_plan_due = false;
-  auto made = edits_of_stroke(*shown.stroke, replica, materials_, shown.upright);
+  auto made = edits_of_stroke(*shown.stroke, replica, materials_, shown.upright, kPatternWorkMax);
   if (!made) {
     shown.edits.set(shared.at(planned_).edits);
     return shown.builds.set({});

@@ -27,6 +27,10 @@ class OthersPreviews {
   /// The chunks that are compared or meshed in one call of step().
   static constexpr std::size_t kChunksPerStep = 16;
 
+  /// The work of the filter and the mix of a stroke (edits_of_stroke()). A stroke with more has the
+  /// ghost of its edits.
+  static constexpr std::uint64_t kPatternWorkMax = 64'000'000;
+
   /// Takes the materials of the world, and what previews read of them. Makes all ghosts again.
   void set_materials(const MaterialTable& materials, MeshMaterialsPtr meshed);
   /// Makes the ghosts of these previews, a bounded part of them in this call. Returns true if the

@@ -31,6 +31,15 @@ Result<TypedPattern, std::string> pattern_of(const char* name, ToolText::Kind ki
   return typed_pattern(typed, table, frame);
 }
 
+/// Returns a bound of the work of the filter and the mix: a noise and a mix take the voxels one by
+/// one, and each condition and each part has bytes in its text.
+std::uint64_t pattern_work(const BrushStroke& stroke, const ColumnChanges& changes) {
+  std::uint64_t voxels = 0;
+  for (const ColumnChange& change : changes)
+    voxels += static_cast<std::uint64_t>(std::int64_t{change.high} - change.low);
+  return voxels * (stroke.where.size() + stroke.mix.size());
+}
+
 }  // namespace
 
 Result<GroundColumns, std::string> read_shown_ground(const Replica& replica, VoxelBox box,
@@ -58,7 +67,8 @@ Result<GroundColumns, std::string> read_shown_ground(const Replica& replica, Vox
 }
 
 ToolEdits edits_of_stroke(const BrushStroke& stroke, const Replica& replica,
-                          const MaterialTable& table, UprightChunks& upright) {
+                          const MaterialTable& table, UprightChunks& upright,
+                          std::uint64_t pattern_work_max) {
   const VoxelPos first = stroke.places.front();
   const PatternFrame frame{stroke.seed, {2 * first.x, 2 * first.y, 2 * first.z}};
   auto where = pattern_of("where", ToolText::Kind::filter, stroke.where, table, frame);
@@ -93,6 +103,8 @@ ToolEdits edits_of_stroke(const BrushStroke& stroke, const Replica& replica,
     columns = *std::move(read);
     changes = path_changes(*columns, materials, brush, curve);
   }
+  if (pattern_work(stroke, changes) > pattern_work_max)
+    return failure("the filter and the mix of the stroke are too much work for a preview");
   if (where->filter) changes = filtered(*columns, changes, *where->filter);
   if (mix->mix) changes = mixed(*columns, changes, *mix->mix);
   const auto placed = build_of_changes(*columns, changes);

@@ -22,10 +22,13 @@ Result<GroundColumns, std::string> read_shown_ground(const Replica& replica, Vox
 
 /// Returns what a stroke changes, as an action: the voxels that the filter lets through, with the
 /// materials of the mix. Distances are measured from the first place. Fails with words for the
-/// player if nothing changes, the ground is not loaded, or a text has a mistake. Requires an open
-/// replica, at least one place, and numbers in the ranges of BrushStroke; the number of places and
-/// the work have no bound here. Cost: that of brush_changes() or path_changes().
+/// player if nothing changes, the ground is not loaded, or a text has a mistake, or if the voxels
+/// that change, times the bytes of the filter and the mix, are more than `pattern_work_max`.
+/// Requires an open replica, at least one place, and numbers in the ranges of BrushStroke; the
+/// number of places and the other work have no bound here. Cost: that of brush_changes() or
+/// path_changes(), that of filtered() and that of mixed().
 ToolEdits edits_of_stroke(const BrushStroke& stroke, const Replica& replica,
-                          const MaterialTable& materials, UprightChunks& upright);
+                          const MaterialTable& materials, UprightChunks& upright,
+                          std::uint64_t pattern_work_max = UINT64_MAX);
 
 }  // namespace runstone

@@ -27,11 +27,11 @@ class Previews {
   /// Sends the preview to the sessions that see, together with the sender, a chunk that it touches:
   /// sessions with the feature that are in the live world, whose queue is not full, of other
   /// players. Sessions that got the sender's last preview and do not get this one are told that it
-  /// is gone. A stroke goes to those who have the feature, unless one of its places is out of
-  /// reach or a material is unknown: then they get the edits alone. A preview that the server would refuse as an edit, because of reach, heights, size or
-  /// materials, is passed on as none; rights are not checked. What is passed on counts as read from
-  /// the sender, and so does a share of the work of a stroke. Cost: O(touched chunks + their
-  /// subscribers + places).
+  /// is gone. A stroke goes to those who have the feature, unless one of its places is out of reach
+  /// or a material is unknown: then they get the edits alone. A preview that the server would refuse
+  /// as an edit, because of reach, heights, size or materials, is passed on as none; rights are not
+  /// checked. What is passed on counts as read from the sender, and so does a share of the work of
+  /// a stroke. Cost: O(touched chunks + their subscribers + places).
   void on_share(Session& session, const PreviewShare& share, const Clocks& now);
   void forget(SessionId session) { by_session_.erase(session); }
 

@@ -24,7 +24,7 @@ std::vector<Row> play(std::vector<Scene> scenes, const StageOptions& options, un
 void print(const std::vector<Row>& rows, std::ostream& out);
 /// Returns the rows as JSON.
 std::string json_text(const std::vector<Row>& rows);
-/// Returns true if the client has failed no scene.
+/// Returns true if the client has failed no scene, and each scene of the minimum was tried.
 bool is_passed(const std::vector<Row>& rows);
 
 }  // namespace runstone::conformance

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <system_error>
@@ -60,11 +61,11 @@ void ClientProgram::write_line(const std::string& line) {
 
 std::optional<std::string> ClientProgram::next() {
   std::array<char, 16 * 1024> buffer{};
-  while (lines_.empty() && !is_ended_) {
+  if (lines_.empty() && !is_ended_) {
     const ssize_t got = ::read(out_, buffer.data(), buffer.size());
-    if (got < 0) break;
     is_ended_ = got == 0;
-    for (const char c : std::string_view(buffer.data(), static_cast<std::size_t>(got))) {
+    const auto bytes = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+    for (const char c : std::string_view(buffer.data(), bytes)) {
       if (c == '\n') {
         lines_.push_back(std::exchange(text_, {}));
       } else if (text_.size() < kLineBytesMax) {

@@ -22,7 +22,8 @@ class ClientProgram {
 
   int descriptor() const { return out_; }
   void write_line(const std::string& line);
-  /// Reads what has arrived. Returns the next line, or nullopt if none is complete.
+  /// Reads a bounded part of what has arrived, if no line is kept. Returns the next line, or nullopt
+  /// if none is complete.
   std::optional<std::string> next();
   /// Returns true if the program has closed its standard output and all lines were taken.
   bool is_ended() const { return is_ended_ && lines_.empty(); }

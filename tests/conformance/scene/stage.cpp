@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::uint8_t kRadiusMax = 2;  // of views, in chunks
 constexpr int kPollMs = 5;
+// Bounds for a client that sends or prints without end.
+constexpr int kPumpedMax = 1'000;  // messages and lines that one pump() takes
+constexpr std::size_t kLinesMax = 20'000;
 
 KeySeed world_seed() {
   KeySeed seed;
@@ -258,17 +261,21 @@ void Stage::handle(Message message) {
 
 bool Stage::pump() {
   bool has_moved = false;
-  if (player_ && player_->continue_opening()) {
-    while (auto message = player_->next()) {
+  if (player_) {
+    const bool is_open = player_->continue_opening();
+    for (int taken = 0; is_open && taken < kPumpedMax; ++taken) {
+      auto message = player_->next();
+      if (!message) break;
       has_moved = true;
       handle(*std::move(message));
     }
     if (!player_->fault().empty()) throw SceneFailed{player_->fault()};
   }
-  while (program_) {
+  for (int taken = 0; program_ && taken < kPumpedMax; ++taken) {
     auto line = program_->next();
     if (!line) break;
     has_moved = true;
+    if (lines.size() == kLinesMax) throw SceneFailed{"the program prints too many lines"};
     lines.push_back(*std::move(line));
   }
   if (program_ && program_->is_ended() && !may_end_)
@@ -279,8 +286,10 @@ bool Stage::pump() {
 void Stage::wait_until(const std::function<bool()>& is_done, const std::string& what) {
   const auto end = deadline();
   while (!is_done()) {
-    if (pump()) continue;
-    if (std::chrono::steady_clock::now() >= end) throw SceneFailed{what};
+    const bool is_late = std::chrono::steady_clock::now() >= end;
+    const bool has_moved = pump();
+    if (is_late && !is_done()) throw SceneFailed{what};
+    if (has_moved) continue;
     pollfd ready[] = {{listening_.descriptor(), POLLIN, 0},
                       {program_ ? program_->descriptor() : -1, POLLIN, 0},
                       {player_ && !player_->is_ended() ? player_->descriptor() : -1, POLLIN, 0}};

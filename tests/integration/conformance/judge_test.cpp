@@ -70,6 +70,17 @@ TEST_CASE("a client with a fault loses the mark of its scene", "[conformance]") 
   }
 }
 
+TEST_CASE("a client that prints without end fails its scene", "[conformance]") {
+  const ShellRun lines = judged("yes", "--patience 2 --scene join");
+  CAPTURE(lines.text);
+  CHECK(lines.exit_code == 1);
+  CHECK(lines.text.find("the program prints too many lines") != std::string::npos);
+  const ShellRun bytes = judged("-- sh -c 'exec cat /dev/zero'", "--patience 0.5 --scene join");
+  CAPTURE(bytes.text);
+  CHECK(bytes.exit_code == 1);
+  CHECK(bytes.text.find("the client does not connect") != std::string::npos);
+}
+
 TEST_CASE("the judge says what is wrong with its command line", "[conformance]") {
   const ShellRun unknown = judged("client", "--scene no-such-scene");
   CHECK(unknown.exit_code == 2);

@@ -1,6 +1,7 @@
 #include "client/play/others_previews.hpp"
 
 #include "client/render/author_rgb.hpp"
+#include "client/tools/ground_stroke.hpp"
 #include "common/mesh_materials/mesh_materials_of.hpp"
 #include "tests/unit/client/tools/tool_bench.hpp"
 
@@ -107,6 +108,22 @@ TEST_CASE_METHOD(OthersBench, "a stroke follows the ground, and its edits stand 
   const auto stood_in = ghosts();
   settle({{7, box_of(3)}});
   require_equal(stood_in, ghosts());
+}
+
+TEST_CASE_METHOD(OthersBench, "a stroke whose mix is too much work has the ghost of its edits",
+                 "[client_app]") {
+  BrushStroke stroke;
+  stroke.size = 5;
+  stroke.strength = 3;
+  stroke.mix = "70% stone, 30% dirt";
+  stroke.places = {{0, -1, 0}, {4, -1, 2}};
+  const MaterialTable table = default_material_table();
+  UprightChunks upright{1'000'000};
+  CHECK(edits_of_stroke(stroke, replica, table, upright, OthersPreviews::kPatternWorkMax));
+  CHECK_FALSE(edits_of_stroke(stroke, replica, table, upright, stroke.mix.size()));
+  stroke.mix.clear();
+  stroke.material = 1;
+  CHECK(edits_of_stroke(stroke, replica, table, upright, 0));
 }
 
 TEST_CASE_METHOD(OthersBench, "the previews of others are ghosts in the colours of the players",

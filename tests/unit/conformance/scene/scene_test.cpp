@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "tests/conformance/scene/checklist.hpp"
 #include "tests/conformance/scene/scene.hpp"
 
 namespace runstone::test {
@@ -26,6 +27,17 @@ TEST_CASE("the page of the conformance kit has a row for each scene", "[conforma
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   for (const conformance::Scene& scene : conformance::all_scenes())
     CHECK(page.find("| `" + scene.name + "` | " + scene.words + " |") != std::string::npos);
+}
+
+TEST_CASE("a scene of the minimum that was not tried is not passed", "[conformance]") {
+  using namespace conformance;
+  const auto row = [](Part part, Mark mark) {
+    return Row{{"name", "section", part, "words", nullptr}, mark, ""};
+  };
+  const Row passed = row(Part::minimum, Mark::passed);
+  CHECK(is_passed({passed, row(Part::further, Mark::not_tried)}));
+  CHECK_FALSE(is_passed({passed, row(Part::minimum, Mark::not_tried)}));
+  CHECK_FALSE(is_passed({passed, row(Part::further, Mark::failed)}));
 }
 
 }  // namespace runstone::test
