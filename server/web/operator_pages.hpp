@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/web/page_form.hpp"
-#include "server/web/page_link.hpp"
+#include "server/web/page_reply.hpp"
 
 namespace runstone {
 
