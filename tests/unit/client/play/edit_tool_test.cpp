@@ -248,7 +248,11 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   CHECK_FALSE(tool.drawn_stroke().has_value());
   tool.fix_aim(FixedAim{{1, -1, 1}, Direction::pos_y});
   REQUIRE(tool.press(ToolButton::place, kNow).has_value());
-  CHECK_FALSE(tool.drawn_stroke().has_value());  // one place is no stroke
+  // Others see one place as a ball, and as the brush if they know it.
+  REQUIRE(tool.drawn_stroke().has_value());
+  CHECK(std::holds_alternative<FillSphere>(tool.drawn_stroke()->line.shape));
+  REQUIRE(tool.drawn_stroke()->stroke.has_value());
+  CHECK(tool.drawn_stroke()->stroke->places.size() == 1);
   for (const std::int32_t x : {4, 7, 12}) {
     tool.fix_aim(FixedAim{{x, -1, 1}, Direction::pos_y});
     tool.drag();
@@ -271,7 +275,8 @@ TEST_CASE_METHOD(Fixture, "others see a stroke that is drawn, cut so that it may
   CHECK(std::get<FillStroke>(tool.drawn_stroke()->line.shape).points.back() ==
         tool.box().points().back());
   static_cast<void>(tool.release(kNow));
-  CHECK_FALSE(tool.drawn_stroke().has_value());
+  REQUIRE(tool.drawn_stroke().has_value());  // that of the next click
+  CHECK(std::holds_alternative<FillSphere>(tool.drawn_stroke()->line.shape));
 }
 
 TEST_CASE_METHOD(Fixture, "a tool previews its next click, and nothing in the past",
