@@ -125,7 +125,9 @@ void ChunkUpdater::add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edi
   chunk.inbox.push_back(std::move(edit));
   if (!may_wait) return;
   ++counters_.chunk_edits_buffered;
-  if (chunk.inbox.size() > kInboxEditsMax) {
+  const bool has_patch = chunk.inbox.back().patch != nullptr;
+  if (chunk.inbox.size() > kInboxEditsMax ||
+      (has_patch && TrackedChunk::span_count(chunk.inbox) > kPatchSpansMax)) {
     // chunk.latest remembers what the next snapshot must contain.
     chunk.inbox.clear();
     ++counters_.buffer_overflows;
@@ -174,6 +176,7 @@ void ChunkUpdater::apply_ready(const TrackedChunk::ReadyEdits& taken, VoxelPos o
                                Chunk& chunk) {
   const std::span<const EditDescriptor> stack(taken.stack);
   std::size_t applied = 0;
+  bool is_patched = false;
   const auto apply_up_to = [&](std::size_t end) {
     if (end == applied) return;
     apply_stack(chunk.voxels, chunk.digest, origin, stack.subspan(applied, end - applied),
@@ -183,10 +186,12 @@ void ChunkUpdater::apply_ready(const TrackedChunk::ReadyEdits& taken, VoxelPos o
   };
   for (const TrackedChunk::ReadyEdits::Patch& each : taken.patches) {
     apply_up_to(each.edits);
-    if (apply_patch(*each.patch, chunk.voxels)) chunk.digest = digest_of(chunk.voxels);
+    is_patched = apply_patch(*each.patch, chunk.voxels) || is_patched;
     ++counters_.patches_applied;
   }
   apply_up_to(stack.size());
+  // Once for all patches: it costs O(runs).
+  if (is_patched) chunk.digest = digest_of(chunk.voxels);
 }
 
 void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& check, TimeUs now_us) {
@@ -207,6 +212,10 @@ void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& che
   // Computed from the runs, not the digest that followed the edits: the runs are what is meshed.
   if (digest_of(held.voxels) == check.digest) return;
   ++counters_.drifted;
+  // The server makes the snapshot after this check, so the snapshot contains every patch that the
+  // chunk has. A patch that it lacks must not be applied again.
+  chunk.repeatable.clear();
+  chunks_.recount(chunk);
   request(chunk, now_us);
 }
 

@@ -45,8 +45,9 @@ class ChunkUpdater {
   void adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us);
 
   /// Appends an ordered edit to the inbox. `may_wait`: the edit may have to wait for the
-  /// server's answer about the chunk. Then the inbox is bounded by kInboxEditsMax: beyond it, the
-  /// edits are dropped, and a snapshot that contains them is requested later.
+  /// server's answer about the chunk. Then the inbox is bounded by kInboxEditsMax and
+  /// kPatchSpansMax: beyond them, the edits are dropped, and a snapshot that contains them is
+  /// requested later.
   void add_to_inbox(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool may_wait);
   /// Applies what follows in the inbox, requests a snapshot at a gap, and shows the result. Does
   /// nothing without a confirmed chunk, and while a snapshot is awaited.

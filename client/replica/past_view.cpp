@@ -14,6 +14,7 @@ void PastView::show(const std::optional<PastMoment>& moment, ReplicaChunks& chun
     if (!is_past()) continue;
     chunk.pending.clear();
     chunk.inbox.clear();
+    chunk.repeatable.clear();
     chunk.latest = 0;
     chunks.recount(chunk);
   }

@@ -53,6 +53,8 @@ void Replica::expect_all_chunks(const SharedHistory& history, bool is_other_kind
     chunk.repeatable.clear();
     chunk.latest = 0;
     chunk.behind_of = {};
+    // The cache has a chunk of the other kind, perhaps with the version that the chunk will get.
+    if (is_other_kind) chunk.cached.reset();
     chunks_.recount(chunk);
     if (!chunk.confirmed()) continue;
     const bool is_trusted = history.trusts(chunk.confirmed()->version);

@@ -27,9 +27,10 @@
 //
 // Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
 // One thread; the chunks that are returned are immutable and may be read from any thread. Bounds:
-// chunks by the view; local edits by kLocalEditsMax; commits held back by kInboxEditsMax per chunk;
-// claims by kClaimsMax; the cache by kCacheOutboxMax and kCacheOutboxBytesMax. MemoryBudget
-// (client/schedule) reduces the view if the chunks take too many bytes.
+// chunks by the view; local edits by kLocalEditsMax; commits held back by kInboxEditsMax per chunk,
+// and their patches by kPatchSpansMax; claims by kClaimsMax; the cache by kCacheOutboxMax and
+// kCacheOutboxBytesMax. MemoryBudget (client/schedule) reduces the view if the chunks take too many
+// bytes.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -228,8 +229,8 @@ class Replica {
   void receive_tile(ChunkAnswer& answer);
   void receive_snapshot(const ChunkKey& key, Chunk snapshot, TimeUs now_us);
   void receive_missing_edits(const ChunkEdits& edits, TimeUs now_us);
-  /// `is_other_kind`: the chunks are held with a veil, and the server sends them without one, or the
-  /// other way round.
+  /// `is_other_kind`: the chunks are held with a veil, and the server sends them without one, or
+  /// the other way round.
   void expect_all_chunks(const SharedHistory& history, bool is_other_kind);
   using Touched = std::map<ChunkKey, TrackedChunk*>;
   OrderedPtr ordered_info(const OrderedEdit& ordered, const Version& version,

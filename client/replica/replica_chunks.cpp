@@ -36,6 +36,7 @@ void ReplicaChunks::set_current(TrackedChunk& chunk, ChunkPtr confirmed) {
 
 void ReplicaChunks::set_unavailable(TrackedChunk& chunk) {
   chunk.inbox.clear();
+  chunk.repeatable.clear();
   set_confirmed(chunk, nullptr);
   set_state(chunk, ChunkState::unavailable);
 }

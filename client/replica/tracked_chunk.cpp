@@ -36,6 +36,12 @@ std::size_t TrackedChunk::drop_answered(Sequence seq) {
   });
 }
 
+std::size_t TrackedChunk::span_count(std::span<const InboxEdit> entries) {
+  std::size_t count = 0;
+  for (const InboxEdit& entry : entries) count += entry.patch ? entry.patch->spans.size() : 0;
+  return count;
+}
+
 TrackedChunk::ReadyEdits TrackedChunk::take_ready_edits() {
   ReadyEdits out;
   out.version = confirmed_->version;
@@ -53,9 +59,12 @@ TrackedChunk::ReadyEdits TrackedChunk::take_ready_edits() {
     if (!is_repeated) {
       out.version = next.version;
       repeatable.clear();
-    } else if (repeatable.size() < kRepeatedPatchesMax) {
-      repeatable.push_back(next);
+      continue;
     }
+    cached.reset();  // the cache has this version without the patch
+    if (repeatable.size() < kRepeatedPatchesMax &&
+        span_count(repeatable) + span_count({&next, 1}) <= kPatchSpansMax)
+      repeatable.push_back(next);
   }
   inbox.erase(inbox.begin(), inbox.begin() + static_cast<std::ptrdiff_t>(taken));
   return out;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "client/replica/chunk_state.hpp"
@@ -34,6 +35,9 @@ struct OrderedInfo {
 using OrderedPtr = std::shared_ptr<const OrderedInfo>;
 
 inline constexpr std::size_t kRepeatedPatchesMax = 64;
+/// Spans of all patches that wait in the inbox of a chunk, and of all patches that the chunk may
+/// repeat. A span takes 12 bytes in memory and only 2 in a message.
+inline constexpr std::size_t kPatchSpansMax = 65'536;
 
 class TrackedChunk {
  public:
@@ -50,6 +54,8 @@ class TrackedChunk {
     /// Returns true if the patch leaves the version as it is. It may be applied again.
     bool is_repeatable() const { return !has_edit && previous == version.seq; }
   };
+  /// Returns the number of spans of all patches of these entries.
+  static std::size_t span_count(std::span<const InboxEdit> entries);
   /// A local edit that the confirmed runs do not contain yet.
   struct PendingEdit {
     ClientSequence seq = 0;
@@ -65,7 +71,8 @@ class TrackedChunk {
   std::vector<PendingEdit> pending;  // ascending by seq
   std::vector<InboxEdit> inbox;      // ascending by sequence
   /// Patches that were applied at the confirmed version and did not move it. A snapshot of the same
-  /// version may lack them. At most kRepeatedPatchesMax; a digest check finds one that is missing.
+  /// version may lack them. At most kRepeatedPatchesMax, with kPatchSpansMax spans. A digest check
+  /// finds a patch that is missing.
   std::vector<InboxEdit> repeatable;
   Sequence latest = 0;  // newest edit of this chunk seen on this connection
   /// Newest version above the confirmed one that a digest check named on this connection.

@@ -21,8 +21,9 @@ class CommitEncoder {
   /// Returns the indices of all edits.
   std::span<const std::uint32_t> all() const { return all_; }
   bool is_veiled() const { return is_veiled_; }
-  /// Returns the byte list of a Commit or VeiledCommit message with the edits at these indices, as docs/protocol.md
-  /// specifies it. Requires ascending indices of edits, at least one. Cost: O(bytes).
+  /// Returns the byte list of a Commit or VeiledCommit message with the edits at these indices, as
+  /// docs/protocol.md specifies it. Requires ascending indices of edits, at least one. Cost:
+  /// O(bytes).
   Bytes list(std::span<const std::uint32_t> edits) const;
 
  private:
@@ -42,7 +43,8 @@ class CommitEncoder {
   Bytes bytes_;  // of each edit, what does not depend on the edit before
 };
 
-/// Returns the Commit or VeiledCommit message with the edits at these indices, as CommitEncoder::list() takes them.
+/// Returns the Commit or VeiledCommit message with the edits at these indices, as
+/// CommitEncoder::list() takes them.
 EncodedMessage encode_message(const CommitEncoder& commit, std::span<const std::uint32_t> edits);
 
 }  // namespace runstone

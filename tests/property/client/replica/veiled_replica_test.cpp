@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -470,6 +471,84 @@ TEST_CASE("chunks with a veil are not kept for a session without one", "[replica
   again.is_veiled = false;
   replica.open(again);
   CHECK(replica.confirmed(key) == nullptr);
+}
+
+TEST_CASE("a patch that the chunk of the server lacks is not applied again", "[replica][veil]") {
+  Replica replica;
+  replica.set_view({1, {0, 0, 0}, 1, 1});
+  replica.open(veiled_session(1));
+  const ChunkKey key{0, {0, 0, 0}};
+  const RunChunk stone = uniform_chunk(Extent::cube(kEdge), kStone);
+  const Digest digest = digest_of(stone);
+  const auto send_snapshot = [&] {
+    replica.receive(chunks_of(ChunkSnapshot{key, {stone, {}, digest}}), {});
+  };
+  send_snapshot();
+  const VeilPatch patch{Extent::cube(kEdge), kVeilOrder, {{0, 1, kOre}}};
+  REQUIRE(replica.receive(VeilPatches{{}, {{key.at, 0, patch}}}, {}).has_value());
+  CHECK(replica.shown_at({0, 0, 0}) == kOre);
+  replica.receive(DigestCheck{{{key, {}, digest}}}, 1);
+  CHECK(replica.take_requests() == std::vector<ChunkKey>{key});
+  send_snapshot();
+  CHECK(replica.shown_at({0, 0, 0}) == kStone);
+  replica.receive(DigestCheck{{{key, {}, digest}}}, 2);
+  CHECK(replica.take_requests().empty());
+  CHECK(replica.counters().drifted == 1);
+}
+
+TEST_CASE("the cache gets a chunk again when its voxels change at one version", "[replica][veil]") {
+  Replica replica;
+  replica.collect_for_cache();
+  replica.set_view({1, {0, 0, 0}, 1, 1});
+  SessionParameters session = veiled_session(1);
+  replica.open(session);
+  const ChunkKey key{0, {0, 0, 0}};
+  const auto send_snapshot = [&](Material material) {
+    const RunChunk voxels = uniform_chunk(Extent::cube(kEdge), material);
+    replica.receive(chunks_of(ChunkSnapshot{key, {voxels, {}, digest_of(voxels)}}), {});
+  };
+  send_snapshot(kStone);
+  CHECK(replica.take_for_cache(9).size() == 1);
+  CHECK(replica.take_for_cache(9).empty());
+  const VeilPatch patch{Extent::cube(kEdge), kVeilOrder, {{0, 1, kOre}}};
+  REQUIRE(replica.receive(VeilPatches{{}, {{key.at, 0, patch}}}, {}).has_value());
+  CHECK(replica.take_for_cache(9).size() == 1);
+  CHECK(replica.take_for_cache(9).empty());
+  session.is_veiled = false;
+  replica.open(session);
+  send_snapshot(kOre);
+  CHECK(replica.take_for_cache(9).size() == 1);
+}
+
+TEST_CASE("the patches that a chunk keeps are bounded by their spans", "[replica][veil]") {
+  // Each voxel is a span.
+  const Extent extent = Extent::cube(kEdge);
+  VeilPatch patch{extent, kVeilOrder, {}};
+  for (VoxelIndex i = 0; i < extent.volume(); ++i)
+    patch.spans.push_back({i, 1, i % 2 == 0 ? kStone : kOre});
+  const Sequence fitting = kPatchSpansMax / extent.volume();
+  REQUIRE(fitting < kRepeatedPatchesMax);
+  const ChunkKey key{0, {0, 0, 0}};
+
+  // In the inbox.
+  Replica replica;
+  replica.set_view({1, {0, 0, 0}, 1, 1});
+  replica.open(veiled_session(1));
+  for (Sequence seq = 1; seq <= fitting + 1; ++seq) {
+    CHECK(replica.counters().buffer_overflows == 0);
+    REQUIRE(replica.receive(VeilPatches{{1, seq}, {{key.at, seq - 1, patch}}}, {}).has_value());
+  }
+  CHECK(replica.counters().buffer_overflows == 1);
+
+  // At the version of the chunk.
+  ReplicaChunks chunks;
+  TrackedChunk& chunk = *chunks.track(key).first;
+  chunks.set_current(chunk,
+                     std::make_shared<const Chunk>(Chunk{uniform_chunk(extent, kStone), {}, {}}));
+  const auto shared = std::make_shared<const VeilPatch>(patch);
+  for (Sequence i = 0; i <= fitting; ++i) chunk.inbox.push_back({nullptr, 0, {}, false, shared});
+  CHECK(chunk.take_ready_edits().patches.size() == fitting + 1);
+  CHECK(chunk.repeatable.size() == fitting);
 }
 
 }  // namespace runstone::test
