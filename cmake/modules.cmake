@@ -8,8 +8,8 @@
 # With CMAKE_UNITY_BUILD, as in the presets release, asan, fuzz and tsan, the sources of a module
 # are compiled together, because their headers cost most of the time. SINGLE keeps them apart: in
 # the libraries for embedders, so that neither what is measured nor the time to compile one changed
-# file depends on the preset. For WebAssembly this holds only for vector code, because no other code
-# is measured there.
+# file depends on the preset. For WebAssembly and with sanitizers this holds only for vector code,
+# because no other code is measured there.
 #
 # With clang, the headers of the standard library, and those of Asio, spdlog and CLI11, are then parsed
 # once for all modules (runstone_precompile). Builds that compile each file alone find missing includes,
@@ -115,17 +115,20 @@ function(runstone_module folder)
       add_library(${name} STATIC ${sources})
       set(scope PUBLIC)
     endif()
-    if(ARG_SINGLE AND EMSCRIPTEN)
-      foreach(source ${sources})
-        file(STRINGS ${source} vector_code REGEX "hwy/foreach_target|-inl\\.hpp")
-        if(vector_code)
-          set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-        endif()
-      endforeach()
-    elseif(ARG_SINGLE)
+    if(ARG_SINGLE AND NOT EMSCRIPTEN AND NOT RUNSTONE_SANITIZE)
       set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-    elseif(CMAKE_UNITY_BUILD AND TARGET runstone_precompiled_std)
-      runstone_use_precompiled(${name} "${ARG_LIBS}")
+    else()
+      if(ARG_SINGLE)
+        foreach(source ${sources})
+          file(STRINGS ${source} vector_code REGEX "hwy/foreach_target|-inl\\.hpp")
+          if(vector_code)
+            set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+          endif()
+        endforeach()
+      endif()
+      if(CMAKE_UNITY_BUILD AND TARGET runstone_precompiled_std)
+        runstone_use_precompiled(${name} "${ARG_LIBS}")
+      endif()
     endif()
   else()
     add_library(${name} INTERFACE)
